@@ -1,0 +1,47 @@
+# How every library, component and test of the project is made.
+
+add_library(handsel_options INTERFACE)
+target_compile_options(handsel_options INTERFACE -Wall -Wextra -Wshadow -Wno-psabi -Werror)
+target_include_directories(handsel_options INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+option(HANDSEL_ASAN "Address and undefined-behaviour sanitizers" OFF)
+option(HANDSEL_TSAN "Thread sanitizer" OFF)
+if(HANDSEL_ASAN)
+  target_compile_options(handsel_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer)
+  target_link_options(handsel_options INTERFACE -fsanitize=address,undefined)
+elseif(HANDSEL_TSAN)
+  target_compile_options(handsel_options INTERFACE -fsanitize=thread)
+  target_link_options(handsel_options INTERFACE -fsanitize=thread)
+endif()
+find_program(HANDSEL_MOLD mold)
+if(HANDSEL_MOLD)
+  add_link_options(-fuse-ld=mold)
+endif()
+
+# handsel_library(<name> SOURCES a.cpp ... LINK lib ...): static library handsel_<name>.
+function(handsel_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(handsel_${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(handsel_${name} PUBLIC handsel_options Eigen3::Eigen ${ARG_LINK})
+endfunction()
+
+# handsel_component(<name> CORE a.cpp ... NODE node.cpp ... LINK lib ...): core library handsel_<name>_core (no DDS),
+# node library handsel_<name> (core bound to a Bus) and the process handsel_<name> from main.cpp.
+function(handsel_component name)
+  cmake_parse_arguments(ARG "" "" "CORE;NODE;LINK" ${ARGN})
+  handsel_library(${name}_core SOURCES ${ARG_CORE} LINK ${ARG_LINK})
+  handsel_library(${name} SOURCES ${ARG_NODE} LINK handsel_${name}_core handsel_bus handsel_config)
+  add_executable(handsel_${name}_process main.cpp)
+  set_target_properties(handsel_${name}_process PROPERTIES OUTPUT_NAME handsel_${name})
+  target_link_libraries(handsel_${name}_process PRIVATE handsel_${name})
+  install(TARGETS handsel_${name}_process RUNTIME DESTINATION bin)
+endfunction()
+
+# handsel_test(<name> SOURCES a_test.cpp ... LINK lib ... [LABEL unit]): a GoogleTest binary test_<name>.
+function(handsel_test name)
+  cmake_parse_arguments(ARG "" "LABEL" "SOURCES;LINK" ${ARGN})
+  add_executable(test_${name} ${ARG_SOURCES})
+  target_link_libraries(test_${name} PRIVATE handsel_options ${ARG_LINK} GTest::gtest_main GTest::gmock)
+  target_compile_definitions(test_${name} PRIVATE HANDSEL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
+  add_test(NAME ${name} COMMAND test_${name})
+  set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABEL}")
+endfunction()

@@ -1,0 +1,27 @@
+// Finding and reading the files under deploy/ (or share/handsel once installed).
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <google/protobuf/message.h>
+
+#include "common/base/errors.hpp"
+
+namespace handsel {
+
+/// Root of robots/, hands/, objects/, config/, scenarios/: $HANDSEL_HOME, else found from the executable
+/// (build tree: the source's deploy/; installed: ../share/handsel). Throws MissingError.
+std::filesystem::path resource_root();
+/// resource_root()/relative; throws MissingError naming it when it is not there.
+std::filesystem::path resource(const std::string& relative);
+/// Strict Protobuf text: unknown fields, wrong types and duplicates throw ConfigError "file:line:column: what".
+void load_text_proto(const std::filesystem::path& file, google::protobuf::Message& out);
+
+/// "jido" or a path to a .txtpb -> path of the description. MissingError lists what there is.
+std::filesystem::path robot_description(const std::string& name_or_path);
+std::filesystem::path hand_description(const std::string& name_or_path);
+std::filesystem::path object_description(const std::string& name_or_path);
+std::filesystem::path scenario_file(const std::string& name_or_path);
+
+}  // namespace handsel

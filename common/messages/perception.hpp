@@ -1,0 +1,55 @@
+// What sensors say: external perception connects here. All poses and points in frame "world".
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/geometry/pose.hpp"
+
+namespace handsel {
+
+/// A tracked point of a body. Names are REP-155 joints and links: head, neck, torso (chest), waist, l_shoulder, l_elbow, l_wrist,
+/// l_hand, r_..., l_hip, l_knee, l_ankle, r_...
+struct ObservedJoint {
+  std::string name;
+  Vector3 position;     ///< world [m]
+  double confidence{};  ///< [0, 1]
+};
+
+struct ObservedPerson {
+  std::string body;  ///< transient id of the tracker
+  std::vector<ObservedJoint> joints;
+  bool has_gaze{};
+  Vector3 gaze_origin{Vector3::Zero()};        ///< between the eyes, world [m]
+  Vector3 gaze_direction{Vector3::UnitX()};    ///< unit, world
+};
+
+/// The volume a source has looked at: what makes "nobody there" a fact. Axis-aligned box in world [m].
+struct Coverage {
+  Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};
+};
+
+/// Topic HumanObservation, profile sensor, keyed by source.
+struct HumanObservation {
+  Stamp stamp{};
+  std::string source;
+  Coverage coverage;
+  std::vector<ObservedPerson> people;
+};
+
+struct ObservedObject {
+  std::string id;     ///< persistent name of this object, e.g. "mug"
+  std::string model;  ///< object description it was recognised as
+  Pose T_world_object{Pose::Identity()};
+  double confidence{};
+};
+
+/// Topic ObjectObservation, profile sensor, keyed by source.
+struct ObjectObservation {
+  Stamp stamp{};
+  std::string source;
+  std::vector<ObservedObject> objects;
+};
+
+}  // namespace handsel

@@ -1,0 +1,37 @@
+// The robot on the wire: what its driver reports, what it is told. Axis order = actuated joints of the robot description.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/geometry/pose.hpp"
+
+namespace handsel {
+
+enum class DriveMode : std::uint8_t { off, braked, enabled, protective_stop, user_stop, emergency_stop };
+
+/// Published by the robot side (driver or simulator), 500 Hz. Topic RobotState, profile sensor, keyed by robot.
+struct RobotState {
+  Stamp stamp{};
+  std::string robot;                     ///< name of the robot description
+  std::uint64_t sequence{};
+  Pose T_world_base{Pose::Identity()};   ///< root link of the robot in the world
+  Vector position, velocity, effort;     ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
+  Vector external_torque;                ///< per axis, without model gravity and friction [Nm]; empty if unknown
+  Wrench wrist_wrench;                   ///< what the world exerts on the hand with its load, gravity of the hand removed, tool frame
+  double hand_effort{};                  ///< sum of |finger torques| [Nm]
+  double payload{};                      ///< mass the hand carries as measured by the robot side [kg]
+  DriveMode mode{DriveMode::off};
+};
+
+/// Set-point of every axis, from the trajectory controller only. Topic JointCommand, profile setpoint, keyed by robot.
+struct JointCommand {
+  Stamp stamp{};
+  std::string robot;
+  std::uint64_t sequence{};
+  Vector position, velocity, acceleration;  ///< per axis, all axes of the robot
+};
+
+}  // namespace handsel

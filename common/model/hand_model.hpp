@@ -1,0 +1,41 @@
+// A hand as data: fingers in order (thumb first), their joints, fingertips, grasp frame (common/config/hand.proto).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+struct Finger {
+  std::string name;
+  std::vector<int> axes;            ///< indices into the hand's own axes (0 = first actuated hand axis)
+  std::string tip_link;             ///< centre of the fingertip sphere is this link's origin
+  double tip_radius{};              ///< [m]
+};
+
+class HandModel {
+ public:
+  /// Loads a hand description; its URDF is the hand alone with the palm (= tool link of a robot that carries it) as root.
+  static HandModel load(const std::filesystem::path& description);
+
+  const std::string& name() const { return name_; }
+  const RobotModel& model() const { return model_; }               ///< root link = palm / hand frame
+  const std::vector<Finger>& fingers() const { return fingers_; }  ///< thumb first
+  const Pose& T_hand_grasp() const { return T_hand_grasp_; }       ///< grasp frame: about where contacts happen
+  const Vector& rest() const { return rest_; }                     ///< stretched
+  const Vector& pregrasp() const { return pregrasp_; }             ///< open, ready to enclose
+  const Vector& lower_contact() const { return lower_contact_; }   ///< bounds shrunk for contacts
+  const Vector& upper_contact() const { return upper_contact_; }
+
+ private:
+  friend class HandModelBuilder;
+  std::string name_;
+  RobotModel model_;
+  std::vector<Finger> fingers_;
+  Pose T_hand_grasp_{Pose::Identity()};
+  Vector rest_, pregrasp_, lower_contact_, upper_contact_;
+};
+
+}  // namespace handsel

@@ -1,0 +1,25 @@
+// An object that can be handed over: mesh for planning, simple convex parts for physics, mass (common/config/object.proto).
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/geometry/shape.hpp"
+
+namespace handsel {
+
+struct ObjectModel {
+  std::string name;
+  TriangleMesh mesh;                    ///< object frame, z up when standing [m]
+  std::vector<PlacedShape> parts;       ///< convex parts (collision, physics), object frame
+  double mass{};                        ///< [kg]
+  Vector3 com{Vector3::Zero()};         ///< object frame [m]
+  double friction{0.6};
+  double height_above_support{};        ///< of the object frame's origin when standing [m]
+
+  /// Throws ConfigError / MissingError naming the file and what is wrong.
+  static ObjectModel load(const std::filesystem::path& description);
+};
+
+}  // namespace handsel
