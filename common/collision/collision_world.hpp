@@ -30,7 +30,8 @@ class CollisionWorld {
   void set_base(const Pose& T_world_base);
   void set_scene(const Scene&);                 ///< objects (held ones are ignored) and boxes
   void set_people(const HumanState&);           ///< capsules, inflated
-  /// The object moves with the tool link; links of the hand may touch it and the `allowed` scene objects.
+  /// The object moves with the tool link; links of the hand may touch it and the `allowed` scene objects. A person named among the
+  /// allowed keeps head, torso, upper arms and legs as obstacles; forearms and hands are none (the exchange is engaged).
   void set_attachment(const Attachment&, const std::vector<std::string>& allowed_contacts);
 
   CollisionVerdict check(const Vector& q);      ///< all axes

@@ -36,7 +36,9 @@ struct PathRequest {
   Vector start;                       ///< all axes of the robot [rad]
   std::vector<Vector> goals;          ///< alternatives, group axes only [rad]
   Attachment attachment;
-  std::vector<std::string> allowed_contacts;  ///< scene objects the hand may touch (the one to be grasped)
+  /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms are no obstacle because
+  /// the exchange with them is engaged. The same meaning wherever this field appears.
+  std::vector<std::string> allowed_contacts;
   PlannerKind planner{PlannerKind::automatic};
   double time_limit{2.0};             ///< [s] a budget in checks is derived from it
   std::uint64_t seed{};

@@ -34,6 +34,9 @@ struct SceneBox {
 struct Scene {
   Stamp stamp{};
   std::uint64_t revision{};                ///< grows with every change that matters to a planner
+  bool robot_known{};                      ///< a RobotState has come
+  Pose T_world_base{Pose::Identity()};     ///< root link of the robot, as last measured
+  Vector robot_position;                   ///< all axes, as last measured [rad]; empty until robot_known
   std::vector<SceneObject> objects;
   std::vector<SceneBox> boxes;
 };
