@@ -17,6 +17,8 @@ std::filesystem::path resource_root();
 std::filesystem::path resource(const std::string& relative);
 /// Strict Protobuf text: unknown fields, wrong types and duplicates throw ConfigError "file:line:column: what".
 void load_text_proto(const std::filesystem::path& file, google::protobuf::Message& out);
+/// "file:line" of the first line that contains `text` (e.g. a quoted name), or "file": says where a wrong value stands.
+std::string locate(const std::filesystem::path& file, const std::string& text);
 
 /// "jido" or a path to a .txtpb -> path of the description. MissingError lists what there is.
 std::filesystem::path robot_description(const std::string& name_or_path);

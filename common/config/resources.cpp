@@ -1,0 +1,119 @@
+#include "common/config/resources.hpp"
+
+#include <google/protobuf/io/tokenizer.h>
+#include <google/protobuf/text_format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace handsel {
+namespace fs = std::filesystem;
+namespace {
+
+class FirstError : public google::protobuf::io::ErrorCollector {
+ public:
+  void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
+    if (!text.empty()) return;
+    text = line < 0 ? message : std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": " + message;
+  }
+  std::string text;
+};
+
+std::string read_file(const fs::path& file) {
+  if (!fs::exists(file)) throw MissingError("no file " + file.string());
+  if (!fs::is_regular_file(file)) throw ConfigError(file.string() + " is not a file");
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw ConfigError(file.string() + ": cannot be read");
+  return text.str();
+}
+
+fs::path find_root() {
+  if (const char* home = std::getenv("HANDSEL_HOME"); home != nullptr && *home != '\0') {
+    if (fs::is_directory(fs::path(home) / "robots")) return fs::canonical(home);
+    throw MissingError("HANDSEL_HOME is " + std::string(home) + ", which has no folder robots/");
+  }
+  std::error_code error;
+  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  for (fs::path folder = executable.parent_path(); !error; folder = folder.parent_path()) {
+    for (const char* below : {"deploy", "share/handsel"})
+      if (fs::is_directory(folder / below / "robots")) return folder / below;
+    if (folder == folder.parent_path()) break;
+  }
+  throw MissingError("no folder deploy/ or share/handsel beside or above " + executable.string() + "; set HANDSEL_HOME to it");
+}
+
+bool is_path(const std::string& name) { return name.find('/') != std::string::npos || name.ends_with(".txtpb"); }
+
+std::string alternatives(const fs::path& folder, bool nested) {
+  std::vector<std::string> names;
+  if (fs::is_directory(folder))
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string stem = entry.path().stem().string();
+      if (nested ? fs::exists(entry.path() / (stem + ".txtpb")) : entry.path().extension() == ".txtpb") names.push_back(stem);
+    }
+  std::sort(names.begin(), names.end());
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list.empty() ? "none" : list;
+}
+
+/// A path as it is; a name as <folder>/<name>/<name>.txtpb (nested) or <folder>/<name>.txtpb.
+fs::path description(const std::string& kind, const fs::path& folder, bool nested, const std::string& name_or_path) {
+  if (is_path(name_or_path)) {
+    if (!fs::exists(name_or_path)) throw MissingError("no " + kind + " description " + name_or_path);
+    return name_or_path;
+  }
+  const fs::path file = nested ? folder / name_or_path / (name_or_path + ".txtpb") : folder / (name_or_path + ".txtpb");
+  if (name_or_path.empty() || !fs::exists(file))
+    throw MissingError("no " + kind + " \"" + name_or_path + "\"; there is: " + alternatives(folder, nested));
+  return file;
+}
+
+}  // namespace
+
+fs::path resource_root() {
+  static const fs::path root = find_root();
+  return root;
+}
+
+fs::path resource(const std::string& relative) {
+  const fs::path file = resource_root() / relative;
+  if (!fs::exists(file)) throw MissingError("no file " + file.string());
+  return file;
+}
+
+void load_text_proto(const fs::path& file, google::protobuf::Message& out) {
+  const std::string text = read_file(file);
+  FirstError error;
+  google::protobuf::TextFormat::Parser parser;
+  parser.RecordErrorsTo(&error);
+  if (!parser.ParseFromString(text, &out)) throw ConfigError(file.string() + ":" + error.text);
+}
+
+std::string locate(const fs::path& file, const std::string& text) {
+  std::ifstream in(file);
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number)
+    if (line.find(text) != std::string::npos) return file.string() + ":" + std::to_string(number);
+  return file.string();
+}
+
+fs::path robot_description(const std::string& name_or_path) { return description("robot", resource_root() / "robots", true, name_or_path); }
+fs::path hand_description(const std::string& name_or_path) { return description("hand", resource_root() / "hands", true, name_or_path); }
+fs::path object_description(const std::string& name_or_path) {
+  return description("object", resource_root() / "objects", true, name_or_path);
+}
+
+fs::path scenario_file(const std::string& name_or_path) {
+  if (is_path(name_or_path)) return description("scenario", {}, false, name_or_path);
+  fs::path folder = resource_root() / "scenarios";
+  if (!fs::is_directory(folder)) folder = resource_root().parent_path() / "sim" / "scenarios";
+  return description("scenario", folder, false, name_or_path);
+}
+
+}  // namespace handsel
