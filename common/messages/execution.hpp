@@ -104,6 +104,7 @@ struct ExecutionStatus {
 struct ActiveTrajectory {
   Stamp stamp{};
   std::string robot;
+  Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world, as last measured
   std::uint64_t trajectory{};           ///< 0: at rest
   double time{};                        ///< along the trajectory [s]
   double speed_factor{};                ///< alpha in force, [-1, 1]
