@@ -1,14 +1,18 @@
 // How a component talks: typed publishers and subscribers, timers and jobs. Two implementations: DdsBus (the product) and LocalBus
-// (one process, virtual time, deterministic order). Everything a component registers is called on one executor thread of its node.
+// (one process, virtual time, deterministic order). Everything a component registers is called on one executor thread of its node;
+// everything here except CancelToken may be called from that thread only (and before it runs).
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "common/base/time.hpp"
-#include "common/bus/topics.hpp"   // template <class M> struct TopicOf; one row a message type
+#include "common/bus/topics.hpp"
+#include "common/wire/message_type.hpp"
 
 namespace handsel {
 
@@ -19,21 +23,74 @@ struct Receipt {
   std::uint64_t writer{};  ///< distinguishes writers (handle), stable while the writer lives
 };
 
-/// Asked by long work: stop as soon as possible?
+/// What a subscription has seen so far. Lives as long as the bus.
+struct SubscriptionStatus {
+  std::uint64_t received{};         ///< valid samples handed over
+  std::uint64_t rejected{};         ///< malformed samples dropped
+  std::uint64_t deadline_misses{};  ///< silences longer than the topic's deadline, one each
+  std::uint64_t writers_lost{};     ///< writers that died, left or lost their lease
+  int writers{};                    ///< alive and matched now
+  TimePoint last_arrival{};
+  Duration last_age{};         ///< age at arrival of the last sample
+  std::string last_rejection;  ///< one sentence
+
+  bool never_seen() const { return received == 0; }
+  /// Age of the newest sample now: time since arrival + age at arrival. Duration::max() while nothing was ever seen (stale).
+  Duration age(TimePoint now) const { return never_seen() ? Duration::max() : now - last_arrival + last_age; }
+};
+
+/// How a timer has fared. Lives as long as the bus.
+struct TimerStatus {
+  std::uint64_t cycles{};       ///< calls so far
+  std::uint64_t late_cycles{};  ///< calls that began more than one period after they were due
+  std::uint64_t skipped{};      ///< ticks left out because a later one was already due
+  Duration worst{};             ///< largest lateness so far
+};
+
+/// Asked by long work: stop as soon as possible? Each question is also the job's sign of life.
 class CancelToken {
  public:
-  bool cancelled() const { return flag_->load(std::memory_order_relaxed); }
-  void cancel() { flag_->store(true, std::memory_order_relaxed); }
+  bool cancelled() const {
+    state_->beats.fetch_add(1, std::memory_order_relaxed);
+    return state_->flag.load(std::memory_order_relaxed);
+  }
+  void cancel() { state_->flag.store(true, std::memory_order_relaxed); }
+  std::uint64_t beats() const { return state_->beats.load(std::memory_order_relaxed); }
+
  private:
-  std::shared_ptr<std::atomic<bool>> flag_ = std::make_shared<std::atomic<bool>>(false);
+  struct State {
+    std::atomic<bool> flag{false};
+    std::atomic<std::uint64_t> beats{0};
+  };
+  std::shared_ptr<State> state_ = std::make_shared<State>();
+};
+
+/// Publisher of any one message type; Publisher<M> is its typed face.
+class AnyPublisher {
+ public:
+  virtual ~AnyPublisher() = default;
+  virtual bool publish(const void* message) = 0;
+  virtual int readers() const = 0;
 };
 
 template <class M>
 class Publisher {
  public:
-  virtual ~Publisher() = default;
-  /// Never blocks. A zero stamp is filled with the system clock. Returns false (counted, logged once) when the message breaks its bounds.
-  virtual bool publish(const M& message) = 0;
+  explicit Publisher(std::unique_ptr<AnyPublisher> publisher) : publisher_(std::move(publisher)) {}
+  /// Never blocks. A zero stamp is filled with the system clock. Returns false (counted, logged once) when the message breaks its
+  /// bounds or the transport has no room.
+  bool publish(const M& message) { return publisher_->publish(&message); }
+  /// Matched readers now.
+  int readers() const { return publisher_->readers(); }
+
+ private:
+  std::unique_ptr<AnyPublisher> publisher_;
+};
+
+struct SubscribeOptions {
+  /// 0: each sample as it comes. Otherwise the topic is looked at once a period and what is there handed over: for slow readers of
+  /// fast topics, who then are not woken by every sample.
+  Duration period{};
 };
 
 /// A component's door to everything else. One a component.
@@ -41,15 +98,37 @@ class Bus {
  public:
   virtual ~Bus() = default;
 
+  /// `strength` decides who is heard on topics with exclusive ownership (profiles command, latch, setpoint): the strongest living writer.
   template <class M>
-  std::unique_ptr<Publisher<M>> advertise();
+  std::unique_ptr<Publisher<M>> advertise(int strength = 0) {
+    return std::make_unique<Publisher<M>>(advertise_any(message_type<M>(), strength));
+  }
   /// Calls back on the executor thread with each valid sample; malformed ones are counted, logged once per source and dropped.
+  /// The message is valid during the call only.
   template <class M>
-  void subscribe(std::function<void(const M&, const Receipt&)> on_sample);
-  /// Periodic on the monotonic clock; the callback gets the time it runs at. realtime: own priority SCHED_FIFO where permitted.
-  virtual void every(Duration period, std::function<void(TimePoint)> on_tick) = 0;
-  /// Long work: `work` runs off the executor (LocalBus: at once, finishing `modelled` later), then `done` on the executor.
-  /// `work` returns the modelled compute time for LocalBus. The token cancels it.
+  const SubscriptionStatus& subscribe(std::function<void(const M&, const Receipt&)> on_sample, const SubscribeOptions& options = {}) {
+    return subscribe_any(
+        message_type<M>(), [f = std::move(on_sample)](const void* m, const Receipt& r) { f(*static_cast<const M*>(m), r); }, options);
+  }
+  /// Age of the newest sample of a subscribed topic; Duration::max() when nothing came or nobody subscribed.
+  template <class M>
+  Duration lag() const {
+    return lag_any(message_type<M>());
+  }
+
+  /// For tools that handle any topic.
+  virtual std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) = 0;
+  virtual const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+                                                  const SubscribeOptions& options) = 0;
+  virtual Duration lag_any(const MessageType& type) const = 0;
+
+  /// Periodic on the monotonic clock, without drift; ticks that can no longer be kept are skipped and counted. The callback gets the
+  /// time it runs at.
+  virtual const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) = 0;
+  /// Once, after `delay`.
+  virtual void after(Duration delay, std::function<void(TimePoint)> on_time) = 0;
+  /// Long work: `work` runs off the executor (LocalBus: at once, finishing `modelled` later), then `done` on the executor, always,
+  /// cancelled or not. `work` returns the modelled compute time for LocalBus. Jobs of a bus run one after the other.
   virtual CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) = 0;
   virtual TimePoint now() const = 0;
   virtual Stamp stamp_now() const = 0;

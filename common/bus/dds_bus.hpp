@@ -1,0 +1,60 @@
+// The product's bus: one Cyclone DDS participant and one executor thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/bus/bus.hpp"
+
+namespace handsel {
+
+struct DdsBusSettings {
+  std::string component;
+  std::uint32_t domain{0};
+  bool realtime{false};  ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
+  int cpu{-1};           ///< pins the executor; -1: none
+  bool health{true};     ///< publishes ComponentHealth (tools do not)
+};
+
+/// Sets CYCLONEDDS_URI to dds/loopback.xml of the resource root when the environment has none.
+void use_default_dds_configuration();
+
+class DdsBus : public Bus {
+ public:
+  /// Throws MissingError when the domain cannot be entered.
+  explicit DdsBus(const DdsBusSettings& settings);
+  ~DdsBus() override;
+
+  /// Runs callbacks on the calling thread until stop() (any thread, or a signal handler).
+  void run();
+  void stop() noexcept;
+  /// Runs callbacks until `done` holds (asked after each wake-up) or the time is over; true if it held.
+  bool run_until(const std::function<bool()>& done, Duration limit);
+  /// Empty, or why real-time scheduling is not in force.
+  const std::string& realtime_note() const;
+  /// ComponentHealth says ok from now on (starting before).
+  void set_ready();
+  /// ComponentHealth says stopping, at once.
+  void set_stopping();
+  std::uint64_t incarnation() const;
+
+  std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;
+  const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+                                          const SubscribeOptions& options) override;
+  Duration lag_any(const MessageType& type) const override;
+  const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) override;
+  void after(Duration delay, std::function<void(TimePoint)> on_time) override;
+  CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) override;
+  TimePoint now() const override;
+  Stamp stamp_now() const override;
+  void set_degraded(const std::string& reason) override;
+  const std::string& component() const override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace handsel

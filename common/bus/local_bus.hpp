@@ -1,0 +1,58 @@
+// A whole system in one process and virtual time: same seed, same order, bit for bit. Every sample passes the wire conversions, travels
+// for a seeded delay and meets the same depths, ownership and late-join rules as over DDS.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/bus/bus.hpp"
+
+namespace handsel {
+
+class LocalBus;
+
+struct LocalNetworkSettings {
+  std::uint64_t seed{1};
+  double delay_min{0.0001};  ///< transport delay of a sample, uniform between these [s]; order per writer and reader is kept
+  double delay_max{0.0003};  ///< [s]
+  double loss{};             ///< share of best-effort samples lost, [0, 1)
+  double lease{0.3};         ///< a killed component is noticed by its readers after this [s]
+};
+
+class LocalNetwork {
+ public:
+  explicit LocalNetwork(std::uint64_t seed);
+  explicit LocalNetwork(const LocalNetworkSettings& settings);
+  ~LocalNetwork();
+  LocalNetwork(const LocalNetwork&) = delete;
+  LocalNetwork& operator=(const LocalNetwork&) = delete;
+
+  /// The bus of a new component; lives as long as the network. The node built on it must not be destroyed before its last event unless
+  /// the component was killed.
+  Bus& add(const std::string& component);
+
+  TimePoint now() const;
+  /// Handles every event up to and including t. Throws std::logic_error for a t before now().
+  void run_until(TimePoint t);
+  void run_for(Duration d) { run_until(now() + d); }
+  /// Handles events until `done` holds (asked after each event) or `limit` is reached; true if it held.
+  bool run_until(const std::function<bool()>& done, TimePoint limit);
+  std::uint64_t events() const;  ///< handled so far
+
+  /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after the lease.
+  void kill(const std::string& component);
+  /// As SIGSTOP and SIGCONT: while paused nothing of it runs; samples wait for it within the depth of their topic.
+  void pause(const std::string& component);
+  void resume(const std::string& component);
+  /// Cuts all its traffic both ways; it runs on.
+  void isolate(const std::string& component, bool cut);
+
+ private:
+  friend class LocalBus;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace handsel

@@ -1,0 +1,33 @@
+// What a node is told at its start.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/model/object_model.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+/// Gives the model of an object by its name, or nullptr.
+using ObjectLibrary = std::function<const ObjectModel*(const std::string&)>;
+
+struct NodeContext {
+  std::shared_ptr<const RobotModel> robot;
+  ObjectLibrary objects;           ///< every description under objects/, read at start
+  std::filesystem::path scenario;  ///< scenario file; empty: none was named
+  std::filesystem::path settings;  ///< directory of <box>.txtpb
+  std::uint64_t seed{1};           ///< of every random choice of the node
+};
+
+/// Reads every objects/*/*.txtpb under the resource root. Throws ConfigError naming the file.
+ObjectLibrary load_object_library();
+
+/// Names or paths as on the command line; empty `settings` means resource_root()/config. Throws ConfigError / MissingError.
+NodeContext load_context(const std::string& robot, const std::string& scenario = {}, const std::filesystem::path& settings = {},
+                         std::uint64_t seed = 1);
+
+}  // namespace handsel

@@ -1,0 +1,112 @@
+// Every topic of the system, in one table: code, documentation, permissions, bridge channels and tests are made from it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace handsel {
+
+/// Names of the QoS profiles; what each means is written in common/bus/qos.
+enum class Profile : std::uint8_t {
+  sensor,    ///< best effort, keep last 1
+  state,     ///< reliable, transient local, keep last 1
+  command,   ///< reliable, keep last 8, exclusive ownership
+  latch,     ///< a command whose last sample a late joiner must know: reliable, transient local, keep last 1, exclusive ownership
+  goal,      ///< reliable, keep last 8, many writers
+  advice,    ///< reliable, keep last 1
+  setpoint,  ///< best effort, keep last 1, exclusive ownership
+  request,   ///< reliable, bounded keep all
+  reply,     ///< reliable, bounded keep all
+  health,    ///< reliable, keep last 1, liveliness lease
+};
+const char* name(Profile);
+
+/// One row of the table.
+struct TopicRow {
+  const char* type;   ///< message struct in common/messages, and IDL struct in module handsel
+  const char* topic;  ///< name on the wire
+  Profile profile;
+  double rate;          ///< nominal [Hz]; 0 = on change or on demand
+  double deadline;      ///< longest time between samples [s]; 0 = none
+  std::size_t largest;  ///< bound of the serialised sample [bytes]
+  const char* writers;  ///< components, separated by spaces
+  const char* readers;  ///< components, separated by spaces; the bridge reads everything and is not named
+};
+
+// type, topic, profile, rate [Hz], deadline [s], largest [bytes], writers, readers
+#define HANDSEL_TOPICS(X)                                                                                                            \
+  X(RobotState, "robot_state", sensor, 500, 0.02, 2048, "sim", "trajectory_controller spark supervisor manipulation_planner")        \
+  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 1024, "trajectory_controller", "sim")                                       \
+  X(HumanObservation, "human_observation", sensor, 30, 0.2, 65536, "sim", "spark")                                                   \
+  X(ObjectObservation, "object_observation", sensor, 30, 0.2, 16384, "sim", "spark")                                                 \
+  X(Scene, "scene", state, 10, 0.3, 65536, "spark",                                                                                  \
+    "costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner")                                  \
+  X(HumanState, "human_state", state, 30, 0.1, 131072, "spark",                                                                      \
+    "costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner attention trajectory_controller")  \
+  X(Facts, "facts", state, 10, 0.3, 65536, "spark", "supervisor trajectory_planner attention")                                       \
+  X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", "path_planner trajectory_planner manipulation_planner")                   \
+  X(TaskGoal, "task_goal", goal, 0, 0, 512, "handsel bridge", "supervisor")                                                          \
+  X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel")                                                         \
+  X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner")                                             \
+  X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", "supervisor attention sim trajectory_controller") \
+  X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller")                                                            \
+  X(TrajectoryCommand, "trajectory", command, 0, 0, 2621440, "manipulation_planner", "trajectory_controller")                        \
+  X(HandCommand, "hand_command", command, 0, 0, 1024, "manipulation_planner", "trajectory_controller")                               \
+  X(ExecutionStatus, "execution_status", state, 50, 0.06, 1024, "trajectory_controller", "manipulation_planner supervisor")          \
+  X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 2621440, "trajectory_controller", "collision_checker attention")        \
+  X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.06, 512, "collision_checker", "trajectory_controller attention")        \
+  X(AttentionState, "attention_state", state, 10, 0.3, 2048, "attention", "handsel")                                                 \
+  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 512, "attention",                                                         \
+    "supervisor spark costmap manipulation_planner trajectory_controller")                                                           \
+  X(PathRequest, "path_request", request, 0, 0, 65536, "manipulation_planner", "path_planner")                                       \
+  X(PathReply, "path_reply", reply, 0, 0, 1310720, "path_planner", "manipulation_planner")                                           \
+  X(TrajectoryRequest, "trajectory_request", request, 0, 0, 1310720, "manipulation_planner", "trajectory_planner")                   \
+  X(TrajectoryReply, "trajectory_reply", reply, 0, 0, 2752512, "trajectory_planner", "manipulation_planner")                         \
+  X(GraspRequest, "grasp_request", request, 0, 0, 1024, "manipulation_planner", "grasp_planner")                                     \
+  X(GraspReply, "grasp_reply", reply, 0, 0, 1048576, "grasp_planner", "manipulation_planner")                                        \
+  X(GraspCandidates, "grasp_candidates", advice, 2, 0, 1048576, "grasp_planner", "manipulation_planner")                             \
+  X(StateQuery, "state_query", request, 0, 0, 2097152, "manipulation_planner handsel", "collision_checker")                          \
+  X(StateVerdict, "state_verdict", reply, 0, 0, 16384, "collision_checker", "manipulation_planner handsel")                          \
+  X(ComponentHealth, "component_health", health, 5, 0.6, 32768,                                                                      \
+    "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner attention "       \
+    "trajectory_controller bridge sim",                                                                                              \
+    "supervisor handsel")                                                                                                            \
+  X(SimControl, "sim_control", goal, 0, 0, 256, "handsel bridge", "sim")                                                             \
+  X(GroundTruth, "ground_truth", state, 50, 0.06, 16384, "sim", "handsel")
+
+#define HANDSEL_ROW(type, topic, ...) struct type;
+HANDSEL_TOPICS(HANDSEL_ROW)
+#undef HANDSEL_ROW
+
+#define HANDSEL_ROW(type, topic, profile, rate, deadline, largest, writers, readers) \
+  TopicRow{#type, "handsel/" topic, Profile::profile, rate, deadline, largest, writers, readers},
+inline constexpr TopicRow kTopics[] = {HANDSEL_TOPICS(HANDSEL_ROW)};
+#undef HANDSEL_ROW
+
+enum class TopicIndex : std::size_t {
+#define HANDSEL_ROW(type, topic, ...) type,
+  HANDSEL_TOPICS(HANDSEL_ROW)
+#undef HANDSEL_ROW
+};
+
+/// The row of a message type; only messages of the table have one.
+template <class M>
+struct TopicOf;
+#define HANDSEL_ROW(type, topic, ...)                                                \
+  template <>                                                                        \
+  struct TopicOf<type> {                                                             \
+    static constexpr std::size_t index = static_cast<std::size_t>(TopicIndex::type); \
+    static constexpr const TopicRow& row = kTopics[index];                           \
+  };
+HANDSEL_TOPICS(HANDSEL_ROW)
+#undef HANDSEL_ROW
+
+inline std::span<const TopicRow> topics() { return kTopics; }
+/// By type ("RobotState") or topic ("handsel/robot_state", "robot_state"); nullptr if there is none.
+const TopicRow* find_topic(std::string_view type_or_topic);
+/// Is `component` one of the names in `list`?
+bool named_in(const char* list, std::string_view component);
+
+}  // namespace handsel
