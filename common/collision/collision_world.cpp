@@ -1,0 +1,378 @@
+#include "common/collision/collision_world.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "common/collision/collision_shape.hpp"
+#include "common/model/robot_capsules.hpp"
+
+namespace handsel {
+namespace {
+
+using AxisMask = std::vector<bool>;
+
+struct RobotBody {
+  int link{};
+  CollisionShapePtr shape;
+  Pose T_link_shape;
+  bool moves{};  ///< some axis moves it
+  bool hand{};   ///< rigid with the tool link, or beyond it
+};
+
+/// Two robot bodies that can touch, with the axes that change their relative pose.
+struct SelfPair {
+  int a{}, b{};
+  std::vector<int> axes;
+};
+
+struct SceneBody {
+  std::string id;
+  bool is_object{}, supports{};
+  CollisionShapePtr shape, lowered;  ///< lowered: for what the hand holds, see kSupportSlack
+  Pose T_world_shape{Pose::Identity()}, T_world_lowered{Pose::Identity()};
+  bool allowed{};
+};
+
+struct PersonBody {
+  std::string id;
+  bool arm{};  ///< forearm or hand
+  CollisionShapePtr shape;
+  Pose T_world_shape;
+  Vector3 a, b;
+  double radius{};
+  bool obstacle{true};  ///< as set_people asked
+  bool allowed{};
+};
+
+bool exchanging_part(BodyPart part) {
+  return part == BodyPart::forearm_left || part == BodyPart::hand_left || part == BodyPart::forearm_right || part == BodyPart::hand_right;
+}
+
+Pose along(const Vector3& a, const Vector3& b) {
+  return make_pose(0.5 * (a + b), Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), (b - a).norm() > 1e-12 ? b - a : Vector3::UnitZ()));
+}
+
+/// A capsule around points, along their longest extent.
+LinkCapsule enclosing_capsule(const std::vector<Vector3>& points) {
+  Vector3 mean = Vector3::Zero();
+  for (const Vector3& p : points) mean += p / static_cast<double>(points.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Vector3& p : points) covariance += (p - mean) * (p - mean).transpose();
+  const Vector3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
+  double low = 0, high = 0, radius = 0;
+  for (const Vector3& p : points) radius = std::max(radius, (p - mean).cross(axis).norm());
+  for (const Vector3& p : points) {
+    const double across = (p - mean).cross(axis).norm(), x = (p - mean).dot(axis), cap = std::sqrt(radius * radius - across * across);
+    low = std::min(low, x + cap);
+    high = std::max(high, x - cap);
+  }
+  LinkCapsule capsule;
+  capsule.a = mean + low * axis;
+  capsule.b = mean + high * axis;
+  capsule.radius = radius;
+  return capsule;
+}
+
+}  // namespace
+
+struct CollisionWorld::Impl {
+  const RobotModel& robot;
+  ObjectLibrary library;
+  Pose T_world_base{Pose::Identity()};
+  std::vector<RobotBody> bodies;        // links; what the hand holds is appended
+  std::size_t link_bodies{};
+  std::vector<SelfPair> link_pairs, held_pairs;
+  std::vector<SceneBody> scene, obstacles;
+  std::vector<PersonBody> people;
+  Scene last_scene;
+  Attachment attachment;
+  std::set<std::string> allowed;
+  std::vector<LinkCapsule> capsules;    // links, then what is held
+  std::size_t link_capsules{};
+  std::vector<bool> hand_link;
+  std::vector<std::set<int>> joints_above;
+  std::map<std::string, CollisionShapePtr> meshes;
+  std::uint64_t checks{};
+
+  std::vector<Pose> T_root_link, T_world_body;
+  Vector self_free;                     // configuration last found free of self collision, empty if none
+  std::vector<bool> changed;
+
+  Impl(const RobotModel& model, ObjectLibrary objects) : robot(model), library(std::move(objects)) {
+    const auto& links = robot.links();
+    joints_above.resize(links.size());
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const int joint = links[i].parent_joint;
+      if (joint < 0) continue;
+      joints_above[i] = joints_above[robot.joints()[joint].parent];
+      if (robot.joints()[joint].dof >= 0) joints_above[i].insert(joint);
+    }
+    hand_link.assign(links.size(), false);
+    if (robot.tool_link() >= 0) {
+      const std::set<int>& tool = joints_above[robot.tool_link()];
+      for (std::size_t i = 0; i < links.size(); ++i)
+        hand_link[i] = std::includes(joints_above[i].begin(), joints_above[i].end(), tool.begin(), tool.end());
+    }
+    for (std::size_t i = 0; i < links.size(); ++i)
+      for (const PlacedShape& placed : links[i].collision)
+        bodies.push_back({static_cast<int>(i), CollisionShape::make(placed.shape), placed.T_parent_shape, !joints_above[i].empty(),
+                          static_cast<bool>(hand_link[i])});
+    link_bodies = bodies.size();
+    for (std::size_t i = 0; i < link_bodies; ++i)
+      for (std::size_t j = i + 1; j < link_bodies; ++j)
+        if (bodies[i].link != bodies[j].link && !robot.pair_disabled(bodies[i].link, bodies[j].link)) add_pair(i, j, link_pairs);
+    capsules = robot_capsules(robot);
+    link_capsules = capsules.size();
+    changed.assign(robot.dof(), true);
+  }
+
+  void add_pair(std::size_t i, std::size_t j, std::vector<SelfPair>& pairs) const {
+    const std::set<int>&above = joints_above[bodies[i].link], &below = joints_above[bodies[j].link];
+    std::vector<int> between;
+    std::set_symmetric_difference(above.begin(), above.end(), below.begin(), below.end(), std::back_inserter(between));
+    std::set<int> axes;
+    for (int joint : between) axes.insert(robot.joints()[joint].dof);
+    if (!axes.empty()) pairs.push_back({static_cast<int>(i), static_cast<int>(j), {axes.begin(), axes.end()}});
+  }
+
+  CollisionShapePtr object_shape(const std::string& model_name) {
+    auto found = meshes.find(model_name);
+    if (found != meshes.end()) return found->second;
+    const ObjectModel* model = library ? library(model_name) : nullptr;
+    CollisionShapePtr shape;
+    if (model != nullptr && !model->mesh.triangles.empty()) shape = CollisionShape::make(std::make_shared<const TriangleMesh>(model->mesh));
+    meshes.emplace(model_name, shape);
+    return shape;
+  }
+
+  void rebuild_scene() {
+    std::vector<SceneBody> bodies_now;
+    for (const SceneBox& box : last_scene.boxes) {
+      SceneBody body;
+      body.id = box.id;
+      body.supports = box.supports;
+      body.T_world_shape = box.T_world_box;
+      const auto same = std::find_if(scene.begin(), scene.end(), [&](const SceneBody& b) {
+        return !b.is_object && b.id == box.id && b.supports == box.supports && std::get<Box>(b.shape->shape()).size == box.size;
+      });
+      if (same != scene.end()) {
+        body.shape = same->shape;
+        body.lowered = same->lowered;
+      } else {
+        body.shape = CollisionShape::make(Box{box.size});
+        if (box.supports && box.size.z() > kSupportSlack) body.lowered = CollisionShape::make(Box{box.size - Vector3(0, 0, kSupportSlack)});
+      }
+      if (body.lowered) body.T_world_lowered = box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * kSupportSlack);
+      body.allowed = allowed.count(box.id) > 0;
+      bodies_now.push_back(std::move(body));
+    }
+    for (const SceneObject& object : last_scene.objects) {
+      if (object.holder == Holder::robot || object.holder == Holder::human || object.id == attachment.object) continue;
+      SceneBody body;
+      body.id = object.id;
+      body.is_object = true;
+      body.shape = object_shape(object.model);
+      if (!body.shape) continue;
+      body.T_world_shape = object.T_world_object;
+      body.allowed = allowed.count(object.id) > 0;
+      bodies_now.push_back(std::move(body));
+    }
+    scene = std::move(bodies_now);
+  }
+
+  void rebuild_held() {
+    bodies.resize(link_bodies);
+    capsules.resize(link_capsules);
+    held_pairs.clear();
+    if (!attachment.object.empty() && robot.tool_link() >= 0) {
+      std::string model = attachment.object;
+      for (const SceneObject& object : last_scene.objects)
+        if (object.id == attachment.object) model = object.model;
+      if (CollisionShapePtr shape = object_shape(model)) {
+        LinkCapsule capsule = enclosing_capsule(std::get<MeshPtr>(shape->shape())->vertices);
+        capsule.link = robot.tool_link();
+        capsule.a = attachment.T_tool_object * capsule.a;
+        capsule.b = attachment.T_tool_object * capsule.b;
+        capsules.push_back(capsule);
+        bodies.push_back({robot.tool_link(), shape, attachment.T_tool_object, true, true});
+        for (std::size_t i = 0; i < link_bodies; ++i)
+          if (!bodies[i].hand) add_pair(i, link_bodies, held_pairs);
+      }
+    }
+    self_free.resize(0);
+  }
+
+  void place(const Vector& q) {
+    robot.forward(q, T_root_link);
+    T_world_body.resize(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) T_world_body[i] = T_world_base * (T_root_link[bodies[i].link] * bodies[i].T_link_shape);
+  }
+
+  std::string name_of(std::size_t body) const {
+    return body < link_bodies ? "link " + robot.links()[bodies[body].link].name : "object " + attachment.object;
+  }
+
+  bool self_touch(const std::vector<SelfPair>& pairs, CollisionVerdict* verdict) const {
+    for (const SelfPair& pair : pairs) {
+      if (std::none_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return changed[axis]; })) continue;
+      if (!touch(*bodies[pair.a].shape, T_world_body[pair.a], *bodies[pair.b].shape, T_world_body[pair.b])) continue;
+      if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b)};
+      return true;
+    }
+    return false;
+  }
+
+  bool scene_touch(std::size_t i, const std::vector<SceneBody>& things, CollisionVerdict* verdict) const {
+    const bool held = i >= link_bodies;
+    for (const SceneBody& thing : things) {
+      if (thing.allowed && bodies[i].hand) continue;
+      const bool lowered = held && thing.lowered;
+      const CollisionShape& shape = lowered ? *thing.lowered : *thing.shape;
+      if (!touch(*bodies[i].shape, T_world_body[i], shape, lowered ? thing.T_world_lowered : thing.T_world_shape)) continue;
+      if (verdict) *verdict = {false, name_of(i), (thing.is_object ? "object " : "box ") + thing.id};
+      return true;
+    }
+    return false;
+  }
+
+  bool person_touch(std::size_t i, CollisionVerdict* verdict) const {
+    for (const PersonBody& person : people) {
+      if (!person.obstacle || (person.allowed && person.arm)) continue;
+      if (!touch(*bodies[i].shape, T_world_body[i], *person.shape, person.T_world_shape)) continue;
+      if (verdict) *verdict = {false, name_of(i), "person " + person.id};
+      return true;
+    }
+    return false;
+  }
+
+  bool judge(const Vector& q, CollisionVerdict* verdict) {
+    ++checks;
+    place(q);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict) || person_touch(i, verdict))) return false;
+    const bool known = self_free.size() == q.size();
+    for (int axis = 0; axis < robot.dof(); ++axis) changed[axis] = !known || self_free[axis] != q[axis];
+    if (self_touch(link_pairs, verdict) || self_touch(held_pairs, verdict)) return false;
+    self_free = q;
+    return true;
+  }
+};
+
+CollisionWorld::CollisionWorld(const RobotModel& robot, ObjectLibrary library) : impl_(new Impl(robot, std::move(library))) {}
+CollisionWorld::~CollisionWorld() = default;
+CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
+
+void CollisionWorld::set_base(const Pose& T_world_base) { impl_->T_world_base = T_world_base; }
+
+void CollisionWorld::set_scene(const Scene& scene) {
+  if (scene.robot_known) impl_->T_world_base = scene.T_world_base;
+  impl_->last_scene = scene;
+  impl_->rebuild_scene();
+}
+
+void CollisionWorld::set_obstacles(const std::vector<Obstacle>& obstacles) {
+  impl_->obstacles.clear();
+  for (const Obstacle& obstacle : obstacles) {
+    SceneBody body;
+    body.id = obstacle.id;
+    body.shape = CollisionShape::make(obstacle.placed.shape);
+    body.T_world_shape = obstacle.placed.T_parent_shape;
+    impl_->obstacles.push_back(std::move(body));
+  }
+}
+
+void CollisionWorld::set_people(const HumanState& state, PeopleParts parts) {
+  impl_->people.clear();
+  for (const Person& person : state.people)
+    for (const BodyCapsule& capsule : body_capsules(person)) {
+      PersonBody body;
+      body.id = person.id;
+      body.arm = exchanging_part(capsule.part);
+      body.obstacle = parts == PeopleParts::all || !body.arm;
+      body.shape = CollisionShape::make(Capsule{capsule.radius, (capsule.b - capsule.a).norm()});
+      body.T_world_shape = along(capsule.a, capsule.b);
+      body.a = capsule.a;
+      body.b = capsule.b;
+      body.radius = capsule.radius;
+      body.allowed = impl_->allowed.count(person.id) > 0;
+      impl_->people.push_back(std::move(body));
+    }
+}
+
+void CollisionWorld::set_attachment(const Attachment& attachment, const std::vector<std::string>& allowed_contacts) {
+  impl_->attachment = attachment;
+  impl_->allowed = {allowed_contacts.begin(), allowed_contacts.end()};
+  for (PersonBody& person : impl_->people) person.allowed = impl_->allowed.count(person.id) > 0;
+  impl_->rebuild_scene();
+  impl_->rebuild_held();
+}
+
+CollisionVerdict CollisionWorld::check(const Vector& q) {
+  CollisionVerdict verdict;
+  impl_->judge(q, &verdict);
+  return verdict;
+}
+
+bool CollisionWorld::is_free(const Vector& q) { return impl_->judge(q, nullptr); }
+
+CollisionVerdict CollisionWorld::check_motion(const Vector& from, const Vector& to, double step) {
+  CollisionVerdict verdict;
+  const int last = motion_states(from, to, step) - 1;
+  const auto at = [&](int i) -> Vector { return from + (to - from) * (static_cast<double>(i) / std::max(1, last)); };
+  if (!impl_->judge(from, &verdict) || (last > 0 && !impl_->judge(to, &verdict))) return verdict;
+  int stride = 1;
+  while (stride < last) stride *= 2;
+  for (; stride > 1; stride /= 2)
+    for (int i = stride / 2; i < last; i += stride)
+      if (!impl_->judge(at(i), &verdict)) return verdict;
+  return verdict;
+}
+
+double CollisionWorld::distance_to_people(const Vector& q) {
+  Impl& w = *impl_;
+  double least = std::numeric_limits<double>::infinity();
+  if (w.people.empty()) return least;
+  w.robot.forward(q, w.T_root_link);
+  for (const LinkCapsule& capsule : w.capsules) {
+    const Pose T_world_link = w.T_world_base * w.T_root_link[capsule.link];
+    const Vector3 a = T_world_link * capsule.a, b = T_world_link * capsule.b;
+    for (const PersonBody& person : w.people)
+      least = std::min(least, segment_distance(a, b, person.a, person.b) - capsule.radius - person.radius);
+  }
+  return least;
+}
+
+double CollisionWorld::distance_to_scene(const Vector& q, double cap) {
+  Impl& w = *impl_;
+  w.place(q);
+  struct Candidate {
+    double bound;
+    std::size_t body;
+    const SceneBody* thing;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t i = 0; i < w.bodies.size(); ++i) {
+    if (!w.bodies[i].moves) continue;
+    for (const auto* things : {&w.scene, &w.obstacles})
+      for (const SceneBody& thing : *things) {
+        if (thing.allowed && w.bodies[i].hand) continue;
+        const double bound = gap_bound(*w.bodies[i].shape, w.T_world_body[i], *thing.shape, thing.T_world_shape);
+        if (bound < cap) candidates.push_back({bound, i, &thing});
+      }
+  }
+  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) { return a.bound < b.bound; });
+  double least = cap;
+  for (const Candidate& c : candidates) {
+    if (c.bound >= least) break;
+    const bool lowered = c.body >= w.link_bodies && c.thing->lowered;
+    least = std::min(least, gap(*w.bodies[c.body].shape, w.T_world_body[c.body], lowered ? *c.thing->lowered : *c.thing->shape,
+                                lowered ? c.thing->T_world_lowered : c.thing->T_world_shape));
+  }
+  return least;
+}
+
+std::uint64_t CollisionWorld::checks() const { return impl_->checks; }
+
+}  // namespace handsel
