@@ -16,7 +16,7 @@ class CollisionShape {
   const Shape& shape() const { return shape_; }
   const Vector3& sphere_center() const { return sphere_center_; }  ///< bounding sphere, shape frame [m]
   double sphere_radius() const { return sphere_radius_; }
-  const Vector3& box_center() const { return box_center_; }        ///< bounding box, shape frame [m]
+  const Vector3& box_center() const { return box_center_; }  ///< bounding box, shape frame [m]
   const Vector3& box_half() const { return box_half_; }
   bool is_mesh() const { return std::holds_alternative<MeshPtr>(shape_); }
   bool is_box() const { return std::holds_alternative<Box>(shape_); }

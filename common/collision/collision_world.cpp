@@ -81,7 +81,7 @@ struct CollisionWorld::Impl {
   const RobotModel& robot;
   ObjectLibrary library;
   Pose T_world_base{Pose::Identity()};
-  std::vector<RobotBody> bodies;        // links; what the hand holds is appended
+  std::vector<RobotBody> bodies;  // links; what the hand holds is appended
   std::size_t link_bodies{};
   std::vector<SelfPair> link_pairs, held_pairs;
   std::vector<SceneBody> scene, obstacles;
@@ -89,7 +89,7 @@ struct CollisionWorld::Impl {
   Scene last_scene;
   Attachment attachment;
   std::set<std::string> allowed;
-  std::vector<LinkCapsule> capsules;    // links, then what is held
+  std::vector<LinkCapsule> capsules;  // links, then what is held
   std::size_t link_capsules{};
   std::vector<bool> hand_link;
   std::vector<std::set<int>> joints_above;
@@ -97,7 +97,7 @@ struct CollisionWorld::Impl {
   std::uint64_t checks{};
 
   std::vector<Pose> T_root_link, T_world_body;
-  Vector self_free;                     // configuration last found free of self collision, empty if none
+  Vector self_free;  // configuration last found free of self collision, empty if none
   std::vector<bool> changed;
 
   Impl(const RobotModel& model, ObjectLibrary objects) : robot(model), library(std::move(objects)) {
@@ -251,7 +251,8 @@ struct CollisionWorld::Impl {
     ++checks;
     place(q);
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict) || person_touch(i, verdict))) return false;
+      if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict) || person_touch(i, verdict)))
+        return false;
     const bool known = self_free.size() == q.size();
     for (int axis = 0; axis < robot.dof(); ++axis) changed[axis] = !known || self_free[axis] != q[axis];
     if (self_touch(link_pairs, verdict) || self_touch(held_pairs, verdict)) return false;

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/cost/human_cost.hpp"
+#include "common/cost/person_frame.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+constexpr int kAngles = 4;  // flexion, abduction, humeral rotation (inward), elbow flexion
+constexpr std::array<double, kAngles> kLower = {-60 * kDegree, -40 * kDegree, -60 * kDegree, 0};
+constexpr std::array<double, kAngles> kUpper = {170 * kDegree, 130 * kDegree, 90 * kDegree, 150 * kDegree};
+constexpr std::array<double, kAngles> kRest = {0, 5 * kDegree, 0, 30 * kDegree};
+constexpr std::array<double, 7> kSwivels = {-20 * kDegree, 0, 15 * kDegree, 30 * kDegree, 50 * kDegree, 70 * kDegree, 90 * kDegree};
+constexpr double kDisplacementWeight = 0.4, kEffortWeight = 0.4, kLimitWeight = 0.2;
+constexpr double kUpperArmMass = 2.1, kForearmMass = 1.7;  // of 75 kg
+
+struct Arm {
+  Vector3 shoulder;
+  double upper{}, fore{};  // forearm with the hand
+};
+
+bool arm_of(const Person& person, Side side, Arm& arm) {
+  const bool left = side == Side::left;
+  const BodyJoint* shoulder = find_joint(person, left ? "l_shoulder" : "r_shoulder");
+  const BodyJoint* elbow = find_joint(person, left ? "l_elbow" : "r_elbow");
+  const BodyJoint* wrist = find_joint(person, left ? "l_wrist" : "r_wrist");
+  const BodyJoint* hand = find_joint(person, left ? "l_hand" : "r_hand");
+  if (!shoulder || !elbow || !wrist) return false;
+  arm.shoulder = shoulder->position;
+  arm.upper = (elbow->position - shoulder->position).norm();
+  arm.fore = (wrist->position - elbow->position).norm() + (hand ? (hand->position - wrist->position).norm() : 0.0);
+  return arm.upper > 1e-3 && arm.fore > 1e-3;
+}
+
+double near_limit(double ratio) {
+  const double base = 0.5 * (std::sin(5.0 * ratio + 1.571) + 1.0);
+  return base < 0.85 ? 0.0 : std::pow(base, 100);
+}
+
+/// Cost of a posture with upper arm direction u and forearm direction f (forward, outward, up); 1 outside the joint limits.
+double posture_cost(const Arm& arm, const Vector3& u, const Vector3& f) {
+  const double flexion = std::atan2(u.x(), -u.z()), abduction = std::asin(std::clamp(u.y(), -1.0, 1.0));
+  const Vector3 forward(std::cos(flexion), 0, std::sin(flexion));
+  const Vector3 outward(-std::sin(flexion) * std::sin(abduction), std::cos(abduction), std::cos(flexion) * std::sin(abduction));
+  const double elbow = std::acos(std::clamp(u.dot(f), -1.0, 1.0));
+  const double rotation = elbow > 5 * kDegree ? std::atan2(-f.dot(outward), f.dot(forward)) : 0.0;
+  const std::array<double, kAngles> q = {flexion, abduction, rotation, elbow};
+  double displacement = 0, limits = 0;
+  for (int i = 0; i < kAngles; ++i) {
+    if (q[i] < kLower[i] || q[i] > kUpper[i]) return 1.0;
+    const double range = kUpper[i] - kLower[i];
+    displacement += std::abs(q[i] - kRest[i]) / range / kAngles;
+    limits += near_limit((kUpper[i] - q[i]) / range);
+    if (i < 3) limits += near_limit((q[i] - kLower[i]) / range);  // a straight elbow is no strain
+  }
+  const auto raised = [](double mass, double height) { return mass * mass * height * height; };
+  const double effort =
+      raised(kUpperArmMass, 0.5 * arm.upper * (1 + u.z())) + raised(kForearmMass, arm.upper * (1 + u.z()) + 0.5 * arm.fore * (1 + f.z()));
+  const double most = raised(kUpperArmMass, arm.upper) + raised(kForearmMass, 2 * arm.upper + arm.fore);
+  return std::min(1.0, kDisplacementWeight * displacement + kEffortWeight * effort / most + kLimitWeight * std::min(1.0, limits));
+}
+
+}  // namespace
+
+double arm_comfort_cost(const Person& person, Side side, const Vector3& p) {
+  Arm arm;
+  if (!arm_of(person, side, arm)) return 1.0;
+  const Eigen::Matrix3d axes = torso_axes(person);
+  Vector3 target = axes.transpose() * (p - arm.shoulder);
+  if (side == Side::right) target.y() = -target.y();  // second component is outward
+  const double d = target.norm();
+  if (d >= arm.upper + arm.fore || d <= std::abs(arm.upper - arm.fore) + 1e-3) return 1.0;
+  const Vector3 to_target = target / d;
+  Vector3 down = -Vector3::UnitZ() + to_target * to_target.z();
+  if (down.norm() < 1e-3) down = -Vector3::UnitX() + to_target * to_target.x();
+  down.normalize();
+  Vector3 outward = to_target.cross(down);
+  if (outward.y() < 0) outward = -outward;
+  const double along = (arm.upper * arm.upper - arm.fore * arm.fore + d * d) / (2 * d);
+  const double off = std::sqrt(std::max(0.0, arm.upper * arm.upper - along * along));
+  double best = 1.0;
+  for (double swivel : kSwivels) {
+    const Vector3 elbow = along * to_target + off * (std::cos(swivel) * down + std::sin(swivel) * outward);
+    best = std::min(best, posture_cost(arm, elbow / arm.upper, (target - elbow) / arm.fore));
+  }
+  return best;
+}
+
+double arm_comfort_cost(const Person& person, const Vector3& p) {
+  return std::min(arm_comfort_cost(person, Side::left, p), arm_comfort_cost(person, Side::right, p));
+}
+
+bool within_reach(const Person& person, const Vector3& p) { return arm_comfort_cost(person, p) < 1.0; }
+
+double arm_length(const Person& person) {
+  Arm left, right;
+  const double l = arm_of(person, Side::left, left) ? left.upper + left.fore : 0.0;
+  const double r = arm_of(person, Side::right, right) ? right.upper + right.fore : 0.0;
+  return std::max(l, r);
+}
+
+}  // namespace handsel
