@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include <Eigen/Eigenvalues>
+
 #include "common/collision/collision_shape.hpp"
 #include "common/model/robot_capsules.hpp"
 
@@ -51,7 +53,9 @@ bool exchanging_part(BodyPart part) {
 }
 
 Pose along(const Vector3& a, const Vector3& b) {
-  return make_pose(0.5 * (a + b), Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), (b - a).norm() > 1e-12 ? b - a : Vector3::UnitZ()));
+  const Vector3 d = b - a;
+  const Vector3 axis = d.norm() > 1e-12 ? d : Vector3(Vector3::UnitZ());
+  return make_pose(0.5 * (a + b), Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis));
 }
 
 /// A capsule around points, along their longest extent.
