@@ -10,9 +10,9 @@ namespace handsel {
 
 struct Finger {
   std::string name;
-  std::vector<int> axes;            ///< indices into the hand's own axes (0 = first actuated hand axis)
-  std::string tip_link;             ///< centre of the fingertip sphere is this link's origin
-  double tip_radius{};              ///< [m]
+  std::vector<int> axes;  ///< indices into the hand's own axes (0 = first actuated hand axis)
+  std::string tip_link;   ///< centre of the fingertip sphere is this link's origin
+  double tip_radius{};    ///< [m]
 };
 
 class HandModel {

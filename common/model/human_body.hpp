@@ -10,11 +10,23 @@
 namespace handsel {
 
 /// The joints every complete body has, REP-155 names.
-inline constexpr std::array kBodyJoints = {"head",     "neck",    "torso",   "waist",      "l_shoulder", "l_elbow", "l_wrist", "l_hand", "r_shoulder",
-                                           "r_elbow",  "r_wrist", "r_hand",  "l_hip",      "l_knee",     "l_ankle", "r_hip",   "r_knee", "r_ankle"};
+inline constexpr std::array kBodyJoints = {"head",    "neck",   "torso",      "waist",   "l_shoulder", "l_elbow",
+                                           "l_wrist", "l_hand", "r_shoulder", "r_elbow", "r_wrist",    "r_hand",
+                                           "l_hip",   "l_knee", "l_ankle",    "r_hip",   "r_knee",     "r_ankle"};
 int body_joint_index(const std::string& name);  ///< -1 if it is none of them
 
-enum class BodyPart { head, torso, upper_arm_left, forearm_left, hand_left, upper_arm_right, forearm_right, hand_right, leg_left, leg_right };
+enum class BodyPart {
+  head,
+  torso,
+  upper_arm_left,
+  forearm_left,
+  hand_left,
+  upper_arm_right,
+  forearm_right,
+  hand_right,
+  leg_left,
+  leg_right
+};
 
 /// A capsule between two body points, world frame, inflated by Person::inflation.
 struct BodyCapsule {
@@ -23,8 +35,11 @@ struct BodyCapsule {
   double radius{};
 };
 
-/// Capsules covering the person (legs as one each).
+/// Capsules covering the person: head, neck, shoulders, three down the trunk, two an arm and one a hand, two a leg.
+inline constexpr int kBodyCapsules = 16;
 std::vector<BodyCapsule> body_capsules(const Person&);
+/// The same without allocation, for a person with all kBodyJoints in order; others are completed first.
+void body_capsules(const Person&, std::array<BodyCapsule, kBodyCapsules>& out);
 
 /// The chapter's simplified human: a vertical cylinder for the body and a sphere for the head, arms left out.
 struct SimplifiedBody {
@@ -35,8 +50,10 @@ struct SimplifiedBody {
 };
 SimplifiedBody simplified_body(const Person&);
 
-/// Fits a complete body to whatever joints were seen; what was not seen comes from proportions of the stature. `previous` (may be null)
-/// keeps the size and the unseen joints. Returns joints in kBodyJoints order.
+/// Fits a complete body to whatever joints were seen: those stay where they were seen; the others come from `previous` (may be null), or
+/// from proportions of the stature, moved along with the nearest seen ones (bent limbs by their bone lengths, an unseen hand along the
+/// forearm). Joints with a confidence below 0.05, unknown names or positions that are not finite count as unseen. Velocities are left 0:
+/// no time is known here. Returns joints in kBodyJoints order; empty when nothing was seen and there is no previous body. Ours.
 std::vector<BodyJoint> fit_body(const ObservedPerson&, const Person* previous, double stature);
 
 /// A standing body of the given stature at `feet` facing yaw (rotation about z, 0 = +x), arms hanging. For tests, sim and fitting.

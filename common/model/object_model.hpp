@@ -11,12 +11,12 @@ namespace handsel {
 
 struct ObjectModel {
   std::string name;
-  TriangleMesh mesh;                    ///< object frame, z up when standing [m]
-  std::vector<PlacedShape> parts;       ///< convex parts (collision, physics), object frame
-  double mass{};                        ///< [kg]
-  Vector3 com{Vector3::Zero()};         ///< object frame [m]
+  TriangleMesh mesh;               ///< object frame, z up when standing [m]
+  std::vector<PlacedShape> parts;  ///< convex parts (collision, physics), object frame
+  double mass{};                   ///< [kg]
+  Vector3 com{Vector3::Zero()};    ///< object frame [m]
   double friction{0.6};
-  double height_above_support{};        ///< of the object frame's origin when standing [m]
+  double height_above_support{};  ///< of the object frame's origin when standing [m]
 
   /// Throws ConfigError / MissingError naming the file and what is wrong.
   static ObjectModel load(const std::filesystem::path& description);

@@ -1,4 +1,4 @@
-// The robot as a few capsules (one or two a link), covering its collision shapes: the fast form for separation and costs.
+// The robot as a few capsules (one a shape, more for flat boxes), covering its collision shapes: the fast form for separation and costs.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ std::vector<LinkCapsule> robot_capsules(const RobotModel&);
 
 /// Nearest approach of robot and person.
 struct Separation {
-  double distance{};                     ///< [m], may be negative when overlapping; +inf if nobody
+  double distance{};  ///< [m], may be negative when overlapping; +inf if nobody
   int link{-1};
   BodyPart part{};
   std::string person;
@@ -29,12 +29,12 @@ struct Separation {
 
 /// Exchanging forearm and hand excepted from separation (formulas: section 4).
 struct Exception {
-  std::string person;                    ///< empty: none
+  std::string person;  ///< empty: none
   Side side{Side::right};
-  bool both_sides{true};                 ///< when the taking hand is not known yet
+  bool both_sides{true};  ///< when the taking hand is not known yet
 };
 
-/// T_root_link from RobotModel::forward. Allocates nothing once `capsules` of the people are given.
+/// T_root_link from RobotModel::forward. Allocates nothing (person ids up to 15 characters, complete bodies).
 Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link, const Pose& T_world_base,
                       const HumanState& people, const Exception& exception = {});
 

@@ -1,8 +1,8 @@
 // A robot: its tree of links from a URDF, groups and disabled pairs from an SRDF, limits and roles from its description.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,10 +16,10 @@ namespace handsel {
 
 struct Link {
   std::string name;
-  int parent_joint{-1};                    ///< index into joints(); -1 for the root
-  std::vector<PlacedShape> collision;      ///< link frame
-  double mass{};                           ///< [kg]
-  Vector3 com{Vector3::Zero()};            ///< link frame [m]
+  int parent_joint{-1};                              ///< index into joints(); -1 for the root
+  std::vector<PlacedShape> collision;                ///< link frame
+  double mass{};                                     ///< [kg]
+  Vector3 com{Vector3::Zero()};                      ///< link frame [m]
   Eigen::Matrix3d inertia{Eigen::Matrix3d::Zero()};  ///< about the com, link axes
 };
 
@@ -28,14 +28,14 @@ enum class JointKind { fixed, revolute, continuous, prismatic };
 struct Joint {
   std::string name;
   JointKind kind{JointKind::fixed};
-  int parent{}, child{};                   ///< link indices
+  int parent{}, child{};  ///< link indices
   Pose T_parent_joint{Pose::Identity()};
-  Vector3 axis{Vector3::UnitZ()};          ///< joint frame, unit
-  int dof{-1};                             ///< axis that drives it (own or mimicked); -1 for fixed
+  Vector3 axis{Vector3::UnitZ()};               ///< joint frame, unit
+  int dof{-1};                                  ///< axis that drives it (own or mimicked); -1: fixed, or held at mimic_offset
   double mimic_factor{1.0}, mimic_offset{0.0};  ///< joint value = factor * q[dof] + offset
   bool is_mimic{false};
-  double lower{}, upper{};                 ///< [rad] or [m]
-  double max_velocity{}, max_effort{};     ///< from the URDF
+  double lower{}, upper{};              ///< [rad] or [m]
+  double max_velocity{}, max_effort{};  ///< from the URDF
 };
 
 /// An axis of the robot: an actuated joint in the order of the description.
@@ -48,51 +48,58 @@ struct Axis {
 
 /// Axes that move together, with the link they carry.
 struct Group {
-  std::string name;                        ///< "arm", "hand", "head"
-  std::vector<int> axes;                   ///< robot axis indices
-  int tip{-1};                             ///< link index of the tool frame (arm) or of the last link; -1 if none
+  std::string name;       ///< "arm", "hand", "head"
+  std::vector<int> axes;  ///< robot axis indices
+  int tip{-1};            ///< link index of the tool frame (arm) or of the last link; -1 if none
 };
 
 /// Options of the numeric inverse kinematics.
 struct IkOptions {
   int max_iterations{200};
-  int restarts{8};                         ///< from seeded random configurations after `seed` failed
-  double position_tolerance{1e-5};         ///< [m]
-  double angle_tolerance{1e-4};            ///< [rad]
+  int restarts{8};                  ///< from seeded random configurations after `seed` failed
+  double position_tolerance{1e-5};  ///< [m]
+  double angle_tolerance{1e-4};     ///< [rad]
   std::uint64_t random_seed{1};
 };
+
+/// Whether a URDF's collision meshes are read too (kinematics alone does not need them).
+enum class Meshes { load, skip };
 
 class RobotModel {
  public:
   /// Loads a robot description (Protobuf text, see common/config/robot.proto) with its URDF, SRDF and meshes.
   /// Throws ConfigError / MissingError naming the file and what is wrong.
   static RobotModel load(const std::filesystem::path& description);
-  /// Loads a bare URDF: every movable non-mimic joint is an axis, in URDF order; limits from the URDF; no groups but "all".
-  static RobotModel load_urdf(const std::filesystem::path& urdf, const std::filesystem::path& srdf = {});
+  /// Loads a bare URDF: every movable non-mimic joint is an axis, in document order; group "all" and those of the SRDF. Position and
+  /// velocity limits from the URDF, acceleration 2 v and jerk 6 v (the chapter's planning ratio), comfort = guard / 1.1. Continuous joints
+  /// get two turns; planar and floating joints are held. package:// is looked for in the URDF's folder and the folders above it.
+  static RobotModel load_urdf(const std::filesystem::path& urdf, const std::filesystem::path& srdf = {}, Meshes meshes = Meshes::load);
 
   const std::string& name() const { return name_; }
-  const std::vector<Link>& links() const { return links_; }       ///< parents before children; links()[0] is the root
+  const std::vector<Link>& links() const { return links_; }  ///< parents before children; links()[0] is the root
   const std::vector<Joint>& joints() const { return joints_; }
   const std::vector<Axis>& axes() const { return axes_; }
   int dof() const { return static_cast<int>(axes_.size()); }
-  int link_index(const std::string& name) const;                  ///< -1 if there is none
-  const Group* group(const std::string& name) const;              ///< nullptr if there is none
-  const Group& require_group(const std::string& name) const;      ///< throws ConfigError
-  /// Pairs of links that are never tested against each other (SRDF disable_collisions and adjacent links).
+  int link_index(const std::string& name) const;              ///< -1 if there is none
+  const Group* group(const std::string& name) const;          ///< nullptr if there is none
+  const Group& require_group(const std::string& name) const;  ///< throws ConfigError
+  const std::vector<Group>& groups() const { return groups_; }
+  /// Pairs of links that are never tested against each other: SRDF disable_collisions, adjacent links (looking through links without
+  /// shapes), links rigidly joined.
   bool pair_disabled(int link_a, int link_b) const;
 
   const KinematicLimits& comfort_limits() const { return comfort_; }  ///< planning
   const KinematicLimits& guard_limits() const { return guard_; }      ///< no set-point ever exceeds these
   const KinematicLimits& stop_limits() const { return stop_; }        ///< the maker's, for stopping and recoil; <= guard
-  const Vector& rest_posture() const { return rest_; }            ///< all axes
-  int tool_link() const { return tool_; }                         ///< hand frame; -1 if none
-  int redundancy_axis() const { return redundancy_; }             ///< -1 if none
-  const std::string& hand() const { return hand_; }               ///< name of the hand description, may be empty
-  int gaze_link() const { return gaze_; }                         ///< camera link, x forward; -1 if none
+  const Vector& rest_posture() const { return rest_; }                ///< all axes
+  int tool_link() const { return tool_; }                             ///< hand frame; -1 if none
+  int redundancy_axis() const { return redundancy_; }                 ///< -1 if none
+  const std::string& hand() const { return hand_; }                   ///< name of the hand description, may be empty
+  int gaze_link() const { return gaze_; }                             ///< camera link, x forward; -1 if none
 
   /// Poses of all links in the root frame for the positions of all axes. `T_root_link` is resized once, then reused.
   void forward(const Vector& q, std::vector<Pose>& T_root_link) const;
-  Pose link_pose(const Vector& q, int link) const;                ///< convenience
+  Pose link_pose(const Vector& q, int link) const;  ///< convenience
   /// 6 x group.axes.size(): linear then angular velocity of the group's tip origin, root axes.
   Eigen::MatrixXd jacobian(const Vector& q, const Group& group) const;
   /// Group axes such that the group's tip is at T_root_tip; the other axes as in q_seed. Inside position limits, near q_seed

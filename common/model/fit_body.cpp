@@ -1,0 +1,174 @@
+#include <cmath>
+
+#include "common/model/human_body.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr double kLeastConfidence = 0.05;
+constexpr int kCount = static_cast<int>(kBodyJoints.size());
+
+enum Index {
+  head,
+  neck,
+  torso,
+  waist,
+  l_shoulder,
+  l_elbow,
+  l_wrist,
+  l_hand,
+  r_shoulder,
+  r_elbow,
+  r_wrist,
+  r_hand,
+  l_hip,
+  l_knee,
+  l_ankle,
+  r_hip,
+  r_knee,
+  r_ankle
+};
+/// The skeleton as a tree from the chest outward.
+constexpr std::array<int, kCount> kParent = {neck,       torso,   -1,      torso, neck,  l_shoulder, l_elbow, l_wrist, neck,
+                                             r_shoulder, r_elbow, r_wrist, waist, l_hip, l_knee,     waist,   r_hip,   r_knee};
+/// How much a joint says about where the trunk is and faces.
+constexpr std::array<double, kCount> kTrunkWeight = {0.5, 1, 1, 1, 1, 0.05, 0.02, 0.02, 1, 0.05, 0.02, 0.02, 1, 0.2, 0.1, 1, 0.2, 0.1};
+
+using Points = std::array<Vector3, kCount>;
+using Seen = std::array<double, kCount>;  // confidence, 0 = unseen
+
+double flat_norm(const Vector3& v) { return std::hypot(v.x(), v.y()); }
+
+/// Turn about z and shift that bring `body` onto the seen points.
+void place(Points& body, const Points& points, const Seen& seen, const ObservedPerson& observed) {
+  double total = 0;
+  Vector3 from = Vector3::Zero(), to = Vector3::Zero();
+  for (int i = 0; i < kCount; ++i) {
+    const double w = seen[i] * kTrunkWeight[i];
+    total += w;
+    from += w * body[i];
+    to += w * points[i];
+  }
+  from /= total;
+  to /= total;
+  double sine = 0, cosine = 0, spread = 0;
+  for (int i = 0; i < kCount; ++i) {
+    const double w = seen[i] * kTrunkWeight[i] / total;
+    const Vector3 a = body[i] - from, b = points[i] - to;
+    sine += w * (a.x() * b.y() - a.y() * b.x());
+    cosine += w * (a.x() * b.x() + a.y() * b.y());
+    spread += w * flat_norm(a) * flat_norm(b);
+  }
+  double turn = 0;
+  if (spread > 1e-3) {
+    turn = std::atan2(sine, cosine);
+  } else if (observed.has_gaze && flat_norm(observed.gaze_direction) > 0.1) {
+    const Vector3 left = body[l_shoulder] - body[r_shoulder];
+    turn = std::atan2(observed.gaze_direction.y(), observed.gaze_direction.x()) - std::atan2(-left.x(), left.y());
+  }
+  const Eigen::AngleAxisd R(turn, Vector3::UnitZ());
+  for (auto& p : body) p = to + R * (p - from);
+}
+
+int steps_up(int i) {
+  int n = 0;
+  for (; kParent[i] >= 0; i = kParent[i]) ++n;
+  return n;
+}
+
+int tree_distance(int a, int b) {
+  int n = 0, da = steps_up(a), db = steps_up(b);
+  while (a != b) {
+    if (da >= db)
+      a = kParent[a], --da;
+    else
+      b = kParent[b], --db;
+    ++n;
+  }
+  return n;
+}
+
+/// The middle joint of a two-bone limb whose ends are known, on the side where `hint` is.
+Vector3 bend(const Vector3& a, const Vector3& b, double first, double second, const Vector3& hint) {
+  const Vector3 line = b - a;
+  const double d = line.norm();
+  if (d < 1e-6) return hint;
+  const Vector3 along = line / d;
+  const double total = first + second;
+  if (d >= total) return a + (first / total) * line;
+  const double x = (d * d + first * first - second * second) / (2 * d);
+  Vector3 aside = hint - a - along * along.dot(hint - a);
+  if (aside.norm() < 1e-6) aside = -Vector3::UnitZ() + along * along.z();
+  if (aside.norm() < 1e-6) aside = Vector3::UnitX();
+  return a + x * along + std::sqrt(std::max(first * first - x * x, 0.0)) * aside.normalized();
+}
+
+}  // namespace
+
+std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* previous, double stature) {
+  Points points, body;
+  Seen seen{};
+  points.fill(Vector3::Zero());
+  bool any = false;
+  for (const auto& joint : observed.joints) {
+    const int i = body_joint_index(joint.name);
+    if (i < 0 || !(joint.confidence >= kLeastConfidence) || !joint.position.allFinite() || joint.confidence <= seen[i]) continue;
+    seen[i] = std::min(joint.confidence, 1.0);
+    points[i] = joint.position;
+    any = true;
+  }
+  const bool known = previous != nullptr && previous->joints.size() == kBodyJoints.size();
+  if (!any && !known) return {};
+
+  std::vector<BodyJoint> joints = known ? previous->joints : standing_body(Vector3::Zero(), 0, stature);
+  std::array<double, kCount> bone{};
+  {
+    const auto model = standing_body(Vector3::Zero(), 0, stature);
+    for (int i = 0; i < kCount; ++i) {
+      body[i] = joints[i].position;
+      if (kParent[i] >= 0) bone[i] = (model[i].position - model[kParent[i]].position).norm();
+    }
+  }
+  if (any) {
+    place(body, points, seen, observed);
+    Points fitted;
+    for (int i = 0; i < kCount; ++i) {
+      if (seen[i] > 0) {
+        fitted[i] = points[i];
+        continue;
+      }
+      int nearest = kCount, count = 0;
+      Vector3 shift = Vector3::Zero();
+      for (int k = 0; k < kCount; ++k) {
+        if (seen[k] <= 0) continue;
+        const int d = tree_distance(i, k);
+        if (d > nearest) continue;
+        if (d < nearest) nearest = d, count = 0, shift.setZero();
+        shift += points[k] - body[k];
+        ++count;
+      }
+      fitted[i] = body[i] + shift / count;
+    }
+    for (const int arm : {0, r_shoulder - l_shoulder}) {
+      const int shoulder = l_shoulder + arm, elbow = l_elbow + arm, wrist = l_wrist + arm, hand = l_hand + arm;
+      if (seen[wrist] <= 0 && seen[hand] > 0) {
+        const Vector3 back = fitted[elbow] - fitted[hand];
+        if (back.norm() > 1e-6) fitted[wrist] = fitted[hand] + bone[hand] * back.normalized();
+      }
+      if (seen[elbow] <= 0 && (seen[wrist] > 0 || seen[hand] > 0))
+        fitted[elbow] = bend(fitted[shoulder], fitted[wrist], bone[elbow], bone[wrist], fitted[elbow]);
+      if (seen[wrist] > 0 && seen[hand] <= 0) {
+        const Vector3 on = fitted[wrist] - fitted[elbow];
+        if (on.norm() > 1e-6) fitted[hand] = fitted[wrist] + bone[hand] * on.normalized();
+      }
+    }
+    for (const int leg : {0, r_hip - l_hip})
+      if (const int knee = l_knee + leg; seen[knee] <= 0 && seen[l_ankle + leg] > 0)
+        fitted[knee] = bend(fitted[l_hip + leg], fitted[l_ankle + leg], bone[knee], bone[l_ankle + leg], fitted[knee]);
+    body = fitted;
+  }
+  for (int i = 0; i < kCount; ++i) joints[i] = {kBodyJoints[i], body[i], Vector3::Zero()};
+  return joints;
+}
+
+}  // namespace handsel

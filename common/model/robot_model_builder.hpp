@@ -1,0 +1,46 @@
+// How a RobotModel is put together: URDF tree, SRDF, axes and limits. Used by the loaders of this folder only.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/config/robot.pb.h"
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+class RobotModelBuilder {
+ public:
+  /// Reads links and joints; no axes yet. Throws ConfigError / MissingError with file and line.
+  RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes);
+
+  /// Actuated joints in document order.
+  std::vector<std::string> actuated() const;
+  /// Makes these joints the axes. The other actuated joints are held at `held` (0 if not named). `source` is the file the names stand in.
+  void set_axes(const std::vector<std::string>& joints, const std::map<std::string, double>& held, const std::filesystem::path& source);
+  void add_group(const std::string& name, const std::vector<std::string>& joints, const std::string& tip,
+                 const std::filesystem::path& source);
+  /// Groups (when wanted) and disabled pairs. Unknown names are errors when strict, else passed over.
+  void read_srdf(const std::filesystem::path& srdf, bool groups, bool strict);
+  void apply(const config::RobotDescription& description, const std::filesystem::path& file);
+  void default_limits();
+  /// Every body that moves needs a mass. Throws ConfigError.
+  void require_masses() const;
+  RobotModel finish();
+
+ private:
+  int joint_index(const std::string& name) const;
+  int axis_of(const std::string& joint) const;
+  int require_link(const std::string& name, const std::string& field, const std::filesystem::path& source) const;
+  KinematicLimits limits(const google::protobuf::RepeatedPtrField<config::AxisLimits>& entries, const std::string& field,
+                         const std::filesystem::path& source) const;
+  void disable(int a, int b);
+
+  std::filesystem::path urdf_;
+  RobotModel model_;
+  std::vector<int> document_order_;  // joints as they stand in the URDF
+};
+
+}  // namespace handsel

@@ -1,0 +1,266 @@
+#include <console_bridge/console.h>
+#include <tinyxml2.h>
+#include <urdf_parser/urdf_parser.h>
+
+#include <fstream>
+#include <mutex>
+#include <set>
+#include <sstream>
+
+#include "common/config/resources.hpp"
+#include "common/model/robot_model_builder.hpp"
+
+namespace handsel {
+namespace fs = std::filesystem;
+namespace {
+
+Pose to_pose(const urdf::Pose& pose) {
+  const auto& r = pose.rotation;
+  return make_pose({pose.position.x, pose.position.y, pose.position.z}, Eigen::Quaterniond(r.w, r.x, r.y, r.z));
+}
+
+/// Keeps what urdfdom says about a bad file instead of printing it.
+class Listener : public console_bridge::OutputHandler {
+ public:
+  Listener() { console_bridge::useOutputHandler(this); }
+  ~Listener() override { console_bridge::restorePreviousOutputHandler(); }
+  void log(const std::string& text, console_bridge::LogLevel level, const char*, int) override {
+    if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR && said.empty()) said = text;
+  }
+  std::string said;
+};
+
+std::string read(const fs::path& file) {
+  if (!fs::is_regular_file(file)) throw MissingError("no file " + file.string());
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+/// What urdfdom does not say, or not with a line: XML errors, duplicates, shapes that are not URDF, a link with two parents.
+struct Document {
+  Document(const fs::path& file, const std::string& text) {
+    tinyxml2::XMLDocument xml;
+    if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
+      throw ConfigError(file.string() + ":" + std::to_string(xml.ErrorLineNum()) + ": not well-formed XML");
+    const auto* robot = xml.FirstChildElement("robot");
+    if (robot == nullptr) throw ConfigError(file.string() + ": has no <robot> element");
+    std::set<std::string> links, children;
+    for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
+      const std::string tag = e->Name(), where = file.string() + ":" + std::to_string(e->GetLineNum());
+      const std::string own = e->Attribute("name") != nullptr ? e->Attribute("name") : "";
+      if (tag == "link") {
+        if (!links.insert(own).second) throw ConfigError(where + ": link " + own + " is defined twice");
+        for (const char* use : {"visual", "collision"})
+          for (const auto* v = e->FirstChildElement(use); v != nullptr; v = v->NextSiblingElement(use))
+            if (const auto* g = v->FirstChildElement("geometry"); g != nullptr && g->FirstChildElement("capsule") != nullptr)
+              throw ConfigError(file.string() + ":" + std::to_string(g->FirstChildElement("capsule")->GetLineNum()) + ": link " + own +
+                                " has a <capsule>, which is not URDF; use box, cylinder, sphere or mesh");
+      } else if (tag == "joint" && e->FirstChildElement("parent") != nullptr) {
+        if (!names.insert(own).second) throw ConfigError(where + ": joint " + own + " is defined twice");
+        joints.push_back(own);
+        const auto* child = e->FirstChildElement("child");
+        const std::string link = child != nullptr && child->Attribute("link") != nullptr ? child->Attribute("link") : "";
+        if (!children.insert(link).second) throw ConfigError(where + ": link " + link + " has more than one parent joint");
+      }
+    }
+    if (links.empty()) throw ConfigError(file.string() + ": has no link");
+    if (children.size() == links.size()) throw ConfigError(file.string() + ": the joints form a cycle, no link is the root");
+  }
+  std::vector<std::string> joints;
+  std::set<std::string> names;
+};
+
+/// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are searched too.
+fs::path find_mesh(const fs::path& urdf, const std::string& uri) {
+  std::vector<fs::path> tails;
+  const auto scheme = uri.find("://");
+  if (scheme == std::string::npos) {
+    tails = {uri};
+  } else if (uri.starts_with("file://")) {
+    tails = {uri.substr(7)};
+  } else {
+    const std::string rest = uri.substr(scheme + 3);
+    tails = {rest, rest.substr(std::min(rest.find('/') + 1, rest.size()))};
+  }
+  for (fs::path folder = fs::absolute(urdf).parent_path();; folder = folder.parent_path()) {
+    for (const auto& tail : tails)
+      if (fs::is_regular_file(folder / tail)) return fs::weakly_canonical(folder / tail);
+    if (folder == folder.parent_path()) break;
+  }
+  throw MissingError(locate(urdf, uri) + ": no mesh " + uri + " in the folder of the URDF or above it");
+}
+
+class ShapeReader {
+ public:
+  ShapeReader(fs::path urdf, Meshes meshes) : urdf_(std::move(urdf)), meshes_(meshes) {}
+
+  void read(const urdf::Link& from, std::vector<PlacedShape>& to) {
+    for (const auto& c : from.collision_array)
+      if (c != nullptr && c->geometry != nullptr)
+        if (auto shape = read(*c->geometry, from.name)) to.push_back({*shape, to_pose(c->origin)});
+  }
+
+ private:
+  std::optional<Shape> read(const urdf::Geometry& g, const std::string& link) {
+    const auto positive = [&](double x) {
+      if (!(x > 0))
+        throw ConfigError(locate(urdf_, "\"" + link + "\"") + ": link " + link + " has a collision shape whose size is not > 0");
+      return x;
+    };
+    switch (g.type) {
+      case urdf::Geometry::SPHERE:
+        return Sphere{positive(static_cast<const urdf::Sphere&>(g).radius)};
+      case urdf::Geometry::BOX: {
+        const auto& d = static_cast<const urdf::Box&>(g).dim;
+        return Box{{positive(d.x), positive(d.y), positive(d.z)}};
+      }
+      case urdf::Geometry::CYLINDER: {
+        const auto& c = static_cast<const urdf::Cylinder&>(g);
+        return Cylinder{positive(c.radius), positive(c.length)};
+      }
+      case urdf::Geometry::MESH:
+        break;
+    }
+    if (meshes_ == Meshes::skip) return std::nullopt;
+    const auto& m = static_cast<const urdf::Mesh&>(g);
+    const fs::path file = find_mesh(urdf_, m.filename);
+    const Vector3 scale(m.scale.x, m.scale.y, m.scale.z);
+    for (const auto& known : cache_)
+      if (known.file == file && known.scale == scale) return known.mesh;
+    cache_.push_back({file, scale, std::make_shared<const TriangleMesh>(load_mesh(file, scale))});
+    return cache_.back().mesh;
+  }
+
+  struct Known {
+    fs::path file;
+    Vector3 scale;
+    MeshPtr mesh;
+  };
+  fs::path urdf_;
+  Meshes meshes_;
+  std::vector<Known> cache_;
+};
+
+urdf::ModelInterfaceSharedPtr parse(const fs::path& file, const std::string& text) {
+  static std::mutex one_at_a_time;
+  const std::scoped_lock lock(one_at_a_time);
+  Listener listener;
+  auto model = urdf::parseURDF(text);
+  if (model == nullptr) throw ConfigError(file.string() + ": " + (listener.said.empty() ? "not a URDF" : listener.said));
+  return model;
+}
+
+JointKind kind_of(int type) {
+  switch (type) {
+    case urdf::Joint::REVOLUTE:
+      return JointKind::revolute;
+    case urdf::Joint::CONTINUOUS:
+      return JointKind::continuous;
+    case urdf::Joint::PRISMATIC:
+      return JointKind::prismatic;
+    default:
+      return JointKind::fixed;
+  }
+}
+
+Joint to_joint(const urdf::Joint& from, int parent, int child, const fs::path& file) {
+  Joint joint;
+  joint.name = from.name;
+  joint.kind = kind_of(from.type);
+  joint.parent = parent;
+  joint.child = child;
+  joint.T_parent_joint = to_pose(from.parent_to_joint_origin_transform);
+  if (joint.kind == JointKind::fixed) return joint;
+  const std::string where = locate(file, "\"" + from.name + "\"");
+  joint.axis = Vector3(from.axis.x, from.axis.y, from.axis.z);
+  if (!(joint.axis.norm() > 1e-6)) throw ConfigError(where + ": joint " + from.name + " has an axis of length 0");
+  joint.axis.normalize();
+  if (from.limits != nullptr) {
+    joint.lower = from.limits->lower;
+    joint.upper = from.limits->upper;
+    joint.max_velocity = from.limits->velocity;
+    joint.max_effort = from.limits->effort;
+  }
+  if (joint.kind == JointKind::continuous) {
+    joint.lower = -2 * M_PI;
+    joint.upper = 2 * M_PI;
+  }
+  joint.is_mimic = from.mimic != nullptr;
+  if (!(joint.lower <= joint.upper)) throw ConfigError(where + ": joint " + from.name + " has lower limit above its upper limit");
+  return joint;
+}
+
+void read_mass(const urdf::Link& from, Link& to, const fs::path& file) {
+  if (from.inertial == nullptr) return;
+  const auto& i = *from.inertial;
+  if (!(i.mass >= 0)) throw ConfigError(locate(file, "\"" + from.name + "\"") + ": link " + from.name + " has a mass below 0");
+  const Pose T = to_pose(i.origin);
+  Eigen::Matrix3d inertia;
+  inertia << i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz;
+  to.mass = i.mass;
+  to.com = T.translation();
+  to.inertia = T.linear() * inertia * T.linear().transpose();
+}
+
+/// Follows mimic joints to the joint that is not one; factor and offset composed. Names first, axes later.
+void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint& joint, std::vector<Joint>& joints) {
+  double factor = 1, offset = 0;
+  std::string name = joint.name;
+  for (std::size_t depth = 0; depth <= joints.size(); ++depth) {
+    const auto from = urdf.getJoint(name);
+    if (from->mimic == nullptr) {
+      for (std::size_t j = 0; j < joints.size(); ++j)
+        if (joints[j].name == name) joint.dof = static_cast<int>(j);
+      joint.mimic_factor = factor;
+      joint.mimic_offset = offset;
+      return;
+    }
+    offset += factor * from->mimic->offset;
+    factor *= from->mimic->multiplier;
+    if (urdf.getJoint(from->mimic->joint_name) == nullptr)
+      throw ConfigError(locate(file, "\"" + name + "\"") + ": joint " + name + " mimics " + from->mimic->joint_name +
+                        ", which does not exist");
+    name = from->mimic->joint_name;
+  }
+  throw ConfigError(locate(file, "\"" + joint.name + "\"") + ": joint " + joint.name + " mimics itself in a circle");
+}
+
+}  // namespace
+
+RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes) : urdf_(urdf) {
+  const std::string text = read(urdf);
+  const Document document(urdf, text);
+  const auto tree = parse(urdf, text);
+  model_.name_ = tree->getName();
+  ShapeReader shapes(urdf, meshes);
+
+  struct Visit {
+    const urdf::Link* link;
+    int parent;
+  };
+  std::vector<Visit> stack{{tree->getRoot().get(), -1}};
+  while (!stack.empty()) {
+    const auto [from, parent] = stack.back();
+    stack.pop_back();
+    const int index = static_cast<int>(model_.links_.size());
+    Link link;
+    link.name = from->name;
+    if (parent >= 0) {
+      link.parent_joint = static_cast<int>(model_.joints_.size());
+      model_.joints_.push_back(to_joint(*from->parent_joint, parent, index, urdf));
+    }
+    shapes.read(*from, link.collision);
+    read_mass(*from, link, urdf);
+    model_.links_.push_back(std::move(link));
+    for (auto child = from->child_links.rbegin(); child != from->child_links.rend(); ++child) stack.push_back({child->get(), index});
+  }
+  if (model_.links_.size() != tree->links_.size()) throw ConfigError(urdf.string() + ": some joints form a cycle apart from the root link");
+
+  for (const auto& name : document.joints) document_order_.push_back(joint_index(name));
+  for (auto& joint : model_.joints_)
+    if (joint.kind != JointKind::fixed) resolve_mimic(*tree, urdf, joint, model_.joints_);
+}
+
+}  // namespace handsel
