@@ -1,0 +1,74 @@
+#include "components/spark/node.hpp"
+
+#include <algorithm>
+
+#include "common/config/resources.hpp"
+#include "common/config/scenario.pb.h"
+
+namespace handsel::spark {
+namespace {
+
+config::SparkSettings load_settings(const NodeContext& context) {
+  config::SparkSettings settings;
+  load_text_proto(context.settings / "spark.txtpb", settings);
+  if (settings.publish_period() <= 0 || settings.human_period() <= 0)
+    throw ConfigError("spark.txtpb: publish_period and human_period must be > 0");
+  return settings;
+}
+
+std::vector<SceneBox> boxes_of(const NodeContext& context) {
+  config::Scenario scenario;
+  load_text_proto(context.scenario, scenario);
+  std::vector<SceneBox> boxes;
+  for (const auto& box : scenario.boxes()) {
+    const auto& xyz = box.pose().xyz();
+    const auto& rpy = box.pose().rpy();
+    const Eigen::Quaterniond q = Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
+                                 Eigen::AngleAxisd(rpy.x(), Vector3::UnitX());
+    boxes.push_back({box.id(), make_pose({xyz.x(), xyz.y(), xyz.z()}, q), {box.size().x(), box.size().y(), box.size().z()},
+                     box.supports()});
+  }
+  return boxes;
+}
+
+}  // namespace
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : bus_(bus),
+      settings_(load_settings(context)),
+      tracker_(settings_),
+      scene_(settings_, context.robot, context.objects, boxes_of(context)),
+      facts_(settings_, context.robot),
+      human_out_(bus.advertise<HumanState>()),
+      scene_out_(bus.advertise<Scene>()),
+      facts_out_(bus.advertise<Facts>()) {
+  bus.subscribe<HumanObservation>([this](const HumanObservation& observation, const Receipt& receipt) {
+    tracker_.observe(observation, receipt.arrival - receipt.age);
+    publish_people(bus_.now());
+  });
+  bus.subscribe<ObjectObservation>([this](const ObjectObservation& observation, const Receipt& receipt) {
+    scene_.observe(observation, receipt.arrival - receipt.age);
+  });
+  bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { scene_.update(state); });
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt&) { wanted_period_ = advice.human_period; });
+  bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())), [this](TimePoint now) {
+    if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period()) publish_people(now);
+    const double period = std::clamp(wanted_period_, 0.02, settings_.publish_period());
+    if (to_seconds(now - world_published_) >= 0.99 * (wanted_period_ > 0 ? period : settings_.publish_period())) publish_world(now);
+  });
+}
+
+void Node::publish_people(TimePoint now) {
+  human_out_->publish(tracker_.state(now, scene_.reach()));
+  people_published_ = now;
+}
+
+void Node::publish_world(TimePoint now) {
+  const HumanState people = tracker_.state(now, scene_.reach());
+  const Scene scene = scene_.scene(now, people);
+  scene_out_->publish(scene);
+  facts_out_->publish(facts_.find(scene, people, now));
+  world_published_ = now;
+}
+
+}  // namespace handsel::spark

@@ -1,0 +1,35 @@
+// SPARK on a Bus.
+#pragma once
+
+#include <memory>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/process.hpp"
+#include "components/spark/fact_finder.hpp"
+#include "components/spark/people_tracker.hpp"
+#include "components/spark/scene_model.hpp"
+
+namespace handsel::spark {
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void publish_people(TimePoint now);
+  void publish_world(TimePoint now);
+
+  Bus& bus_;
+  config::SparkSettings settings_;
+  PeopleTracker tracker_;
+  SceneModel scene_;
+  FactFinder facts_;
+  std::unique_ptr<Publisher<HumanState>> human_out_;
+  std::unique_ptr<Publisher<Scene>> scene_out_;
+  std::unique_ptr<Publisher<Facts>> facts_out_;
+  TimePoint people_published_{};
+  TimePoint world_published_{};
+  double wanted_period_{0};
+};
+
+}  // namespace handsel::spark

@@ -1,0 +1,58 @@
+// What stands where and who holds it: objects from observations, fixed boxes from the place, the robot's own posture. Pure.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/collision/collision_world.hpp"
+#include "common/config/spark.pb.h"
+#include "common/messages/robot.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel::spark {
+
+class SceneModel {
+ public:
+  SceneModel(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
+             std::vector<SceneBox> boxes);
+
+  void observe(const ObjectObservation& observation, TimePoint seen);
+  void update(const RobotState& state);
+  /// Decides who holds what from geometry, the hand's load and the people's hands.
+  Scene scene(TimePoint now, const HumanState& people);
+
+  bool robot_known() const { return robot_known_; }
+  const Pose& T_world_base() const { return T_world_base_; }
+  const Pose& T_world_tool() const { return T_world_tool_; }
+  /// The box around everything the robot can reach: what must be covered for "nobody" to be a fact.
+  Coverage reach() const;
+
+ private:
+  struct Known {
+    SceneObject object;
+    Pose T_tool_object{Pose::Identity()};
+    TimePoint seen{};
+  };
+  void assign_holder(Known& known, const HumanState& people) const;
+  const SceneBox* support_under(const SceneObject& object) const;
+
+  config::SparkSettings settings_;
+  std::shared_ptr<const RobotModel> robot_;
+  ObjectLibrary library_;
+  std::vector<SceneBox> boxes_;
+  std::map<std::string, Known> objects_;
+  bool robot_known_{false};
+  Vector position_;
+  double payload_{0};
+  Pose T_world_base_{Pose::Identity()}, T_world_tool_{Pose::Identity()};
+  double arm_length_{1.0};
+  std::vector<Pose> links_;
+  std::uint64_t revision_{0};
+  Scene last_;
+};
+
+}  // namespace handsel::spark
