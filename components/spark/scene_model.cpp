@@ -39,7 +39,14 @@ SceneModel::SceneModel(const config::SparkSettings& settings, std::shared_ptr<co
   arm_length_ = arm_length(*robot_);
 }
 
+void SceneModel::locate_tool() {
+  if (!robot_known_ || robot_->tool_link() < 0) return;
+  robot_->forward(position_, links_);
+  T_world_tool_ = T_world_base_ * links_[static_cast<std::size_t>(robot_->tool_link())];
+}
+
 void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
+  locate_tool();
   for (const auto& observed : observation.objects) {
     Known& known = objects_[observed.id];
     if (seen < known.seen) continue;
@@ -107,10 +114,7 @@ void SceneModel::assign_holder(Known& known, const HumanState& people) const {
 }
 
 Scene SceneModel::scene(TimePoint now, const HumanState& people) {
-  if (robot_known_ && robot_->tool_link() >= 0) {
-    robot_->forward(position_, links_);
-    T_world_tool_ = T_world_base_ * links_[static_cast<std::size_t>(robot_->tool_link())];
-  }
+  locate_tool();
   Scene out;
   out.robot_known = robot_known_;
   out.T_world_base = T_world_base_;

@@ -37,6 +37,7 @@ class SceneModel {
     Pose T_tool_object{Pose::Identity()};
     TimePoint seen{};
   };
+  void locate_tool();
   void assign_holder(Known& known, const HumanState& people) const;
   const SceneBox* support_under(const SceneObject& object) const;
 

@@ -1,0 +1,105 @@
+#include "components/manipulation_planner/exchange.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/model/human_body.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+struct Place {
+  Pose T_world_object;
+  double cost;
+};
+
+bool inside_box(const Scene& scene, const Vector3& p, double margin) {
+  return std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
+    const Vector3 local = box.T_world_box.inverse() * p;
+    return (local.array().abs() <= box.size.array() / 2 + margin).all();
+  });
+}
+
+double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
+  const Vector3 low = body.axis_bottom, high = body.axis_bottom + Vector3(0, 0, body.height);
+  const double z = std::clamp(p.z(), low.z(), high.z());
+  const double to_axis = (p - Vector3(low.x(), low.y(), z)).norm() - body.radius;
+  return std::min(to_axis, (p - body.head).norm() - body.head_radius);
+}
+
+}  // namespace
+
+ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q, const Pose& T_tool_object,
+                             const config::ManipulationPlannerSettings& settings) {
+  ExchangeSearch out;
+  const Group& arm = robot.require_group("arm");
+  const Pose T_root_tool = robot.link_pose(q, robot.tool_link());
+  const Pose T_world_object_now = scene.T_world_base * T_root_tool * T_tool_object;
+  const Vector3 torso = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const double shoulder_z = person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
+  Vector3 toward_robot = scene.T_world_base.translation() - torso;
+  toward_robot.z() = 0;
+  if (toward_robot.norm() < 1e-3) {
+    out.reason = "person " + person.id + " stands inside the robot's base";
+    return out;
+  }
+  toward_robot.normalize();
+  const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
+  const SimplifiedBody body = simplified_body(person);
+  const Vector3 palm_to_object = T_tool_object.translation();
+
+  std::vector<Place> places;
+  int out_of_reach = 0, blocked = 0;
+  for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74}) {
+    for (const double aside : {-0.24, -0.12, 0.0, 0.12, 0.24}) {
+      for (const double below : {0.05, 0.15, 0.25, 0.35}) {
+        Vector3 p = torso + ahead * toward_robot + aside * across;
+        p.z() = shoulder_z - below;
+        if (!within_reach(person, p)) {
+          ++out_of_reach;
+          continue;
+        }
+        if (inside_box(scene, p, 0.12)) {
+          ++blocked;
+          continue;
+        }
+        const double base_cost = settings.w_comfort() * arm_comfort_cost(person, p) +
+                                 settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
+                                 settings.w_visibility() * visibility_cost(person, p, 3.0) +
+                                 settings.w_effort() * (p - T_world_object_now.translation()).norm();
+        for (int k = 0; k < 12; ++k) {
+          const double yaw = 2 * std::numbers::pi * k / 12;
+          Pose T = T_world_object_now;
+          T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * T_world_object_now.linear();
+          T.translation() = p;
+          const Vector3 reach = (T.linear() * T_tool_object.linear().transpose() * palm_to_object).normalized();
+          const double facing = reach.dot(-toward_robot);
+          if (facing < 0) continue;
+          places.push_back({T, base_cost + settings.w_legibility() * (1 - facing) / 2});
+        }
+      }
+    }
+  }
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
+
+  IkOptions options;
+  options.restarts = 3;
+  int unreachable = 0;
+  for (const auto& place : places) {
+    if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.exchange_tries()) break;
+    ++out.tried;
+    const Pose T_root_tip = scene.T_world_base.inverse() * place.T_world_object * T_tool_object.inverse();
+    if (auto joints = robot.inverse(arm, T_root_tip, q, options))
+      out.poses.push_back({place.T_world_object, std::move(*joints), place.cost});
+    else
+      ++unreachable;
+  }
+  if (out.poses.empty())
+    out.reason = "no exchange point with " + person.id + ": " + std::to_string(out_of_reach) + " places beyond their reach, " +
+                 std::to_string(blocked) + " inside furniture, " + std::to_string(unreachable) + " of " + std::to_string(out.tried) +
+                 " poses beyond the robot's reach";
+  return out;
+}
+
+}  // namespace handsel::manipulation_planner

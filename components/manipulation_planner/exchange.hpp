@@ -1,0 +1,32 @@
+// Where and how to offer an object: exchange poses ranked by comfort, safety, visibility, legibility and the robot's effort
+// (chapter sections 3.2.9 and 4.1.2; the sum is ours). Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/config/manipulation_planner.pb.h"
+#include "common/cost/human_cost.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel::manipulation_planner {
+
+struct ExchangePose {
+  Pose T_world_object{Pose::Identity()};
+  Vector arm_joints;      ///< arm axes that put the held object there
+  double cost{};
+};
+
+struct ExchangeSearch {
+  std::vector<ExchangePose> poses;  ///< best first, reachable by robot and person
+  std::string reason;               ///< when there is none
+  std::uint32_t tried{};            ///< inverse kinematics solved for
+};
+
+/// `q`: all axes now. The object keeps its tilt; only its place and heading change.
+ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q, const Pose& T_tool_object,
+                             const config::ManipulationPlannerSettings& settings);
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,105 @@
+// Routines that wait: an action is written top to bottom as a C++20 coroutine and resumed by step(); destroying it cancels it. No threads.
+#pragma once
+
+#include <coroutine>
+#include <exception>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "common/base/time.hpp"
+
+namespace handsel::manipulation_planner {
+
+/// A routine with a result; `co_await` it from another routine. Starts when awaited or resumed.
+template <class T>
+class [[nodiscard]] Routine {
+ public:
+  struct promise_type {
+    std::optional<T> value;
+    std::coroutine_handle<> parent;
+
+    Routine get_return_object() { return Routine(Handle::from_promise(*this)); }
+    std::suspend_always initial_suspend() noexcept { return {}; }
+    auto final_suspend() noexcept {
+      struct Back {
+        bool await_ready() noexcept { return false; }
+        std::coroutine_handle<> await_suspend(std::coroutine_handle<promise_type> self) noexcept {
+          return self.promise().parent ? self.promise().parent : std::noop_coroutine();
+        }
+        void await_resume() noexcept {}
+      };
+      return Back{};
+    }
+    void return_value(T v) { value = std::move(v); }
+    void unhandled_exception() { std::terminate(); }
+  };
+  using Handle = std::coroutine_handle<promise_type>;
+
+  Routine() = default;
+  explicit Routine(Handle handle) : handle_(handle) {}
+  Routine(Routine&& other) noexcept : handle_(std::exchange(other.handle_, {})) {}
+  Routine& operator=(Routine&& other) noexcept {
+    if (this != &other) {
+      if (handle_) handle_.destroy();
+      handle_ = std::exchange(other.handle_, {});
+    }
+    return *this;
+  }
+  ~Routine() {
+    if (handle_) handle_.destroy();
+  }
+
+  void start() { handle_.resume(); }
+  explicit operator bool() const { return static_cast<bool>(handle_); }
+  bool done() const { return handle_ && handle_.done(); }
+  const T& result() const { return *handle_.promise().value; }
+
+  bool await_ready() const noexcept { return false; }
+  std::coroutine_handle<> await_suspend(std::coroutine_handle<> parent) noexcept {
+    handle_.promise().parent = parent;
+    return handle_;
+  }
+  T await_resume() { return std::move(*handle_.promise().value); }
+
+ private:
+  Handle handle_{};
+};
+
+/// Where a routine waits: at most one condition at a time.
+class Waiting {
+ public:
+  /// Resumes the waiting routine when its condition holds or its time is up.
+  void poll(TimePoint now) {
+    now_ = now;
+    if (!handle_ || (!condition_() && now < deadline_)) return;
+    const auto handle = std::exchange(handle_, {});
+    handle.resume();
+  }
+  void clear() { handle_ = {}; }
+  TimePoint now() const { return now_; }
+  void set_now(TimePoint now) { now_ = now; }
+
+  struct Until {
+    Waiting& waiting;
+    std::function<bool()> condition;
+    TimePoint deadline;
+    bool await_ready() const { return condition(); }
+    void await_suspend(std::coroutine_handle<> handle) {
+      waiting.handle_ = handle;
+      waiting.condition_ = condition;
+      waiting.deadline_ = deadline;
+    }
+    bool await_resume() const { return condition(); }  ///< false: the time ran out
+  };
+  Until until(std::function<bool()> condition, double timeout) {
+    return {*this, std::move(condition), now_ + from_seconds(timeout)};
+  }
+
+ private:
+  std::coroutine_handle<> handle_{};
+  std::function<bool()> condition_;
+  TimePoint deadline_{}, now_{};
+};
+
+}  // namespace handsel::manipulation_planner
