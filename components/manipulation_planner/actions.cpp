@@ -1,0 +1,228 @@
+// The actions, top to bottom: pick, give, place.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "components/manipulation_planner/manipulation_planner.hpp"
+
+namespace handsel::manipulation_planner {
+
+Routine<Outcome> ManipulationPlanner::pick(std::string object_id, std::string for_human) {
+  if (status_.holding && attachment_.object == object_id) co_return Outcome{};
+  if (object(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
+  Outcome last;
+  for (int round = 0; round < 2; ++round) {
+    GraspList list = co_await ask_grasps(object_id, for_human);
+    if (!list.outcome.good) {
+      last = list.outcome;
+      continue;
+    }
+    int executed = 0;
+    for (const Grasp& grasp : list.grasps) {
+      last = co_await try_grasp(object_id, grasp);
+      if (last.good) co_return last;
+      refuse("grasp " + std::to_string(grasp.id), last.reason);
+      if (status_.holding) co_return last;
+      if (status_.phase != "planning" && ++executed >= 3) break;  // the object may have moved: look again
+    }
+  }
+  co_return last;
+}
+
+Routine<Outcome> ManipulationPlanner::try_grasp(std::string object_id, Grasp grasp) {
+  status_.phase = "planning";
+  const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
+  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+
+  Motion approach;
+  approach.phase = "approach";
+  approach.goals = {grasp.approach_joints};
+  Motion reach_object;
+  reach_object.phase = "reaching the object";
+  reach_object.goals = {grasp.arm_joints};
+  reach_object.straight = true;
+  reach_object.allowed = {object_id};
+  reach_object.speed = settings_.approach_speed();
+
+  const Group* hand_group = robot_->group("hand");
+  Vector opened = set_point_;
+  if (hand_group != nullptr) opened = RobotModel::with(opened, *hand_group, grasp.pregrasp_joints);
+  Vector before = RobotModel::with(opened, arm_, grasp.approach_joints);
+  PlannedPath last_part = co_await plan_path(before, reach_object);
+  if (!last_part.outcome.good) co_return Outcome::failure("last part of the approach: " + last_part.outcome.reason);
+  PlannedPath first_part = co_await plan_path(opened, approach);
+  if (!first_part.outcome.good) co_return Outcome::failure("approach: " + first_part.outcome.reason);
+
+  status_.phase = "opening the hand";
+  HandResult open = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
+  if (!open.outcome.good) co_return open.outcome;
+  Outcome moved = co_await move(approach);
+  if (!moved.good) co_return moved;
+  moved = co_await move(reach_object);
+  if (!moved.good) co_return moved;
+
+  status_.phase = "grasp";
+  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout());
+  if (!closed.outcome.good || closed.state != HandState::grasped) {
+    HandResult reopened = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
+    Motion back = reach_object;
+    back.phase = "backing off";
+    back.goals = {grasp.approach_joints};
+    Outcome backed = co_await move(back);
+    co_return Outcome::failure(closed.outcome.good ? "the hand closed on nothing" : closed.outcome.reason);
+  }
+  grasp_ = grasp;
+  co_await waiting_.until([] { return false; }, settings_.settle_time());
+  const SceneObject* held = object(object_id);
+  if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
+  hold(*held);
+  Outcome lifted = co_await lift(object_id);
+  co_return lifted;
+}
+
+Routine<Outcome> ManipulationPlanner::lift(std::string object_id) {
+  Motion up;
+  up.phase = "lift";
+  up.straight = true;
+  up.allowed = {object_id};
+  const Pose T_now = T_world_tool();
+  for (const double share : {1.0, 0.85}) {
+    Pose T = T_now;
+    T.translation().z() += share * settings_.lift_height();
+    if (auto joints = reach(T)) {
+      up.goals = {*joints};
+      Outcome outcome = co_await move(up);
+      if (outcome.good) co_return outcome;
+    }
+  }
+  co_return Outcome::failure("the arm cannot lift " + object_id + " straight up by " + std::to_string(settings_.lift_height()) + " m");
+}
+
+Routine<Outcome> ManipulationPlanner::give(std::string object_id, std::string human) {
+  const SceneObject* held = object(object_id);
+  if (held == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
+  if (held->holder == Holder::human) co_return Outcome{};
+  if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
+  status_.phase = "choosing the exchange point";
+  const bool seen = co_await waiting_.until([this, human] { return person(human) != nullptr; }, settings_.offer_timeout());
+  if (!seen) co_return Outcome::failure(human.empty() ? "nobody is in sight" : "person " + human + " is not in sight");
+  const std::string receiver = person(human)->id;
+  status_.human = receiver;
+
+  Outcome last;
+  bool at_exchange = false;
+  for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange; ++attempt) {
+    const Person* whom = person(receiver);
+    if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
+    auto search = std::make_shared<ExchangeSearch>();
+    const auto job = [this, search, scene = scene_, who = *whom, q = set_point_, T = attachment_.T_tool_object] {
+      *search = find_exchange(*robot_, scene, who, q, T, settings_);
+    };
+    last = co_await work(job);
+    if (!last.good) continue;
+    if (search->poses.empty()) {
+      last = Outcome::failure(search->reason);
+      refuse("exchange point", last.reason);
+      co_await waiting_.until([] { return false; }, 0.5);
+      continue;
+    }
+    Motion carry;
+    carry.phase = "carry";
+    carry.speed = settings_.carry_speed();
+    carry.allowed = {object_id};
+    for (const auto& pose : search->poses) carry.goals.push_back(pose.arm_joints);
+    status_.exchange_point = search->poses.front().T_world_object.translation();
+    last = co_await move(carry);
+    at_exchange = last.good;
+  }
+  if (!at_exchange) co_return last;
+
+  status_.phase = "offer";
+  status_.exchange_point = (T_world_tool() * attachment_.T_tool_object).translation();
+  status_.exchange_engaged = true;
+  Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), robot_->require_group("hand"));
+  HandResult released = co_await hand(HandAction::release_on_pull, opening, settings_.offer_timeout());
+  if (!released.outcome.good || released.state != HandState::released) {
+    status_.exchange_engaged = false;
+    co_return Outcome::failure(released.outcome.good ? receiver + " did not take " + object_id + " within " +
+                                                           std::to_string(static_cast<int>(settings_.offer_timeout())) + " s"
+                                                     : released.outcome.reason);
+  }
+  release_object();
+  status_.phase = "retreat";
+  co_await waiting_.until([] { return false; }, 0.5);
+  Outcome back = co_await retreat(receiver, object_id);
+  if (!back.good) refuse("retreat", back.reason);
+  co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::place(std::string object_id, std::string surface) {
+  if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
+  const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == surface; });
+  if (box == scene_.boxes.end() || !box->supports) co_return Outcome::failure("there is no surface called " + surface);
+  const SceneObject* held = object(object_id);
+  const ObjectModel* model = held != nullptr && objects_ ? objects_(held->model) : nullptr;
+  if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
+  status_.phase = "choosing a place";
+
+  const double top = box->T_world_box.translation().z() + box->size.z() / 2;
+  const double heading = std::atan2(held->T_world_object.linear()(1, 0), held->T_world_object.linear()(0, 0));
+  struct Spot {
+    Vector arm_above, arm_at;
+  };
+  auto spots = std::make_shared<std::vector<Spot>>();
+  const auto job = [this, spots, scene = scene_, surface_box = *box, T_tool_object = attachment_.T_tool_object, q = set_point_, model, top,
+                    heading, object_id] {
+    IkOptions options;
+    options.restarts = 2;
+    constexpr double kMargin = 0.08;
+    for (int i = 0; i < 60 && spots->size() < 6; ++i) {
+      const double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0) - 0.5, v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0) - 0.5;
+      const Vector3 p = surface_box.T_world_box * Vector3(u * std::max(0.0, surface_box.size.x() - 2 * kMargin),
+                                                          v * std::max(0.0, surface_box.size.y() - 2 * kMargin), 0);
+      const bool taken = std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& other) {
+        return other.id != object_id && (other.T_world_object.translation() - Vector3(p.x(), p.y(), top)).head<2>().norm() < 0.2;
+      });
+      if (taken) continue;
+      const double turn = heading + (i % 4) * 1.5707963267948966;
+      Pose T_world_object = make_pose({p.x(), p.y(), top + model->height_above_support + 0.004},
+                                      Eigen::Quaterniond(Eigen::AngleAxisd(turn, Vector3::UnitZ())));
+      const Pose T_base_world = scene.T_world_base.inverse();
+      const auto at = robot_->inverse(arm_, T_base_world * T_world_object * T_tool_object.inverse(), q, options);
+      if (!at) continue;
+      T_world_object.translation().z() += settings_.lift_height();
+      const auto above =
+          robot_->inverse(arm_, T_base_world * T_world_object * T_tool_object.inverse(), RobotModel::with(q, arm_, *at), options);
+      if (above) spots->push_back({*above, *at});
+    }
+  };
+  Outcome last = co_await work(job);
+  if (!last.good) co_return last;
+  if (spots->empty()) co_return Outcome::failure("no free place on " + surface + " within the arm's reach");
+  for (const auto& spot : *spots) {
+    Motion above;
+    above.phase = "carry";
+    above.goals = {spot.arm_above};
+    above.allowed = {object_id};
+    above.speed = settings_.carry_speed();
+    last = co_await move(above);
+    if (!last.good) continue;
+    Motion down = above;
+    down.phase = "put down";
+    down.goals = {spot.arm_at};
+    down.straight = true;
+    down.speed = settings_.approach_speed();
+    last = co_await move(down);
+    if (!last.good) continue;
+    Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), robot_->require_group("hand"));
+    HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
+    if (!released.outcome.good) co_return released.outcome;
+    release_object();
+    Outcome back = co_await retreat("", object_id);
+    if (!back.good) refuse("retreat", back.reason);
+    co_return Outcome{};
+  }
+  co_return last;
+}
+
+}  // namespace handsel::manipulation_planner

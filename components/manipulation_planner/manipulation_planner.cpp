@@ -1,0 +1,341 @@
+#include "components/manipulation_planner/manipulation_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/human_body.hpp"
+
+namespace handsel::manipulation_planner {
+
+ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot,
+                                         ObjectLibrary objects, std::uint64_t client)
+    : settings_(settings),
+      robot_(std::move(robot)),
+      objects_(std::move(objects)),
+      arm_(robot_->require_group("arm")),
+      client_(client),
+      commands_(client) {}
+
+void ManipulationPlanner::on(const ActionGoal& goal) {
+  if (goal.cancel) {
+    if (goal.id != status_.id || status_.state != ActionState::running) return;
+    action_ = {};
+    waiting_.clear();
+    status_.state = ActionState::cancelled;
+    status_.exchange_engaged = false;
+    status_.reason = "cancelled on request";
+    return;
+  }
+  if (goal.id == status_.id) return;
+  action_ = {};
+  waiting_.clear();
+  goal_ = goal;
+  const bool holding = status_.holding;
+  status_ = {};
+  status_.id = goal.id;
+  status_.task = goal.task;
+  status_.kind = goal.kind;
+  status_.object = goal.object;
+  status_.human = goal.human;
+  status_.state = ActionState::running;
+  status_.holding = holding;
+}
+
+void ManipulationPlanner::on(const ExecutionStatus& status) { execution_ = status; }
+
+void ManipulationPlanner::on(const ActiveTrajectory& active) {
+  set_point_ = active.position;
+  set_point_velocity_ = active.velocity;
+}
+
+void ManipulationPlanner::on(const GraspReply& reply) {
+  if (reply.id == RequestId{client_, requests_}) grasp_reply_ = reply;
+}
+void ManipulationPlanner::on(const PathReply& reply) {
+  if (reply.id == RequestId{client_, requests_}) path_reply_ = reply;
+}
+void ManipulationPlanner::on(const TrajectoryReply& reply) {
+  if (reply.id == RequestId{client_, requests_}) trajectory_reply_ = reply;
+}
+
+void ManipulationPlanner::step(TimePoint now, Outbox& out) {
+  out_ = &out;
+  waiting_.set_now(now);
+  if (status_.state == ActionState::running && !action_) {
+    action_ = run(goal_);
+    action_.start();
+  } else {
+    waiting_.poll(now);
+  }
+  if (action_ && action_.done()) {
+    const Outcome& outcome = action_.result();
+    status_.state = outcome.good ? ActionState::succeeded : ActionState::failed;
+    status_.reason = outcome.reason;
+    status_.exchange_engaged = false;
+    action_ = {};
+  }
+  out_ = nullptr;
+}
+
+bool ManipulationPlanner::at_rest() const {
+  return set_point_.size() == robot_->dof() && Vector::Map(set_point_velocity_.data(), set_point_velocity_.size())(arm_.axes).norm() < 1e-9;
+}
+
+bool ManipulationPlanner::may_move() const { return execution_ && execution_->mode < Mode::hold; }
+
+const SceneObject* ManipulationPlanner::object(const std::string& id) const {
+  const auto it = std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == id; });
+  return it == scene_.objects.end() ? nullptr : &*it;
+}
+
+const Person* ManipulationPlanner::person(const std::string& id) const {
+  const Person* best = nullptr;
+  double nearest = 0;
+  for (const auto& candidate : people_.people) {
+    if (!id.empty() && candidate.id != id) continue;
+    const Vector3 torso = candidate.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+    const double distance = (torso - scene_.T_world_base.translation()).norm();
+    if (best == nullptr || distance < nearest) {
+      best = &candidate;
+      nearest = distance;
+    }
+  }
+  return best;
+}
+
+Pose ManipulationPlanner::T_world_tool() const { return scene_.T_world_base * robot_->link_pose(set_point_, robot_->tool_link()); }
+
+std::optional<Vector> ManipulationPlanner::reach(const Pose& T_world_tool) const {
+  IkOptions options;
+  options.restarts = 0;
+  return robot_->inverse(arm_, scene_.T_world_base.inverse() * T_world_tool, set_point_, options);
+}
+
+void ManipulationPlanner::hold(const SceneObject& held) {
+  attachment_.object = held.id;
+  attachment_.T_tool_object = T_world_tool().inverse() * held.T_world_object;
+  status_.holding = true;
+}
+
+void ManipulationPlanner::release_object() {
+  attachment_ = {};
+  grasp_.reset();
+  status_.holding = false;
+}
+
+void ManipulationPlanner::refuse(const std::string& what, const std::string& reason) {
+  if (status_.refusals.size() < 32) status_.refusals.push_back({what, reason});
+}
+
+Routine<Outcome> ManipulationPlanner::work(std::function<void()> job) {
+  const std::uint64_t mine = ++jobs_started_;
+  out_->jobs.push_back(std::move(job));
+  const bool done = co_await waiting_.until([this, mine] { return jobs_done_ >= mine; }, settings_.request_timeout());
+  co_return done ? Outcome{} : Outcome::failure("the computation did not end in time");
+}
+
+Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(std::string object_id, std::string for_human) {
+  status_.phase = "choosing a grasp";
+  GraspRequest request;
+  request.id = next_request();
+  request.object = object_id;
+  request.start = set_point_;
+  request.for_human = for_human;
+  request.max_grasps = settings_.max_grasps();
+  request.seed = goal_.id;
+  grasp_reply_.reset();
+  for (double waited = 0; waited < settings_.request_timeout(); waited += settings_.request_retry()) {
+    out_->grasp_requests.push_back(request);
+    const bool come = co_await waiting_.until([this] { return grasp_reply_.has_value(); }, settings_.request_retry());
+    if (!come) continue;
+    GraspList list;
+    list.grasps = grasp_reply_->grasps;
+    for (const auto& rejected : grasp_reply_->rejected) refuse("grasps: " + rejected.what, rejected.reason);
+    if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object_id + ": " + grasp_reply_->reason);
+    co_return list;
+  }
+  GraspList none;
+  none.outcome = Outcome::failure("the grasp planner does not answer");
+  co_return none;
+}
+
+Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(Vector start, Motion motion) {
+  PathRequest request;
+  request.id = next_request();
+  request.group = arm_.name;
+  request.start = start;
+  request.goals = motion.goals;
+  request.attachment = attachment_;
+  request.allowed_contacts = motion.allowed;
+  request.time_limit = settings_.planning_time();
+  request.seed = goal_.id + requests_;
+  request.straight = motion.straight;
+  path_reply_.reset();
+  PlannedPath planned;
+  for (double waited = 0; waited < settings_.request_timeout(); waited += settings_.request_retry()) {
+    out_->path_requests.push_back(request);
+    const bool come = co_await waiting_.until([this] { return path_reply_.has_value(); }, settings_.request_retry());
+    if (!come) continue;
+    planned.nodes = path_reply_->path;
+    if (!path_reply_->solved) planned.outcome = Outcome::failure(path_reply_->reason);
+    co_return planned;
+  }
+  planned.outcome = Outcome::failure("the path planner does not answer");
+  co_return planned;
+}
+
+Routine<Outcome> ManipulationPlanner::execute(std::vector<Vector> nodes, Motion motion) {
+  TrajectoryRequest request;
+  request.id = next_request();
+  request.group = arm_.name;
+  request.nodes = nodes;
+  request.start = set_point_;
+  request.attachment = attachment_;
+  request.allowed_contacts = motion.allowed;
+  request.speed_scale = motion.speed;
+  trajectory_reply_.reset();
+  for (double waited = 0; !trajectory_reply_ && waited < settings_.request_timeout(); waited += settings_.request_retry()) {
+    out_->trajectory_requests.push_back(request);
+    co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
+  }
+  if (!trajectory_reply_) co_return Outcome::failure("the trajectory planner does not answer");
+  if (!trajectory_reply_->solved) co_return Outcome::failure(trajectory_reply_->reason);
+  for (const auto& corner : trajectory_reply_->corners) refuse(corner.what, corner.reason);
+
+  TrajectoryCommand command;
+  command.id = ++commands_;
+  command.epoch = execution_->epoch;
+  command.robot = robot_->name();
+  for (const int axis : arm_.axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
+  command.trajectory = trajectory_reply_->trajectory;
+  command.attachment = attachment_;
+  command.allowed_contacts = motion.allowed;
+  const std::uint64_t id = command.id;
+  const auto acknowledged = [this, id] { return execution_->trajectory == id; };
+  bool heard = false;
+  for (int tries = 0; tries < 5 && !heard; ++tries) {
+    out_->trajectories.push_back(command);
+    heard = co_await waiting_.until(acknowledged, 0.3);
+  }
+  if (!heard) co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
+  constexpr double kForever = 600;
+  co_await waiting_.until(
+      [this, id] {
+        return execution_->trajectory != id || execution_->motion == MotionState::finished || execution_->motion == MotionState::refused ||
+               execution_->motion == MotionState::stopped;
+      },
+      kForever);
+  if (execution_->trajectory != id) co_return Outcome::failure("the trajectory controller lost the trajectory");
+  if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
+  if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);
+  co_await waiting_.until([this] { return at_rest(); }, 1.0);
+  co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::move(Motion motion) {
+  Outcome last;
+  for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts(); ++attempt) {
+    status_.phase = motion.phase;
+    const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
+    if (!ready) co_return Outcome::failure("no permission to move: " + (execution_ ? execution_->reason : "the controller is silent"));
+    PlannedPath planned = co_await plan_path(set_point_, motion);
+    if (planned.outcome.good) {
+      last = co_await execute(planned.nodes, motion);
+      if (last.good) co_return last;
+    } else {
+      last = planned.outcome;
+    }
+    refuse(motion.phase, last.reason);
+    co_await waiting_.until([] { return false; }, 0.3);
+  }
+  co_return last;
+}
+
+Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, Vector position, double timeout) {
+  HandCommand command;
+  command.id = ++commands_;
+  command.robot = robot_->name();
+  command.action = action;
+  command.position = position;
+  command.pull_force = settings_.pull_force();
+  HandResult result;
+  const std::uint64_t id = command.id;
+  bool heard = false;
+  for (int tries = 0; tries < 20 && !heard; ++tries) {
+    const bool ready = co_await waiting_.until([this] { return may_move(); }, settings_.permission_timeout());
+    if (!ready) break;
+    command.epoch = execution_->epoch;
+    out_->hand_commands.push_back(command);
+    heard = co_await waiting_.until([this, id] { return execution_->hand_command == id && execution_->hand != HandState::refused; }, 0.3);
+  }
+  if (!heard) {
+    result.outcome = Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
+    co_return result;
+  }
+  const bool ended = co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand != HandState::moving; },
+                                             timeout);
+  const bool waits_for_pull = action == HandAction::release_on_pull;
+  if (ended && waits_for_pull)
+    co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand == HandState::released; }, timeout);
+  if (execution_->hand_command != id) result.outcome = Outcome::failure("the controller lost the hand command");
+  if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
+  result.state = execution_->hand;
+  co_return result;
+}
+
+Routine<Outcome> ManipulationPlanner::retreat(std::string allowed_person, std::string object_id) {
+  const Pose T_now = T_world_tool();
+  const Vector3 centre = robot_->hand().empty() ? Vector3::UnitZ() : Vector3(T_now.linear() * Vector3::UnitZ());
+  Vector3 away = -centre;
+  if (const SceneObject* left = object(object_id)) {
+    const Vector3 gap = T_now.translation() - left->T_world_object.translation();
+    if (gap.norm() > 0.03) away = gap.normalized();
+  }
+  Motion motion;
+  motion.phase = "retreat";
+  motion.straight = true;
+  motion.allowed = {object_id};
+  if (!allowed_person.empty()) motion.allowed.push_back(allowed_person);
+  for (const double share : {1.0, 0.75, 0.5, 0.3}) {
+    Pose T = T_now;
+    T.translation() += share * settings_.retreat_distance() * away;
+    if (auto joints = reach(T)) {
+      motion.goals = {*joints};
+      Outcome outcome = co_await move(motion);
+      if (outcome.good) co_return outcome;
+    }
+  }
+  co_return Outcome::failure("the hand finds no straight way back from " + object_id);
+}
+
+Routine<Outcome> ManipulationPlanner::go_to_rest() {
+  Motion motion;
+  motion.phase = "to rest";
+  motion.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
+  motion.speed = attachment_.object.empty() ? 1.0 : settings_.carry_speed();
+  Outcome outcome = co_await move(motion);
+  co_return outcome;
+}
+
+Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
+  status_.phase = "waiting for the scene";
+  const bool known =
+      co_await waiting_.until([this] { return scene_.robot_known && execution_ && set_point_.size() == robot_->dof(); }, 10.0);
+  if (!known) co_return Outcome::failure("no scene or no controller state has come");
+  if (const SceneObject* held = object(goal.object); held != nullptr && held->holder == Holder::robot) {
+    if (attachment_.object != held->id) hold(*held);
+  } else if (attachment_.object == goal.object) {
+    release_object();
+  }
+  Outcome outcome;
+  switch (goal.kind) {
+    case ActionKind::pick: outcome = co_await pick(goal.object, goal.human); break;
+    case ActionKind::give: outcome = co_await give(goal.object, goal.human); break;
+    case ActionKind::place: outcome = co_await place(goal.object, goal.surface); break;
+    case ActionKind::go_to: outcome = co_await go_to_rest(); break;
+    case ActionKind::receive: outcome = Outcome::failure("receive needs a person who offers; this version does not take objects"); break;
+  }
+  co_return outcome;
+}
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,135 @@
+// The human-aware manipulation planner (MHP, chapter section 2.1): brings grasp, path and trajectory planner together to carry out one action.
+// Pure: messages come in, time comes in, messages go out through the Outbox.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/collision/collision_world.hpp"
+#include "common/config/manipulation_planner.pb.h"
+#include "common/messages/execution.hpp"
+#include "common/messages/planning.hpp"
+#include "common/messages/task.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/robot_model.hpp"
+#include "components/manipulation_planner/exchange.hpp"
+#include "components/manipulation_planner/routine.hpp"
+
+namespace handsel::manipulation_planner {
+
+/// What the core wants sent; the node empties it after each step.
+struct Outbox {
+  std::vector<GraspRequest> grasp_requests;
+  std::vector<PathRequest> path_requests;
+  std::vector<TrajectoryRequest> trajectory_requests;
+  std::vector<TrajectoryCommand> trajectories;
+  std::vector<HandCommand> hand_commands;
+  std::vector<std::function<void()>> jobs;  ///< long work; call job_done() after each
+};
+
+/// Outcome of a part of an action.
+struct Outcome {
+  bool good{true};
+  std::string reason;  ///< why not, one sentence
+  static Outcome failure(std::string why) { return {false, std::move(why)}; }
+};
+
+class ManipulationPlanner {
+ public:
+  /// `client` makes request ids unique over restarts; trajectory and hand command ids start above it.
+  ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
+                      std::uint64_t client);
+
+  void on(const ActionGoal& goal);
+  void on(const Scene& scene) { scene_ = scene; }
+  void on(const HumanState& people) { people_ = people; }
+  void on(const ExecutionStatus& status);
+  void on(const ActiveTrajectory& active);
+  void on(const GraspReply& reply);
+  void on(const PathReply& reply);
+  void on(const TrajectoryReply& reply);
+  void job_done() { ++jobs_done_; }
+
+  void step(TimePoint now, Outbox& out);
+  const ActionStatus& status() const { return status_; }
+
+ private:
+  struct Motion {
+    std::string phase;
+    std::vector<Vector> goals;  // arm axes, alternatives
+    bool straight{false};
+    std::vector<std::string> allowed;
+    double speed{1.0};
+  };
+  struct PlannedPath {
+    Outcome outcome;
+    std::vector<Vector> nodes;
+  };
+  struct GraspList {
+    Outcome outcome;
+    std::vector<Grasp> grasps;
+  };
+  struct HandResult {
+    Outcome outcome;
+    HandState state{};
+  };
+
+  // Actions.
+  Routine<Outcome> run(ActionGoal goal);
+  Routine<Outcome> pick(std::string object, std::string for_human);
+  Routine<Outcome> try_grasp(std::string object, Grasp grasp);
+  Routine<Outcome> lift(std::string object);
+  Routine<Outcome> give(std::string object, std::string human);
+  Routine<Outcome> place(std::string object, std::string surface);
+  Routine<Outcome> go_to_rest();
+
+  // Parts of actions.
+  Routine<GraspList> ask_grasps(std::string object, std::string for_human);
+  Routine<PlannedPath> plan_path(Vector start, Motion motion);
+  Routine<Outcome> move(Motion motion);
+  Routine<Outcome> execute(std::vector<Vector> nodes, Motion motion);
+  Routine<HandResult> hand(HandAction action, Vector position, double timeout);
+  Routine<Outcome> retreat(std::string allowed_person, std::string object);
+  Routine<Outcome> work(std::function<void()> job);
+
+  bool at_rest() const;
+  bool may_move() const;
+  const SceneObject* object(const std::string& id) const;
+  const Person* person(const std::string& id) const;  // empty id: the nearest
+  void hold(const SceneObject& object);
+  void release_object();
+  void refuse(const std::string& what, const std::string& reason);
+  RequestId next_request() { return {client_, ++requests_}; }
+  Pose T_world_tool() const;
+  std::optional<Vector> reach(const Pose& T_world_tool) const;
+
+  config::ManipulationPlannerSettings settings_;
+  std::shared_ptr<const RobotModel> robot_;
+  ObjectLibrary objects_;
+  const Group& arm_;
+  std::uint64_t client_, requests_{0}, commands_;
+  std::uint64_t jobs_started_{0}, jobs_done_{0};
+
+  Waiting waiting_;
+  Routine<Outcome> action_;
+  ActionGoal goal_;
+  ActionStatus status_;
+  Outbox* out_{nullptr};
+
+  Scene scene_;
+  HumanState people_;
+  std::optional<ExecutionStatus> execution_;
+  Vector set_point_, set_point_velocity_;
+  std::optional<GraspReply> grasp_reply_;
+  std::optional<PathReply> path_reply_;
+  std::optional<TrajectoryReply> trajectory_reply_;
+
+  Attachment attachment_;
+  std::optional<Grasp> grasp_;
+};
+
+}  // namespace handsel::manipulation_planner
