@@ -78,7 +78,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
 }
 
 bool ManipulationPlanner::at_rest() const {
-  return set_point_.size() == robot_->dof() && Vector::Map(set_point_velocity_.data(), set_point_velocity_.size())(arm_.axes).norm() < 1e-9;
+  return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9;
 }
 
 bool ManipulationPlanner::may_move() const { return execution_ && execution_->mode < Mode::hold; }
@@ -285,8 +285,7 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
 
 Routine<Outcome> ManipulationPlanner::retreat(std::string allowed_person, std::string object_id) {
   const Pose T_now = T_world_tool();
-  const Vector3 centre = robot_->hand().empty() ? Vector3::UnitZ() : Vector3(T_now.linear() * Vector3::UnitZ());
-  Vector3 away = -centre;
+  Vector3 away = -T_now.linear().col(2);
   if (const SceneObject* left = object(object_id)) {
     const Vector3 gap = T_now.translation() - left->T_world_object.translation();
     if (gap.norm() > 0.03) away = gap.normalized();

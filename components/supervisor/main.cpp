@@ -1,0 +1,3 @@
+#include "components/supervisor/node.hpp"
+
+int main(int argc, char** argv) { return handsel::run_process<handsel::supervisor::Node>(argc, argv, "supervisor"); }
