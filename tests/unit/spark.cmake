@@ -1,0 +1,1 @@
+handsel_test(spark SOURCES ${CMAKE_CURRENT_LIST_DIR}/spark_test.cpp LINK handsel_spark_core LABEL unit)
