@@ -1,0 +1,270 @@
+#include "components/manipulation_planner/manipulation_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/config/resources.hpp"
+#include "common/model/human_body.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+config::ManipulationPlannerSettings settings() {
+  config::ManipulationPlannerSettings s;
+  load_text_proto(resource("config/manipulation_planner.txtpb"), s);
+  return s;
+}
+
+// Plays the planners and the controller: every request is answered at once unless the test says otherwise, every trajectory reaches its end.
+class Rig {
+ public:
+  Rig()
+      : robot(std::make_shared<RobotModel>(RobotModel::load(robot_description("jido")))),
+        mug(ObjectModel::load(object_description("mug"))),
+        planner(settings(), robot, [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
+    q = robot->rest_posture();
+    scene.robot_known = true;
+    scene.T_world_base = Pose::Identity();
+    scene.boxes.push_back({"table", make_pose({0.7, -0.6, 0.35}), {0.6, 0.6, 0.7}, true});
+    scene.objects.push_back({"mug", "mug", make_pose({0.7, -0.6, 0.75}), Holder::surface, "table", 0});
+    Person anna;
+    anna.id = "anna";
+    anna.joints = standing_body({1.45, 0, 0}, 3.14159, 1.75);
+    people.people.push_back(anna);
+    execution.mode = Mode::normal;
+    execution.epoch = 1;
+  }
+
+  void start(ActionKind kind) {
+    ActionGoal goal;
+    goal.id = ++actions;
+    goal.kind = kind;
+    goal.object = "mug";
+    goal.human = "anna";
+    goal.surface = "table";
+    planner.on(goal);
+  }
+
+  void run(double duration) {
+    for (double t = 0; t < duration && (t < 0.1 || planner.status().state == ActionState::running); t += 0.02) cycle();
+  }
+
+  void cycle() {
+    now += from_seconds(0.02);
+    scene.robot_position = q;
+    for (auto& object : scene.objects)
+      if (object.holder == Holder::robot) object.T_world_object = tool() * T_tool_mug;
+    planner.on(scene);
+    planner.on(people);
+    planner.on(execution);
+    ActiveTrajectory active;
+    active.position = q;
+    active.velocity = Vector::Zero(robot->dof());
+    planner.on(active);
+    Outbox out;
+    planner.step(now, out);
+    for (auto& job : out.jobs) {
+      job();
+      planner.job_done();
+    }
+    for (auto& request : out.grasp_requests) answer(request);
+    for (auto& request : out.path_requests) answer(request);
+    for (auto& request : out.trajectory_requests) answer(request);
+    for (auto& command : out.trajectories) obey(command);
+    for (auto& command : out.hand_commands) obey(command);
+    if (out.hand_commands.empty() && planner.status().phase == "offer" && person_takes) execution.hand = HandState::released;
+  }
+
+  void answer(const GraspRequest& request) {
+    GraspReply reply;
+    reply.id = request.id;
+    Grasp grasp;
+    grasp.id = 1;
+    grasp.arm_joints = RobotModel::part(q, robot->require_group("arm"));
+    grasp.arm_joints[0] += 0.2;
+    grasp.approach_joints = grasp.arm_joints;
+    grasp.approach_joints[1] += 0.1;
+    grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(q, robot->require_group("hand"));
+    if (grasps_exist) reply.grasps.push_back(grasp);
+    else reply.reason = "no frame gives three contacts";
+    if (grasp_planner_lives) planner.on(reply);
+  }
+  void answer(const PathRequest& request) {
+    ++path_requests;
+    PathReply reply;
+    reply.id = request.id;
+    reply.solved = path_requests > failing_paths;
+    reply.reason = "goal 0 in collision: link forearm and box table";
+    reply.path = {RobotModel::part(request.start, robot->require_group("arm")), request.goals.front()};
+    planner.on(reply);
+  }
+  void answer(const TrajectoryRequest& request) {
+    TrajectoryReply reply;
+    reply.id = request.id;
+    reply.solved = true;
+    target = request.nodes.back();
+    for (int i = 0; i < target.size(); ++i) reply.trajectory.axes.push_back({{target[i], 0, 0}, {{1.0, 0.0}}});
+    planner.on(reply);
+  }
+  void obey(const TrajectoryCommand& command) {
+    phases.push_back(planner.status().phase);
+    allowed.push_back(command.allowed_contacts);
+    execution.trajectory = command.id;
+    execution.motion = stops > 0 ? MotionState::stopped : MotionState::finished;
+    if (stops > 0) --stops;
+    else q = RobotModel::with(q, robot->require_group("arm"), target);
+  }
+  void obey(const HandCommand& command) {
+    execution.hand_command = command.id;
+    execution.hand = command.action == HandAction::grasp ? (grasp_holds ? HandState::grasped : HandState::empty)
+                     : command.action == HandAction::release_on_pull ? HandState::grasped : HandState::idle;
+    if (command.action == HandAction::grasp && grasp_holds) {
+      scene.objects[0].holder = Holder::robot;
+      T_tool_mug = make_pose({0.08, 0.02, 0.23});
+    }
+  }
+  Pose tool() const { return scene.T_world_base * robot->link_pose(q, robot->tool_link()); }
+
+  std::shared_ptr<const RobotModel> robot;
+  ObjectModel mug;
+  ManipulationPlanner planner;
+  Scene scene;
+  HumanState people;
+  ExecutionStatus execution;
+  Vector q, target;
+  Pose T_tool_mug{Pose::Identity()};
+  TimePoint now{};
+  std::uint64_t actions{0};
+  int path_requests{0}, failing_paths{0}, stops{0};
+  bool grasps_exist{true}, grasp_planner_lives{true}, grasp_holds{true}, person_takes{true};
+  std::vector<std::string> phases;
+  std::vector<std::vector<std::string>> allowed;
+};
+
+TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_TRUE(rig.planner.status().holding);
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "lift"}));
+}
+
+TEST(ManipulationPlanner, TheObjectRisesWhenLifted) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  double before = 0;
+  for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
+    if (rig.planner.status().phase == "grasp") before = rig.tool().translation().z();
+    rig.cycle();
+  }
+  EXPECT_GT(rig.tool().translation().z() - before, 0.1);
+}
+
+TEST(ManipulationPlanner, GivesWithinReachOfThePersonAndEngagesThemOnlyAtTheOffer) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.start(ActionKind::give);
+  bool engaged_before_offer = false, engaged_at_offer = false;
+  for (int i = 0; i < 2000 && (i < 5 || rig.planner.status().state == ActionState::running); ++i) {
+    const ActionStatus& status = rig.planner.status();
+    if (status.phase == "carry") engaged_before_offer |= status.exchange_engaged;
+    if (status.phase == "offer") engaged_at_offer |= status.exchange_engaged;
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_FALSE(engaged_before_offer);
+  EXPECT_TRUE(engaged_at_offer);
+  EXPECT_TRUE(within_reach(rig.people.people[0], rig.planner.status().exchange_point));
+  EXPECT_FALSE(rig.planner.status().holding);
+  EXPECT_EQ(rig.phases.back(), "retreat");
+  EXPECT_NE(std::find(rig.allowed.back().begin(), rig.allowed.back().end(), "anna"), rig.allowed.back().end());
+}
+
+TEST(ManipulationPlanner, AnOfferNobodyTakesFailsWithTheirName) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.person_takes = false;
+  rig.start(ActionKind::give);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("anna did not take mug"), std::string::npos) << rig.planner.status().reason;
+  EXPECT_TRUE(rig.planner.status().holding);
+}
+
+TEST(ManipulationPlanner, AMotionThatIsStoppedIsPlannedAgain) {
+  Rig rig;
+  rig.stops = 2;
+  rig.start(ActionKind::go_to);
+  rig.run(30);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_EQ(rig.path_requests, 3);
+}
+
+TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {
+  Rig rig;
+  rig.failing_paths = 1000;
+  rig.start(ActionKind::go_to);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("forearm"), std::string::npos);
+  EXPECT_FALSE(rig.planner.status().refusals.empty());
+}
+
+TEST(ManipulationPlanner, NoGraspsIsAReasonNotACrash) {
+  Rig rig;
+  rig.grasps_exist = false;
+  rig.start(ActionKind::pick);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("three contacts"), std::string::npos);
+}
+
+TEST(ManipulationPlanner, ADeadPlannerIsAskedAgainAndNamedInTheEnd) {
+  Rig rig;
+  rig.grasp_planner_lives = false;
+  rig.start(ActionKind::pick);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("grasp planner"), std::string::npos);
+}
+
+TEST(ManipulationPlanner, AnEmptyHandBacksOffAndSaysSo) {
+  Rig rig;
+  rig.grasp_holds = false;
+  rig.start(ActionKind::pick);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("closed on nothing"), std::string::npos);
+  EXPECT_EQ(rig.phases.back(), "backing off");
+}
+
+TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoAndTakesTheNextAction) {
+  Rig rig;
+  rig.execution.mode = Mode::hold;
+  rig.start(ActionKind::go_to);
+  rig.run(0.5);
+  ActionGoal cancel;
+  cancel.id = rig.actions;
+  cancel.cancel = true;
+  rig.planner.on(cancel);
+  EXPECT_EQ(rig.planner.status().state, ActionState::cancelled);
+  rig.execution.mode = Mode::normal;
+  rig.start(ActionKind::go_to);
+  rig.run(10);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded);
+}
+
+TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.start(ActionKind::place);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_FALSE(rig.planner.status().holding);
+}
+
+}  // namespace
+}  // namespace handsel::manipulation_planner
