@@ -1,0 +1,230 @@
+#include "deploy/handsel/launcher.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/file.h>
+#include <sys/pidfd.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "common/base/errors.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr Duration kQuickDeath = std::chrono::seconds(2);
+constexpr int kMaxQuickDeaths = 5;
+constexpr std::size_t kKeptRuns = 20;
+
+std::string describe_exit(int status) {
+  if (WIFSIGNALED(status)) return "was ended by signal " + std::to_string(WTERMSIG(status)) + " (" + strsignal(WTERMSIG(status)) + ")";
+  return "ended with exit code " + std::to_string(WEXITSTATUS(status));
+}
+
+std::string last_line(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::string line, last;
+  while (std::getline(in, line)) {
+    if (!line.empty()) last = line;
+  }
+  return last;
+}
+
+std::filesystem::path state_directory() {
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state) return std::filesystem::path(state) / "handsel";
+  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".local/state/handsel";
+  return std::filesystem::temp_directory_path() / "handsel";
+}
+
+}  // namespace
+
+TimePoint monotonic_now() {
+  timespec t{};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return TimePoint(std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec));
+}
+
+struct Launcher::Child {
+  ProcessSpec spec;
+  pid_t pid{-1};
+  int pid_fd{-1};
+  int starts{0};
+  int quick_deaths{0};
+  TimePoint started{};
+};
+
+Launcher::Launcher(LauncherOptions options) : options_(std::move(options)) {
+  std::error_code error;
+  std::filesystem::create_directories(options_.log_directory, error);
+  if (error) throw MissingError("cannot make the log directory " + options_.log_directory.string() + ": " + error.message());
+  for (const ProcessSpec& spec : options_.processes) children_.push_back({.spec = spec});
+  wake_fd_ = eventfd(0, EFD_CLOEXEC);
+  thread_ = std::thread([this] { watch(); });
+}
+
+Launcher::~Launcher() {
+  stop();
+  close(wake_fd_);
+}
+
+void Launcher::stop() {
+  stopping_ = true;
+  const std::uint64_t one = 1;
+  [[maybe_unused]] const ssize_t written = write(wake_fd_, &one, sizeof one);
+  if (thread_.joinable()) thread_.join();
+}
+
+// The parent-death signal follows the thread that forked: this thread starts every child and lives as long as they do.
+void Launcher::watch() {
+  {
+    std::lock_guard lock(mutex_);
+    for (Child& child : children_) start(child);
+  }
+  while (!stopping_) {
+    std::vector<pollfd> fds{{wake_fd_, POLLIN, 0}};
+    for (const Child& child : children_) {
+      if (child.pid_fd >= 0) fds.push_back({child.pid_fd, POLLIN, 0});
+    }
+    poll(fds.data(), fds.size(), 1000);
+    std::lock_guard lock(mutex_);
+    for (Child& child : children_) {
+      int status = 0;
+      if (stopping_ || child.pid < 0 || waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
+      handle_exit(child, status);
+    }
+  }
+  stop_children();
+}
+
+void Launcher::start(Child& child) {
+  std::vector<char*> arguments{const_cast<char*>(child.spec.binary.c_str())};
+  for (const std::string& argument : child.spec.arguments) arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  const std::string log = (options_.log_directory / (child.spec.name + ".log")).string();
+  const pid_t launcher = getpid();
+
+  const pid_t pid = fork();
+  if (pid == 0) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != launcher) _exit(3);
+    setpgid(0, 0);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    const int in = open("/dev/null", O_RDONLY);
+    const int out = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0644);
+    dup2(in, STDIN_FILENO);
+    dup2(out, STDOUT_FILENO);
+    dup2(out, STDERR_FILENO);
+    execv(arguments[0], arguments.data());
+    _exit(3);
+  }
+  if (pid < 0) {
+    failure_ = LaunchFailure{child.spec.name, "cannot start " + child.spec.name + ": " + std::strerror(errno), 3};
+    return;
+  }
+  child.pid = pid;
+  child.pid_fd = pidfd_open(pid, 0);
+  child.started = monotonic_now();
+  ++child.starts;
+}
+
+void Launcher::handle_exit(Child& child, int status) {
+  close(child.pid_fd);
+  child.pid = child.pid_fd = -1;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
+  const bool quick = monotonic_now() - child.started < kQuickDeath;
+  child.quick_deaths = quick ? child.quick_deaths + 1 : 0;
+  const std::filesystem::path log = options_.log_directory / (child.spec.name + ".log");
+  if (code == 2 || code == 3) {
+    const std::string said = last_line(log);
+    failure_ = LaunchFailure{child.spec.name, child.spec.name + ": " + (said.empty() ? describe_exit(status) : said), code};
+  } else if (child.quick_deaths >= kMaxQuickDeaths) {
+    failure_ = LaunchFailure{child.spec.name, child.spec.name + " keeps dying: it " + describe_exit(status) + "; see " + log.string(), 3};
+  } else {
+    start(child);
+    say(child.spec.name + " " + describe_exit(status) + "; started again");
+  }
+}
+
+void Launcher::stop_children() {
+  std::lock_guard lock(mutex_);
+  for (const Child& child : children_) {
+    if (child.pid > 0) {
+      kill(child.pid, SIGTERM);
+      kill(child.pid, SIGCONT);
+    }
+  }
+  const TimePoint deadline = monotonic_now() + options_.stop_patience;
+  for (Child& child : children_) {
+    if (child.pid < 0) continue;
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
+    pollfd fd{child.pid_fd, POLLIN, 0};
+    if (poll(&fd, 1, static_cast<int>(std::max<long>(left, 0))) == 0) {
+      kill(child.pid, SIGKILL);
+      say(child.spec.name + " did not stop in time and was killed");
+    }
+    waitpid(child.pid, nullptr, 0);
+    close(child.pid_fd);
+    child.pid = child.pid_fd = -1;
+  }
+}
+
+void Launcher::say(const std::string& sentence) const {
+  if (options_.on_event) options_.on_event(sentence);
+}
+
+std::vector<ProcessStatus> Launcher::processes() const {
+  std::lock_guard lock(mutex_);
+  std::vector<ProcessStatus> result;
+  for (const Child& child : children_) result.push_back({child.spec.name, child.pid, std::max(child.starts - 1, 0)});
+  return result;
+}
+
+pid_t Launcher::pid(const std::string& name) const {
+  std::lock_guard lock(mutex_);
+  const auto child = std::find_if(children_.begin(), children_.end(), [&](const Child& c) { return c.spec.name == name; });
+  return child == children_.end() ? -1 : child->pid;
+}
+
+std::optional<LaunchFailure> Launcher::failure() const {
+  std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+std::filesystem::path new_run_directory(int domain) {
+  namespace fs = std::filesystem;
+  const fs::path root = state_directory() / "runs";
+  std::error_code ignored;
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(root, ignored)) old.push_back(entry.path());
+  std::sort(old.begin(), old.end());
+  for (std::size_t i = 0; i + kKeptRuns <= old.size(); ++i) fs::remove_all(old[i], ignored);
+  char when[32];
+  const std::time_t now = std::time(nullptr);
+  std::strftime(when, sizeof when, "%Y%m%d-%H%M%S", std::localtime(&now));
+  return root / (std::string(when) + "-domain" + std::to_string(domain) + "-" + std::to_string(getpid()));
+}
+
+DomainLock::DomainLock(int domain) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("handsel-domain-" + std::to_string(domain) + ".lock");
+  fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (fd_ < 0) throw MissingError("cannot open " + file.string() + ": " + std::strerror(errno));
+  if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
+    close(fd_);
+    throw ConfigError("DDS domain " + std::to_string(domain) + " is in use by another system on this machine; choose another with --domain");
+  }
+}
+
+DomainLock::~DomainLock() { close(fd_); }
+
+}  // namespace handsel

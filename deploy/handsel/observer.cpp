@@ -1,0 +1,126 @@
+#include "deploy/handsel/observer.hpp"
+
+#include <cstdio>
+
+namespace handsel {
+namespace {
+
+constexpr std::size_t kMaxTimeline = 20000;
+constexpr std::uint8_t kLastCause = static_cast<std::uint8_t>(Cause::override_slow);
+
+const char* state_name(HealthState state) {
+  switch (state) {
+    case HealthState::starting: return "starting";
+    case HealthState::ok: return "ok";
+    case HealthState::degraded: return "degraded";
+    case HealthState::stopping: return "stopping";
+  }
+  return "unknown";
+}
+
+std::string with_reason(std::string text, const std::string& reason) { return reason.empty() ? text : text + ": " + reason; }
+
+}  // namespace
+
+std::string cause_names(std::uint32_t causes) {
+  std::string names;
+  for (std::uint8_t value = 1; value <= kLastCause; ++value) {
+    if (causes & (1u << value)) names += (names.empty() ? "" : ", ") + std::string(name(static_cast<Cause>(value)));
+  }
+  return names;
+}
+
+template <class M, class Store>
+void Observer::watch(Bus& bus, Store store) {
+  bus.subscribe<M>([this, store](const M& sample, const Receipt& receipt) {
+    std::lock_guard lock(mutex_);
+    store(sample, receipt.arrival);
+    if (on_sample_) on_sample_(snapshot_, receipt.arrival);
+    changed_.notify_all();
+  });
+}
+
+Observer::Observer(Bus& bus) {
+  const auto keep = [](auto& seen, const auto& sample, TimePoint at) {
+    seen.ever = true;
+    seen.sample = sample;
+    seen.arrival = at;
+  };
+  watch<ComponentHealth>(bus, [this, keep](const ComponentHealth& health, TimePoint at) {
+    auto& seen = snapshot_.health[health.component];
+    const bool is_new = !seen.ever || seen.sample.incarnation != health.incarnation;
+    if (is_new || seen.sample.state != health.state || seen.sample.reason != health.reason) {
+      tell(at, with_reason(health.component + " " + (is_new && seen.ever ? "back, " : "") + state_name(health.state), health.reason));
+    }
+    keep(seen, health, at);
+  });
+  watch<TaskStatus>(bus, [this, keep](const TaskStatus& task, TimePoint at) {
+    const auto& seen = snapshot_.task;
+    if (!seen.ever || seen.sample.id != task.id || seen.sample.state != task.state || seen.sample.step != task.step) {
+      const std::string step = task.step < task.plan.size() ? ", step " + task.plan[task.step] : "";
+      tell(at, with_reason("task " + std::string(name(task.state)) + step, task.reason));
+    }
+    snapshot_.tasks[task.id] = task;
+    keep(snapshot_.task, task, at);
+  });
+  watch<ActionStatus>(bus, [this, keep](const ActionStatus& action, TimePoint at) {
+    const auto& seen = snapshot_.action;
+    if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase || seen.sample.state != action.state) {
+      const std::string phase = action.phase.empty() ? "" : " " + action.phase;
+      if (action.state != ActionState::idle) tell(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
+    }
+    keep(snapshot_.action, action, at);
+  });
+  watch<ExecutionStatus>(bus, [this, keep](const ExecutionStatus& execution, TimePoint at) {
+    const auto& seen = snapshot_.execution;
+    if (!seen.ever || seen.sample.mode != execution.mode || seen.sample.causes != execution.causes) {
+      const std::string causes = cause_names(execution.causes);
+      tell(at, "mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " (" + causes + ")"));
+    }
+    keep(snapshot_.execution, execution, at);
+  });
+  watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) { keep(snapshot_.advice, advice, at); });
+  watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) { keep(snapshot_.attention, state, at); });
+  watch<TrajectoryForecast>(bus, [this, keep](const TrajectoryForecast& forecast, TimePoint at) { keep(snapshot_.forecast, forecast, at); });
+  watch<GroundTruth>(bus, [this, keep](const GroundTruth& truth, TimePoint at) {
+    const auto& seen = snapshot_.truth;
+    if (!seen.ever || seen.sample.carrier != truth.carrier) tell(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
+    if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) tell(at, "handover done");
+    if (truth.dropped && !(seen.ever && seen.sample.dropped)) tell(at, truth.object + " dropped");
+    if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) tell(at, "a set-point broke a limit");
+    keep(snapshot_.truth, truth, at);
+  });
+}
+
+bool Observer::wait(Duration limit, const std::function<bool(const Snapshot&)>& condition) const {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, limit, [&] { return condition(snapshot_); });
+}
+
+void Observer::on_sample(std::function<void(const Snapshot&, TimePoint)> callback) {
+  std::lock_guard lock(mutex_);
+  on_sample_ = std::move(callback);
+}
+
+void Observer::on_event(std::function<void(const TimelineEvent&)> callback) {
+  std::lock_guard lock(mutex_);
+  on_event_ = std::move(callback);
+}
+
+void Observer::note(TimePoint at, const std::string& text) {
+  std::lock_guard lock(mutex_);
+  tell(at, text);
+}
+
+void Observer::tell(TimePoint at, const std::string& text) {
+  if (timeline_.size() >= kMaxTimeline) return;
+  timeline_.push_back({at, text});
+  if (on_event_) on_event_(timeline_.back());
+}
+
+std::vector<TimelineEvent> Observer::timeline() const {
+  std::lock_guard lock(mutex_);
+  return timeline_;
+}
+
+}  // namespace handsel

@@ -1,0 +1,53 @@
+#include "deploy/handsel/processes.hpp"
+
+#include <charconv>
+#include <cstdlib>
+
+#include "common/base/errors.hpp"
+#include "common/config/resources.hpp"
+#include "common/config/scenario.pb.h"
+#include "common/model/object_model.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+int default_domain() {
+  const char* text = std::getenv("HANDSEL_DOMAIN");
+  if (!text || !*text) return 0;
+  int domain = -1;
+  const std::string value = text;
+  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), domain);
+  if (error != std::errc() || end != value.data() + value.size() || domain < 0 || domain > 232) {
+    throw ConfigError("HANDSEL_DOMAIN is \"" + value + "\"; it must be a number from 0 to 232");
+  }
+  return domain;
+}
+
+std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
+  const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
+  std::vector<ProcessSpec> specs;
+  for (const char* process : kProcesses) {
+    const std::filesystem::path binary = folder / ("handsel_" + std::string(process));
+    if (!std::filesystem::exists(binary)) throw MissingError("the process " + binary.string() + " is not there; build it with ./run --build-only");
+    ProcessSpec spec{process, binary, {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
+    if (!options.robot.empty()) spec.arguments.insert(spec.arguments.end(), {"--robot", options.robot});
+    specs.push_back(std::move(spec));
+  }
+  return specs;
+}
+
+void check_system(const SystemOptions& options) {
+  config::Scenario scenario;
+  const std::filesystem::path file = scenario_file(options.scenario);
+  load_text_proto(file, scenario);
+  const std::string robot = !options.robot.empty() ? options.robot : scenario.robot().empty() ? "jido" : scenario.robot();
+  const RobotModel model = RobotModel::load(robot_description(robot));
+  for (const auto& [joint, position] : scenario.start()) {
+    bool known = false;
+    for (const Axis& axis : model.axes()) known = known || axis.name == joint;
+    if (!known) throw ConfigError(file.string() + ": start names the joint \"" + joint + "\", which " + model.name() + " does not have");
+  }
+  for (const config::ObjectPlacement& object : scenario.objects()) ObjectModel::load(object_description(object.model()));
+}
+
+}  // namespace handsel

@@ -1,0 +1,39 @@
+// Which processes make the system, and how each is started.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace handsel {
+
+/// Every process of the running system: the boxes of the architecture and the simulator. The only list of them.
+inline constexpr std::array kProcesses = {"sim",          "spark",           "costmap",      "collision_checker",    "trajectory_controller", "attention",
+                                          "path_planner", "grasp_planner",   "trajectory_planner", "manipulation_planner", "supervisor", "bridge"};
+
+/// A process to start and keep alive.
+struct ProcessSpec {
+  std::string name;                     ///< the component, as ComponentHealth names it
+  std::filesystem::path binary;
+  std::vector<std::string> arguments;   ///< without argv[0]
+};
+
+/// What the whole system is started with.
+struct SystemOptions {
+  int domain{0};                        ///< DDS domain, 0..232
+  std::string robot;                    ///< empty: the scenario's
+  std::string scenario{"give_mug"};
+  std::uint64_t seed{1};
+  int web_port{-1};                     ///< of the bridge; 0: any free one; -1: as its settings say
+};
+
+/// The default domain: $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number in 0..232.
+int default_domain();
+/// One ProcessSpec for each of kProcesses; throws MissingError naming the first binary that is not beside this one.
+std::vector<ProcessSpec> system_processes(const SystemOptions&);
+/// Reads the scenario, the robot and every object it names, as the processes will. Throws ConfigError / MissingError.
+void check_system(const SystemOptions&);
+
+}  // namespace handsel

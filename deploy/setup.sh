@@ -1,0 +1,31 @@
+#!/bin/sh
+# Installs the Debian 12 packages Handsel is built from and runs on. Does nothing when they are all there.
+set -eu
+
+packages="
+cmake ninja-build g++ pkg-config
+cyclonedds-dev cyclonedds-tools protobuf-compiler libprotobuf-dev
+libeigen3-dev libompl-dev libfcl-dev libccd-dev libassimp-dev libbullet-dev liburdfdom-dev liburdfdom-headers-dev
+libtinyxml2-dev libqhull-dev libboost-dev libboost-filesystem-dev libboost-serialization-dev libboost-system-dev
+nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
+libgtest-dev libgmock-dev libbenchmark-dev mold
+"
+
+missing=""
+for package in $packages; do
+  status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) || status=""
+  [ "$status" = installed ] || missing="$missing $package"
+done
+[ -n "$missing" ] || exit 0
+
+if [ "$(id -u)" -ne 0 ]; then
+  echo "setup: these packages are missing and only root can install them; run: sudo apt-get install$missing" >&2
+  exit 3
+fi
+echo "setup: installing$missing" >&2
+export DEBIAN_FRONTEND=noninteractive
+# shellcheck disable=SC2086 # the list is meant to be split
+apt-get install -y --no-install-recommends $missing >&2 || {
+  apt-get update >&2
+  apt-get install -y --no-install-recommends $missing >&2
+}
