@@ -1,7 +1,5 @@
 #include "deploy/handsel/observer.hpp"
 
-#include <cstdio>
-
 namespace handsel {
 namespace {
 
@@ -33,10 +31,8 @@ std::string cause_names(std::uint32_t causes) {
 template <class M, class Store>
 void Observer::watch(Bus& bus, Store store) {
   bus.subscribe<M>([this, store](const M& sample, const Receipt& receipt) {
-    std::lock_guard lock(mutex_);
     store(sample, receipt.arrival);
     if (on_sample_) on_sample_(snapshot_, receipt.arrival);
-    changed_.notify_all();
   });
 }
 
@@ -50,7 +46,7 @@ Observer::Observer(Bus& bus) {
     auto& seen = snapshot_.health[health.component];
     const bool is_new = !seen.ever || seen.sample.incarnation != health.incarnation;
     if (is_new || seen.sample.state != health.state || seen.sample.reason != health.reason) {
-      tell(at, with_reason(health.component + " " + (is_new && seen.ever ? "back, " : "") + state_name(health.state), health.reason));
+      note(at, with_reason(health.component + " " + (is_new && seen.ever ? "back, " : "") + state_name(health.state), health.reason));
     }
     keep(seen, health, at);
   });
@@ -58,7 +54,7 @@ Observer::Observer(Bus& bus) {
     const auto& seen = snapshot_.task;
     if (!seen.ever || seen.sample.id != task.id || seen.sample.state != task.state || seen.sample.step != task.step) {
       const std::string step = task.step < task.plan.size() ? ", step " + task.plan[task.step] : "";
-      tell(at, with_reason("task " + std::string(name(task.state)) + step, task.reason));
+      note(at, with_reason("task " + std::string(name(task.state)) + step, task.reason));
     }
     snapshot_.tasks[task.id] = task;
     keep(snapshot_.task, task, at);
@@ -67,7 +63,7 @@ Observer::Observer(Bus& bus) {
     const auto& seen = snapshot_.action;
     if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase || seen.sample.state != action.state) {
       const std::string phase = action.phase.empty() ? "" : " " + action.phase;
-      if (action.state != ActionState::idle) tell(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
+      if (action.state != ActionState::idle) note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
     }
     keep(snapshot_.action, action, at);
   });
@@ -75,52 +71,34 @@ Observer::Observer(Bus& bus) {
     const auto& seen = snapshot_.execution;
     if (!seen.ever || seen.sample.mode != execution.mode || seen.sample.causes != execution.causes) {
       const std::string causes = cause_names(execution.causes);
-      tell(at, "mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " (" + causes + ")"));
+      note(at, "mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " (" + causes + ")"));
     }
     keep(snapshot_.execution, execution, at);
   });
   watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) { keep(snapshot_.advice, advice, at); });
   watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) { keep(snapshot_.attention, state, at); });
   watch<TrajectoryForecast>(bus, [this, keep](const TrajectoryForecast& forecast, TimePoint at) { keep(snapshot_.forecast, forecast, at); });
+  watch<ActiveTrajectory>(bus, [this](const ActiveTrajectory& active, TimePoint at) {
+    snapshot_.active.ever = true;
+    snapshot_.active.arrival = at;
+    snapshot_.active.sample.trajectory = active.trajectory;
+    snapshot_.active.sample.time = active.time;
+    snapshot_.active.sample.speed_factor = active.speed_factor;
+  });
   watch<GroundTruth>(bus, [this, keep](const GroundTruth& truth, TimePoint at) {
     const auto& seen = snapshot_.truth;
-    if (!seen.ever || seen.sample.carrier != truth.carrier) tell(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
-    if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) tell(at, "handover done");
-    if (truth.dropped && !(seen.ever && seen.sample.dropped)) tell(at, truth.object + " dropped");
-    if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) tell(at, "a set-point broke a limit");
+    if (!seen.ever || seen.sample.carrier != truth.carrier) note(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
+    if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
+    if (truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, truth.object + " dropped");
+    if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");
     keep(snapshot_.truth, truth, at);
   });
 }
 
-bool Observer::wait(Duration limit, const std::function<bool(const Snapshot&)>& condition) const {
-  std::unique_lock lock(mutex_);
-  return changed_.wait_for(lock, limit, [&] { return condition(snapshot_); });
-}
-
-void Observer::on_sample(std::function<void(const Snapshot&, TimePoint)> callback) {
-  std::lock_guard lock(mutex_);
-  on_sample_ = std::move(callback);
-}
-
-void Observer::on_event(std::function<void(const TimelineEvent&)> callback) {
-  std::lock_guard lock(mutex_);
-  on_event_ = std::move(callback);
-}
-
 void Observer::note(TimePoint at, const std::string& text) {
-  std::lock_guard lock(mutex_);
-  tell(at, text);
-}
-
-void Observer::tell(TimePoint at, const std::string& text) {
   if (timeline_.size() >= kMaxTimeline) return;
   timeline_.push_back({at, text});
   if (on_event_) on_event_(timeline_.back());
-}
-
-std::vector<TimelineEvent> Observer::timeline() const {
-  std::lock_guard lock(mutex_);
-  return timeline_;
 }
 
 }  // namespace handsel

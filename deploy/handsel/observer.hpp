@@ -1,10 +1,8 @@
 // Listens to a running system and remembers the newest of everything a person asks about, and what changed when.
 #pragma once
 
-#include <condition_variable>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -33,6 +31,7 @@ struct Snapshot {
   Seen<AttentionAdvice> advice;
   Seen<AttentionState> attention;
   Seen<TrajectoryForecast> forecast;
+  Seen<ActiveTrajectory> active;                        ///< without the trajectory itself
   Seen<GroundTruth> truth;
 };
 
@@ -45,34 +44,27 @@ struct TimelineEvent {
 /// Names of the causes whose bits are set, comma separated.
 std::string cause_names(std::uint32_t causes);
 
+/// Lives on the executor thread of its bus, as everything on a bus does; on DdsBus that is the thread inside run_until().
 class Observer {
  public:
-  /// Subscribes; the bus must outlive it and must not deliver after it is gone.
+  /// Subscribes; must outlive the deliveries of the bus.
   explicit Observer(Bus& bus);
+  Observer(const Observer&) = delete;
+  Observer& operator=(const Observer&) = delete;
 
-  /// Runs f(const Snapshot&) while nothing changes and returns its result.
-  template <class F>
-  auto read(F&& f) const {
-    std::lock_guard lock(mutex_);
-    return f(snapshot_);
-  }
-  /// Waits on real time until condition(const Snapshot&) holds; false when `limit` passed. Not for LocalBus.
-  bool wait(Duration limit, const std::function<bool(const Snapshot&)>& condition) const;
-  /// Called after every sample with the state and the time, on the executor thread, nothing changing meanwhile.
-  void on_sample(std::function<void(const Snapshot&, TimePoint)> callback);
-  /// Called with every event of the timeline as it happens, on the executor thread.
-  void on_event(std::function<void(const TimelineEvent&)> callback);
+  const Snapshot& snapshot() const { return snapshot_; }
+  /// Called after every sample, with the time it came.
+  void on_sample(std::function<void(const Snapshot&, TimePoint)> callback) { on_sample_ = std::move(callback); }
+  /// Called with every event of the timeline as it happens.
+  void on_event(std::function<void(const TimelineEvent&)> callback) { on_event_ = std::move(callback); }
   /// Adds an event of the listener's own, e.g. what a story did.
   void note(TimePoint at, const std::string& text);
-  std::vector<TimelineEvent> timeline() const;
+  const std::vector<TimelineEvent>& timeline() const { return timeline_; }
 
  private:
   template <class M, class Store>
   void watch(Bus& bus, Store store);
-  void tell(TimePoint at, const std::string& text);
 
-  mutable std::mutex mutex_;
-  mutable std::condition_variable changed_;
   Snapshot snapshot_;
   std::vector<TimelineEvent> timeline_;
   std::function<void(const Snapshot&, TimePoint)> on_sample_;

@@ -1,0 +1,137 @@
+#include "deploy/handsel/status.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "deploy/handsel/processes.hpp"
+
+namespace handsel {
+namespace {
+
+const char* state_name(HealthState state) {
+  switch (state) {
+    case HealthState::starting: return "starting";
+    case HealthState::ok: return "ok";
+    case HealthState::degraded: return "degraded";
+    case HealthState::stopping: return "stopping";
+  }
+  return "unknown";
+}
+
+ProcessLine line_of(const std::string& component, const Snapshot& snapshot, TimePoint now) {
+  ProcessLine line{.component = component, .state = "missing"};
+  const auto found = snapshot.health.find(component);
+  if (found == snapshot.health.end()) return line;
+  const ComponentHealth& health = found->second.sample;
+  line.state = now - found->second.arrival > kSilent ? "silent" : state_name(health.state);
+  line.reason = health.reason;
+  line.memory_mb = health.memory_mb;
+  line.cpu = health.cpu;
+  line.uptime = health.uptime;
+  line.pid = health.pid;
+  for (const TopicHealth& topic : health.topics) {
+    line.rate += topic.rate;
+    line.deadline_misses += topic.deadline_misses;
+    line.rejected += topic.rejected;
+  }
+  return line;
+}
+
+template <class... Values>
+std::string format(const char* pattern, Values... values) {
+  char text[320];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
+
+}  // namespace
+
+SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
+  SystemStatus status;
+  for (const char* process : kProcesses) status.processes.push_back(line_of(process, snapshot, now));
+  for (const auto& [component, seen] : snapshot.health) {
+    if (std::find(kProcesses.begin(), kProcesses.end(), component) == kProcesses.end()) status.processes.push_back(line_of(component, snapshot, now));
+  }
+  for (const ProcessLine& line : status.processes) {
+    if (line.state == "ok") continue;
+    status.troubles.push_back(line.component + " is " + line.state + (line.reason.empty() ? "" : ": " + line.reason));
+  }
+  const ExecutionStatus& execution = snapshot.execution.sample;
+  if (snapshot.execution.ever && execution.mode != Mode::normal) {
+    const std::string causes = cause_names(execution.causes);
+    status.troubles.push_back("mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " because of " + causes) +
+                              (execution.reason.empty() ? "" : ": " + execution.reason));
+  }
+  return status;
+}
+
+nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, TimePoint now) {
+  nlohmann::json processes = nlohmann::json::array(), clocks = nlohmann::json::object();
+  for (const ProcessLine& line : status.processes) {
+    processes.push_back({{"component", line.component},
+                         {"state", line.state},
+                         {"reason", line.reason},
+                         {"rate_hz", line.rate},
+                         {"deadline_misses", line.deadline_misses},
+                         {"rejected", line.rejected},
+                         {"memory_mb", line.memory_mb},
+                         {"cpu", line.cpu},
+                         {"uptime_s", line.uptime},
+                         {"pid", line.pid}});
+  }
+  for (const BehaviourState& behaviour : snapshot.attention.sample.behaviours) {
+    clocks[name(behaviour.behaviour)] = {{"period_s", behaviour.period}, {"released", behaviour.released}, {"speed_factor", behaviour.speed_factor}};
+  }
+  nlohmann::json result{{"processes", std::move(processes)}, {"troubles", status.troubles}, {"clocks", std::move(clocks)}};
+  if (snapshot.task.ever) {
+    const TaskStatus& task = snapshot.task.sample;
+    result["task"] = {{"id", task.id}, {"kind", name(task.kind)}, {"state", name(task.state)}, {"plan", task.plan}, {"step", task.step}, {"reason", task.reason}};
+  }
+  if (snapshot.action.ever) result["phase"] = snapshot.action.sample.phase;
+  if (snapshot.execution.ever) {
+    const ExecutionStatus& execution = snapshot.execution.sample;
+    result["mode"] = name(execution.mode);
+    result["causes"] = cause_names(execution.causes);
+    result["trajectory"] = {{"id", execution.trajectory}, {"progress", execution.progress}};
+    result["cycles"] = execution.cycles;
+    result["late_cycles"] = execution.late_cycles;
+    result["age_s"] = to_seconds(now - snapshot.execution.arrival);
+  }
+  if (snapshot.advice.ever) result["advised_speed_factor"] = snapshot.advice.sample.speed_factor;
+  return result;
+}
+
+std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePoint) {
+  std::string text = format("%-22s %-9s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz", "misses", "rejected", "memory", "cpu", "pid");
+  for (const ProcessLine& line : status.processes) {
+    text += format("%-22s %-9s %8.0f %7llu %8llu %5.0f MB %4.0f %% %7u", line.component.c_str(), line.state.c_str(), line.rate,
+                   static_cast<unsigned long long>(line.deadline_misses), static_cast<unsigned long long>(line.rejected), line.memory_mb,
+                   100.0 * line.cpu, line.pid);
+    text += line.reason.empty() ? "\n" : "  " + line.reason + "\n";
+  }
+  if (snapshot.task.ever) {
+    const TaskStatus& task = snapshot.task.sample;
+    text += "task        " + std::string(name(task.kind)) + " " + name(task.state);
+    if (task.step < task.plan.size()) text += ", step " + task.plan[task.step];
+    text += (task.reason.empty() ? "" : ": " + task.reason) + "\n";
+  }
+  if (snapshot.action.ever && !snapshot.action.sample.phase.empty()) text += "phase       " + snapshot.action.sample.phase + "\n";
+  if (snapshot.execution.ever) {
+    const ExecutionStatus& execution = snapshot.execution.sample;
+    const std::string causes = cause_names(execution.causes);
+    text += "mode        " + std::string(name(execution.mode)) + (causes.empty() ? "" : " because of " + causes) + "\n";
+    text += format("trajectory  %llu, %.0f %% done\n", static_cast<unsigned long long>(execution.trajectory), 100.0 * execution.progress);
+    text += format("control     %llu cycles, %llu late\n", static_cast<unsigned long long>(execution.cycles),
+                   static_cast<unsigned long long>(execution.late_cycles));
+  }
+  if (snapshot.advice.ever) text += format("advice      speed factor %.2f %s\n", snapshot.advice.sample.speed_factor, snapshot.advice.sample.reason.c_str());
+  for (const BehaviourState& behaviour : snapshot.attention.sample.behaviours) {
+    text += format("clock       %-8s every %.3f s%s\n", name(behaviour.behaviour), behaviour.period, behaviour.released ? ", released" : "");
+  }
+  for (const std::string& trouble : status.troubles) text += "! " + trouble + "\n";
+  return text;
+}
+
+}  // namespace handsel

@@ -1,0 +1,36 @@
+// What `handsel status` shows, computed from what was heard.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "deploy/handsel/observer.hpp"
+
+namespace handsel {
+
+/// One process of the list.
+struct ProcessLine {
+  std::string component;
+  std::string state;        ///< ok, degraded, starting, stopping, silent (heard, then not for longer than the lease), missing (never heard)
+  std::string reason;
+  double rate{};            ///< samples received, all topics [Hz]
+  std::uint64_t deadline_misses{}, rejected{};
+  double memory_mb{}, cpu{}, uptime{};
+  std::uint32_t pid{};
+};
+
+struct SystemStatus {
+  std::vector<ProcessLine> processes;   ///< in the order of kProcesses, then others heard
+  std::vector<std::string> troubles;    ///< one sentence each, naming the process or the cause; empty: all well
+};
+
+/// A component is silent when not heard for this long; health comes at 5 Hz.
+inline constexpr Duration kSilent = std::chrono::milliseconds(600);
+
+SystemStatus make_status(const Snapshot&, TimePoint now);
+nlohmann::json to_json(const SystemStatus&, const Snapshot&, TimePoint now);
+std::string to_text(const SystemStatus&, const Snapshot&, TimePoint now);
+
+}  // namespace handsel

@@ -1,0 +1,97 @@
+#include "deploy/handsel/system.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "common/base/errors.hpp"
+
+namespace handsel {
+namespace {
+
+SystemOptions checked(SystemOptions options) {
+  check_system(options);
+  system_processes(options);
+  if (options.web_port >= 0) setenv("HANDSEL_WEB_PORT", std::to_string(options.web_port).c_str(), 1);
+  return options;
+}
+
+LauncherOptions launcher_options(const SystemOptions& options, const std::filesystem::path& log_directory) {
+  return {.processes = system_processes(options),
+          .log_directory = log_directory,
+          .on_event = [](const std::string& sentence) { std::fprintf(stderr, "handsel: %s\n", sentence.c_str()); }};
+}
+
+std::string join(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> not_ready(const Snapshot& snapshot) {
+  std::vector<std::string> missing;
+  for (const std::string process : kProcesses) {
+    const auto found = snapshot.health.find(process);
+    if (found == snapshot.health.end()) {
+      missing.push_back(process + " (not heard yet)");
+      continue;
+    }
+    const ComponentHealth& health = found->second.sample;
+    const bool enough = health.state == HealthState::ok || (process == "bridge" && health.state == HealthState::degraded);
+    if (!enough) missing.push_back(process + " (" + (health.reason.empty() ? "starting" : health.reason) + ")");
+  }
+  return missing;
+}
+
+System::System(const SystemOptions& options)
+    : options_(checked(options)),
+      lock_(options_.domain),
+      log_directory_(new_run_directory(options_.domain)),
+      session_(options_.domain),
+      launcher_(launcher_options(options_, log_directory_)) {}
+
+void System::require_alive() const {
+  const auto failure = launcher_.failure();
+  if (!failure) return;
+  if (failure->exit_code == 2) throw ConfigError(failure->reason);
+  throw MissingError(failure->reason);
+}
+
+bool System::wait(Duration limit, const std::function<bool()>& done) {
+  bool failed = false, held = false;
+  session_.wait(limit, [&] {
+    failed = launcher_.failure().has_value();
+    held = !failed && done();
+    return failed || held;
+  });
+  if (failed) require_alive();
+  return held;
+}
+
+std::optional<Duration> System::wait_ready(Duration limit) {
+  const TimePoint begin = monotonic_now();
+  if (!wait(limit, [this] { return not_ready(session_.snapshot()).empty(); })) {
+    if (interrupted()) return std::nullopt;
+    throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) +
+                       " s; waiting for " + join(not_ready(session_.snapshot())) + "; logs are in " + log_directory_.string());
+  }
+  return monotonic_now() - begin;
+}
+
+std::string System::web_address() const {
+  const auto bridge = session_.snapshot().health.find("bridge");
+  if (bridge == session_.snapshot().health.end()) return {};
+  std::FILE* file = std::fopen((log_directory_ / "bridge.log").c_str(), "r");
+  if (!file) return {};
+  char line[512];
+  std::string address;
+  while (std::fgets(line, sizeof line, file)) {
+    const std::string text = line;
+    if (const auto at = text.find("http://127.0.0.1:"); at != std::string::npos) address = text.substr(at, text.find_first_of(" \n", at) - at);
+  }
+  std::fclose(file);
+  return address;
+}
+
+}  // namespace handsel

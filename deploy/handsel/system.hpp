@@ -1,0 +1,47 @@
+// A whole running system as one object: the domain's lock, the processes and a seat to watch them from.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deploy/handsel/launcher.hpp"
+#include "deploy/handsel/processes.hpp"
+#include "deploy/handsel/session.hpp"
+
+namespace handsel {
+
+/// Components that are not there or not ready, each with why: "path_planner (not heard yet)". Empty: the system is ready. The bridge
+/// may be degraded: nothing depends on it.
+std::vector<std::string> not_ready(const Snapshot&);
+
+class System {
+ public:
+  /// Checks the input, takes the domain and starts every process. Throws ConfigError / MissingError before any process starts.
+  explicit System(const SystemOptions& options);
+
+  Session& session() { return session_; }
+  Launcher& launcher() { return launcher_; }
+  const SystemOptions& options() const { return options_; }
+  const std::filesystem::path& log_directory() const { return log_directory_; }
+  /// Address of the bridge's page; empty while it has not said so.
+  std::string web_address() const;
+
+  /// Listens until every component is ready; returns the time it took, or nullopt on Ctrl-C. Throws MissingError naming what is missing
+  /// after `limit`, ConfigError / MissingError when a process gave up.
+  std::optional<Duration> wait_ready(Duration limit);
+  /// Throws ConfigError / MissingError when a process gave up.
+  void require_alive() const;
+  /// Listens until `done` holds or `limit` is over, or Ctrl-C; true if it held. Throws as require_alive().
+  bool wait(Duration limit, const std::function<bool()>& done);
+
+ private:
+  SystemOptions options_;
+  DomainLock lock_;
+  std::filesystem::path log_directory_;
+  Session session_;
+  Launcher launcher_;
+};
+
+}  // namespace handsel

@@ -1,0 +1,21 @@
+// Options that `up`, `run` and others share.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "deploy/handsel/system.hpp"
+
+namespace handsel {
+
+inline constexpr Duration kReadyPatience = std::chrono::seconds(15);
+
+/// --domain N (default: $HANDSEL_DOMAIN, else 0).
+void add_domain_option(CLI::App& command, int& domain);
+/// --robot, --scenario, --seed, --domain, --port.
+void add_system_options(CLI::App& command, SystemOptions& options);
+/// Prints the page's address; opens it in a browser when there is a display and not `headless`.
+void announce_page(System& system, bool headless);
+
+}  // namespace handsel
