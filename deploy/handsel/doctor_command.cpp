@@ -30,7 +30,7 @@ enum class Result { good, note, bad };
 struct Finding {
   std::string subject;
   Result result{};
-  std::string text;   ///< one sentence; for bad ones what to do
+  std::string text;  ///< one sentence; for bad ones what to do
 };
 
 Finding check_processes() {
@@ -47,7 +47,8 @@ Finding check_models(const std::string& robot, const std::string& scenario) {
     check_system({.robot = robot, .scenario = scenario});
     const NodeContext context = load_context(robot.empty() ? "jido" : robot, scenario);
     if (!context.robot->hand().empty()) HandModel::load(hand_description(context.robot->hand()));
-    return {"models", Result::good, context.robot->name() + " with " + std::to_string(context.robot->dof()) + " axes, its hand and the objects of " + scenario};
+    return {"models", Result::good,
+            context.robot->name() + " with " + std::to_string(context.robot->dof()) + " axes, its hand and the objects of " + scenario};
   } catch (const std::exception& error) {
     return {"models", Result::bad, error.what()};
   }
@@ -67,7 +68,8 @@ Finding check_port() {
   close(socket_fd);
   const std::string port = std::to_string(settings.port());
   if (is_free) return {"port", Result::good, "port " + port + " of the page is free"};
-  return {"port", Result::note, "port " + port + " of the page is taken; a system that starts now shows no page: choose another with --port"};
+  return {"port", Result::note,
+          "port " + port + " of the page is taken; a system that starts now shows no page: choose another with --port"};
 }
 
 Finding check_limits() {
@@ -101,9 +103,12 @@ Finding check_reachability(int domain) {
     listener.run_until([&] { return heard; }, from_seconds(0.1));
   }
   char text[96];
-  std::snprintf(text, sizeof text, "two participants on domain %d found each other in %.0f ms", domain, 1e3 * to_seconds(monotonic_now() - begin));
+  std::snprintf(text, sizeof text, "two participants on domain %d found each other in %.0f ms", domain,
+                1e3 * to_seconds(monotonic_now() - begin));
   if (heard) return {"DDS", Result::good, text};
-  return {"DDS", Result::bad, "two participants on domain " + std::to_string(domain) + " do not hear each other: look at CYCLONEDDS_URI and the loopback interface"};
+  return {"DDS", Result::bad,
+          "two participants on domain " + std::to_string(domain) +
+              " do not hear each other: look at CYCLONEDDS_URI and the loopback interface"};
 }
 
 void check_system_on(int domain, std::vector<Finding>& findings) {
@@ -115,7 +120,8 @@ void check_system_on(int domain, std::vector<Finding>& findings) {
   }
   const SystemStatus status = make_status(session.snapshot(), session.bus().now());
   for (const std::string& trouble : status.troubles) findings.push_back({"system", Result::note, trouble});
-  if (status.troubles.empty()) findings.push_back({"system", Result::good, "runs on domain " + std::to_string(domain) + ", all processes ok"});
+  if (status.troubles.empty())
+    findings.push_back({"system", Result::good, "runs on domain " + std::to_string(domain) + ", all processes ok"});
   double offset = 0.0;
   for (const auto& [component, seen] : session.snapshot().health) {
     const double here = to_seconds(Duration(session.bus().stamp_now())) - to_seconds(session.bus().now() - seen.arrival);
@@ -123,7 +129,8 @@ void check_system_on(int domain, std::vector<Finding>& findings) {
   }
   char text[96];
   std::snprintf(text, sizeof text, "clocks differ by at most %.1f ms", 1e3 * offset);
-  findings.push_back({"clocks", offset < 0.05 ? Result::good : Result::bad, offset < 0.05 ? text : std::string(text) + "; run chrony or PTP on the hosts"});
+  findings.push_back({"clocks", offset < 0.05 ? Result::good : Result::bad,
+                      offset < 0.05 ? text : std::string(text) + "; run chrony or PTP on the hosts"});
 }
 
 struct DoctorOptions {
@@ -134,7 +141,8 @@ struct DoctorOptions {
 
 int examine(const DoctorOptions& options) {
   catch_interrupts();
-  std::vector<Finding> findings{check_machine(), check_processes(), check_models(options.robot, options.scenario), check_port(), check_limits()};
+  std::vector<Finding> findings{check_machine(), check_processes(), check_models(options.robot, options.scenario), check_port(),
+                                check_limits()};
   findings.push_back(check_reachability(options.domain));
   check_system_on(options.domain, findings);
   bool good = true;

@@ -221,7 +221,8 @@ DomainLock::DomainLock(int domain) {
   if (fd_ < 0) throw MissingError("cannot open " + file.string() + ": " + std::strerror(errno));
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     close(fd_);
-    throw ConfigError("DDS domain " + std::to_string(domain) + " is in use by another system on this machine; choose another with --domain");
+    throw ConfigError("DDS domain " + std::to_string(domain) +
+                      " is in use by another system on this machine; choose another with --domain");
   }
 }
 

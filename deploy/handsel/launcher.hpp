@@ -23,37 +23,37 @@ TimePoint monotonic_now();
 /// A process as it stands.
 struct ProcessStatus {
   std::string name;
-  pid_t pid{-1};      ///< -1: not running
-  int restarts{};     ///< how often it was started again
+  pid_t pid{-1};   ///< -1: not running
+  int restarts{};  ///< how often it was started again
 };
 
 /// Why the system cannot be kept up.
 struct LaunchFailure {
   std::string process;
-  std::string reason;   ///< one sentence
-  int exit_code{3};     ///< 2: bad input, 3: something is missing or it keeps dying
+  std::string reason;  ///< one sentence
+  int exit_code{3};    ///< 2: bad input, 3: something is missing or it keeps dying
 };
 
 struct LauncherOptions {
   std::vector<ProcessSpec> processes;
-  std::filesystem::path log_directory;                     ///< one <name>.log each; made when it is not there
-  std::function<void(const std::string&)> on_event;        ///< one sentence for people; called on the launcher's thread; may be empty
-  Duration stop_patience{from_seconds(1.0)};               ///< between SIGTERM and SIGKILL
+  std::filesystem::path log_directory;               ///< one <name>.log each; made when it is not there
+  std::function<void(const std::string&)> on_event;  ///< one sentence for people; called on the launcher's thread; may be empty
+  Duration stop_patience{from_seconds(1.0)};         ///< between SIGTERM and SIGKILL
 };
 
 /// A process that ends with 2 or 3 (bad input, something missing), or dies five times within 2 s of its start, is a failure and is not
 /// started again; any other death is answered by a restart at once.
 class Launcher {
  public:
-  explicit Launcher(LauncherOptions);   ///< starts everything; throws MissingError when the log directory cannot be made
-  ~Launcher();                          ///< stop()
+  explicit Launcher(LauncherOptions);  ///< starts everything; throws MissingError when the log directory cannot be made
+  ~Launcher();                         ///< stop()
   Launcher(const Launcher&) = delete;
   Launcher& operator=(const Launcher&) = delete;
 
   /// SIGTERM to all, SIGKILL after the patience, all reaped when it returns. Harmless when called again.
   void stop();
   std::vector<ProcessStatus> processes() const;
-  pid_t pid(const std::string& name) const;            ///< -1 if it does not run or is unknown
+  pid_t pid(const std::string& name) const;  ///< -1 if it does not run or is unknown
   std::optional<LaunchFailure> failure() const;
 
  private:
@@ -80,7 +80,7 @@ std::filesystem::path new_run_directory(int domain);
 /// Held while a system runs on a domain of this machine: a lock file, released by the kernel when its holder ends.
 class DomainLock {
  public:
-  explicit DomainLock(int domain);      ///< throws ConfigError when another system of this machine holds the domain
+  explicit DomainLock(int domain);  ///< throws ConfigError when another system of this machine holds the domain
   ~DomainLock();
   DomainLock(const DomainLock&) = delete;
   DomainLock& operator=(const DomainLock&) = delete;

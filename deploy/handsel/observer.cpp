@@ -8,10 +8,14 @@ constexpr std::uint8_t kLastCause = static_cast<std::uint8_t>(Cause::override_sl
 
 const char* state_name(HealthState state) {
   switch (state) {
-    case HealthState::starting: return "starting";
-    case HealthState::ok: return "ok";
-    case HealthState::degraded: return "degraded";
-    case HealthState::stopping: return "stopping";
+    case HealthState::starting:
+      return "starting";
+    case HealthState::ok:
+      return "ok";
+    case HealthState::degraded:
+      return "degraded";
+    case HealthState::stopping:
+      return "stopping";
   }
   return "unknown";
 }
@@ -77,7 +81,8 @@ Observer::Observer(Bus& bus) {
   });
   watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) { keep(snapshot_.advice, advice, at); });
   watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) { keep(snapshot_.attention, state, at); });
-  watch<TrajectoryForecast>(bus, [this, keep](const TrajectoryForecast& forecast, TimePoint at) { keep(snapshot_.forecast, forecast, at); });
+  watch<TrajectoryForecast>(bus,
+                            [this, keep](const TrajectoryForecast& forecast, TimePoint at) { keep(snapshot_.forecast, forecast, at); });
   watch<ActiveTrajectory>(bus, [this](const ActiveTrajectory& active, TimePoint at) {
     snapshot_.active.ever = true;
     snapshot_.active.arrival = at;
@@ -87,7 +92,8 @@ Observer::Observer(Bus& bus) {
   });
   watch<GroundTruth>(bus, [this, keep](const GroundTruth& truth, TimePoint at) {
     const auto& seen = snapshot_.truth;
-    if (!seen.ever || seen.sample.carrier != truth.carrier) note(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
+    if (!seen.ever || seen.sample.carrier != truth.carrier)
+      note(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
     if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
     if (truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, truth.object + " dropped");
     if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");

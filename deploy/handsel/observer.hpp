@@ -31,7 +31,7 @@ struct Snapshot {
   Seen<AttentionAdvice> advice;
   Seen<AttentionState> attention;
   Seen<TrajectoryForecast> forecast;
-  Seen<ActiveTrajectory> active;                        ///< without the trajectory itself
+  Seen<ActiveTrajectory> active;  ///< without the trajectory itself
   Seen<GroundTruth> truth;
 };
 

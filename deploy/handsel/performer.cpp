@@ -26,9 +26,11 @@ std::string describe(const TaskGoal& goal) {
 
 TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id) {
   for (const TaskKind kind : kKinds) {
-    if (task.kind() == name(kind)) return {.id = id, .kind = kind, .object = task.object(), .human = task.human(), .surface = task.surface()};
+    if (task.kind() == name(kind))
+      return {.id = id, .kind = kind, .object = task.object(), .human = task.human(), .surface = task.surface()};
   }
-  throw ConfigError("a task of the scenario has the kind \"" + task.kind() + "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift or go_to");
+  throw ConfigError("a task of the scenario has the kind \"" + task.kind() +
+                    "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift or go_to");
 }
 
 bool is_over(TaskState state) {
@@ -57,9 +59,14 @@ void Performer::tick(TimePoint now) {
       begin_ = now;
       begin_task(now);
       break;
-    case Phase::running: follow(now); break;
-    case Phase::verifying: verify(now); break;
-    case Phase::finished: return;
+    case Phase::running:
+      follow(now);
+      break;
+    case Phase::verifying:
+      verify(now);
+      break;
+    case Phase::finished:
+      return;
   }
   if (phase_ != Phase::finished && now - begin_ > timeout_) {
     outcomes_.back().reason = "not done after " + std::to_string(static_cast<int>(to_seconds(timeout_))) + " s";
@@ -124,11 +131,11 @@ void Performer::verify(TimePoint now) {
   }
   if (supervisor_says && now - verify_begin_ < kOraclePatience) return;
   if (supervisor_says) {
-    outcome.reason = !truth.ever               ? "no word from the simulator's oracle"
-                     : truth.sample.dropped    ? goal.object + " was dropped"
-                     : truth.sample.object != goal.object
-                         ? "the simulator's oracle watches " + truth.sample.object + ", not " + goal.object
-                         : "the simulator's oracle saw no handover: " + goal.object + " is with " + (truth.sample.carrier.empty() ? "nobody" : truth.sample.carrier);
+    outcome.reason = !truth.ever                          ? "no word from the simulator's oracle"
+                     : truth.sample.dropped               ? goal.object + " was dropped"
+                     : truth.sample.object != goal.object ? "the simulator's oracle watches " + truth.sample.object + ", not " + goal.object
+                                                          : "the simulator's oracle saw no handover: " + goal.object + " is with " +
+                                                                (truth.sample.carrier.empty() ? "nobody" : truth.sample.carrier);
   }
   conclude(now);
 }

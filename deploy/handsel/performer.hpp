@@ -23,9 +23,9 @@ struct StepOutcome {
 };
 
 struct TaskOutcome {
-  std::string task;             ///< "give mug to anna"
-  bool success{};               ///< give: the oracle's word; other kinds: the supervisor's
-  std::string state, reason;    ///< as the supervisor said last; reason also when the oracle disagrees
+  std::string task;              ///< "give mug to anna"
+  bool success{};                ///< give: the oracle's word; other kinds: the supervisor's
+  std::string state, reason;     ///< as the supervisor said last; reason also when the oracle disagrees
   double started{}, duration{};  ///< [s]
   std::vector<StepOutcome> steps;
   Refusals refusals;
@@ -40,7 +40,7 @@ class Performer {
   bool succeeded() const;
   bool started() const { return phase_ != Phase::waiting; }
   TimePoint begin() const { return begin_; }
-  double duration() const { return to_seconds(end_ - begin_); }     ///< of the performance [s], valid once finished
+  double duration() const { return to_seconds(end_ - begin_); }  ///< of the performance [s], valid once finished
   const std::vector<TaskOutcome>& outcomes() const { return outcomes_; }
   /// Ends it now: the running task counts as failed for this reason.
   void abort(const std::string& reason);

@@ -28,8 +28,11 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   std::vector<ProcessSpec> specs;
   for (const char* process : kProcesses) {
     const std::filesystem::path binary = folder / ("handsel_" + std::string(process));
-    if (!std::filesystem::exists(binary)) throw MissingError("the process " + binary.string() + " is not there; build it with ./run --build-only");
-    ProcessSpec spec{process, binary, {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
+    if (!std::filesystem::exists(binary))
+      throw MissingError("the process " + binary.string() + " is not there; build it with ./run --build-only");
+    ProcessSpec spec{process,
+                     binary,
+                     {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
     if (!options.robot.empty()) spec.arguments.insert(spec.arguments.end(), {"--robot", options.robot});
     specs.push_back(std::move(spec));
   }

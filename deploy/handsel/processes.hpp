@@ -10,23 +10,24 @@
 namespace handsel {
 
 /// Every process of the running system: the boxes of the architecture and the simulator. The only list of them.
-inline constexpr std::array kProcesses = {"sim",          "spark",           "costmap",      "collision_checker",    "trajectory_controller", "attention",
-                                          "path_planner", "grasp_planner",   "trajectory_planner", "manipulation_planner", "supervisor", "bridge"};
+inline constexpr std::array kProcesses = {"sim",        "spark",        "costmap",       "collision_checker",  "trajectory_controller",
+                                          "attention",  "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner",
+                                          "supervisor", "bridge"};
 
 /// A process to start and keep alive.
 struct ProcessSpec {
-  std::string name;                     ///< the component, as ComponentHealth names it
+  std::string name;  ///< the component, as ComponentHealth names it
   std::filesystem::path binary;
-  std::vector<std::string> arguments;   ///< without argv[0]
+  std::vector<std::string> arguments;  ///< without argv[0]
 };
 
 /// What the whole system is started with.
 struct SystemOptions {
-  int domain{0};                        ///< DDS domain, 0..232
-  std::string robot;                    ///< empty: the scenario's
+  int domain{0};      ///< DDS domain, 0..232
+  std::string robot;  ///< empty: the scenario's
   std::string scenario{"give_mug"};
   std::uint64_t seed{1};
-  int web_port{-1};                     ///< of the bridge; 0: any free one; -1: as its settings say
+  int web_port{-1};  ///< of the bridge; 0: any free one; -1: as its settings say
 };
 
 /// The default domain: $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number in 0..232.

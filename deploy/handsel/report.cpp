@@ -20,9 +20,11 @@ Json refusals(const Refusals& list) {
 
 Json task_json(const TaskOutcome& outcome) {
   Json steps = Json::array();
-  for (const StepOutcome& step : outcome.steps) steps.push_back({{"step", step.step}, {"started_s", step.started}, {"duration_s", step.duration}});
-  return {{"task", outcome.task},         {"success", outcome.success},     {"state", outcome.state},
-          {"reason", outcome.reason},     {"started_s", outcome.started},   {"duration_s", outcome.duration},
+  for (const StepOutcome& step : outcome.steps)
+    steps.push_back({{"step", step.step}, {"started_s", step.started}, {"duration_s", step.duration}});
+  return {{"task", outcome.task},         {"success", outcome.success},
+          {"state", outcome.state},       {"reason", outcome.reason},
+          {"started_s", outcome.started}, {"duration_s", outcome.duration},
           {"steps", std::move(steps)},    {"refusals", refusals(outcome.refusals)}};
 }
 
@@ -59,7 +61,8 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
   }
   for (const auto& [component, now] : counters(seen)) {
     const auto before = inputs.before.find(component);
-    const Counters base = before == inputs.before.end() || before->second.deadline_misses > now.deadline_misses ? Counters{} : before->second;
+    const Counters base =
+        before == inputs.before.end() || before->second.deadline_misses > now.deadline_misses ? Counters{} : before->second;
     misses[component] = now.deadline_misses - base.deadline_misses;
     rejected[component] = now.rejected - std::min(base.rejected, now.rejected);
   }
@@ -124,15 +127,17 @@ std::string summary(const nlohmann::json& report) {
     }
   }
   const Json& oracle = report["oracle"];
-  text += format("oracle  lifted %.2f m, person's hand on it %.2f s before release, person alone %.1f s\n", oracle["max_lifted_m"].get<double>(),
-                 oracle["human_contact_before_release_s"].get<double>(), oracle["human_alone_s"].get<double>());
+  text += format("oracle  lifted %.2f m, person's hand on it %.2f s before release, person alone %.1f s\n",
+                 oracle["max_lifted_m"].get<double>(), oracle["human_contact_before_release_s"].get<double>(),
+                 oracle["human_alone_s"].get<double>());
   const Json& share = report["limit_share"];
-  text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed", 100 * share["v"].get<double>(), 100 * share["a"].get<double>(),
-                 100 * share["j"].get<double>());
+  text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed", 100 * share["v"].get<double>(),
+                 100 * share["a"].get<double>(), 100 * share["j"].get<double>());
   text += "; " + std::to_string(oracle["limit_violations"].get<std::uint64_t>()) + " violations\n";
-  text += report["least_separation_m"].is_null() ? std::string("nearest nobody came near\n")
-                                                 : format("nearest %.2f m to the person", report["least_separation_m"].get<double>()) + "; " +
-                                                       std::to_string(report["ssm_violations"].get<std::uint64_t>()) + " speed-and-separation violations\n";
+  text += report["least_separation_m"].is_null()
+              ? std::string("nearest nobody came near\n")
+              : format("nearest %.2f m to the person", report["least_separation_m"].get<double>()) + "; " +
+                    std::to_string(report["ssm_violations"].get<std::uint64_t>()) + " speed-and-separation violations\n";
   if (!report["set_point_rate_hz"].is_null()) {
     text += format("timing  %.0f set-points/s, longest gap %.1f ms, %.3f %% of cycles late", report["set_point_rate_hz"].get<double>(),
                    1e3 * report["set_point_gap_max_s"].get<double>(), 100 * report["late_share"].get<double>());
@@ -142,7 +147,8 @@ std::string summary(const nlohmann::json& report) {
   for (const auto& [component, count] : report["deadline_misses"].items()) misses += count.get<std::uint64_t>();
   for (const auto& [component, count] : report["rejected"].items()) rejected += count.get<std::uint64_t>();
   text += "health  " + std::to_string(misses) + " deadline misses, " + std::to_string(rejected) + " rejected messages";
-  for (const auto& [process, count] : report["restarts"].items()) text += ", " + process + " restarted " + std::to_string(count.get<int>()) + " times";
+  for (const auto& [process, count] : report["restarts"].items())
+    text += ", " + process + " restarted " + std::to_string(count.get<int>()) + " times";
   return text + "\n";
 }
 

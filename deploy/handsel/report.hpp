@@ -19,10 +19,10 @@ std::map<std::string, Counters> counters(const Snapshot&);
 struct ReportInputs {
   std::string scenario, robot;
   std::uint64_t seed{};
-  double ready{};                            ///< from start to ready [s]
-  std::map<std::string, Counters> before;    ///< as the performance began
-  GroundTruth truth_before;                  ///< as the performance began
-  std::map<std::string, int> restarts;       ///< by process, those above 0
+  double ready{};                          ///< from start to ready [s]
+  std::map<std::string, Counters> before;  ///< as the performance began
+  GroundTruth truth_before;                ///< as the performance began
+  std::map<std::string, int> restarts;     ///< by process, those above 0
 };
 
 /// One object with the fields of `handsel run --report`.

@@ -68,8 +68,8 @@ int run(RunOptions& options) {
   }
 
   System system(options.system);
-  std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n", kProcesses.size(), options.system.domain,
-               shown.c_str(), static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());
+  std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n", kProcesses.size(),
+               options.system.domain, shown.c_str(), static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());
   Session& session = system.session();
   Performer performer(session.bus(), session.observer(), scenario, options.timeout, [&] { return not_ready(session.snapshot()).empty(); });
   const auto ready = system.wait_ready(kReadyPatience);
@@ -77,7 +77,8 @@ int run(RunOptions& options) {
   std::fprintf(stderr, "ready after %.1f s\n", to_seconds(*ready));
   announce_page(system, options.headless);
 
-  ReportInputs inputs{.scenario = shown, .robot = options.system.robot.empty() ? scenario.robot() : options.system.robot, .seed = options.system.seed};
+  ReportInputs inputs{
+      .scenario = shown, .robot = options.system.robot.empty() ? scenario.robot() : options.system.robot, .seed = options.system.seed};
   inputs.ready = to_seconds(*ready);
   inputs.before = counters(session.snapshot());
   inputs.truth_before = session.snapshot().truth.sample;

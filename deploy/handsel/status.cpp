@@ -12,10 +12,14 @@ namespace {
 
 const char* state_name(HealthState state) {
   switch (state) {
-    case HealthState::starting: return "starting";
-    case HealthState::ok: return "ok";
-    case HealthState::degraded: return "degraded";
-    case HealthState::stopping: return "stopping";
+    case HealthState::starting:
+      return "starting";
+    case HealthState::ok:
+      return "ok";
+    case HealthState::degraded:
+      return "degraded";
+    case HealthState::stopping:
+      return "stopping";
   }
   return "unknown";
 }
@@ -52,7 +56,8 @@ SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
   SystemStatus status;
   for (const char* process : kProcesses) status.processes.push_back(line_of(process, snapshot, now));
   for (const auto& [component, seen] : snapshot.health) {
-    if (std::find(kProcesses.begin(), kProcesses.end(), component) == kProcesses.end()) status.processes.push_back(line_of(component, snapshot, now));
+    if (std::find(kProcesses.begin(), kProcesses.end(), component) == kProcesses.end())
+      status.processes.push_back(line_of(component, snapshot, now));
   }
   for (const ProcessLine& line : status.processes) {
     if (line.state == "ok") continue;
@@ -82,12 +87,14 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
                          {"pid", line.pid}});
   }
   for (const BehaviourState& behaviour : snapshot.attention.sample.behaviours) {
-    clocks[name(behaviour.behaviour)] = {{"period_s", behaviour.period}, {"released", behaviour.released}, {"speed_factor", behaviour.speed_factor}};
+    clocks[name(behaviour.behaviour)] = {
+        {"period_s", behaviour.period}, {"released", behaviour.released}, {"speed_factor", behaviour.speed_factor}};
   }
   nlohmann::json result{{"processes", std::move(processes)}, {"troubles", status.troubles}, {"clocks", std::move(clocks)}};
   if (snapshot.task.ever) {
     const TaskStatus& task = snapshot.task.sample;
-    result["task"] = {{"id", task.id}, {"kind", name(task.kind)}, {"state", name(task.state)}, {"plan", task.plan}, {"step", task.step}, {"reason", task.reason}};
+    result["task"] = {{"id", task.id},     {"kind", name(task.kind)}, {"state", name(task.state)},
+                      {"plan", task.plan}, {"step", task.step},       {"reason", task.reason}};
   }
   if (snapshot.action.ever) result["phase"] = snapshot.action.sample.phase;
   if (snapshot.execution.ever) {
@@ -104,7 +111,8 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
 }
 
 std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePoint) {
-  std::string text = format("%-22s %-9s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz", "misses", "rejected", "memory", "cpu", "pid");
+  std::string text =
+      format("%-22s %-9s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz", "misses", "rejected", "memory", "cpu", "pid");
   for (const ProcessLine& line : status.processes) {
     text += format("%-22s %-9s %8.0f %7llu %8llu %5.0f MB %4.0f %% %7u", line.component.c_str(), line.state.c_str(), line.rate,
                    static_cast<unsigned long long>(line.deadline_misses), static_cast<unsigned long long>(line.rejected), line.memory_mb,
@@ -126,9 +134,11 @@ std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePo
     text += format("control     %llu cycles, %llu late\n", static_cast<unsigned long long>(execution.cycles),
                    static_cast<unsigned long long>(execution.late_cycles));
   }
-  if (snapshot.advice.ever) text += format("advice      speed factor %.2f %s\n", snapshot.advice.sample.speed_factor, snapshot.advice.sample.reason.c_str());
+  if (snapshot.advice.ever)
+    text += format("advice      speed factor %.2f %s\n", snapshot.advice.sample.speed_factor, snapshot.advice.sample.reason.c_str());
   for (const BehaviourState& behaviour : snapshot.attention.sample.behaviours) {
-    text += format("clock       %-8s every %.3f s%s\n", name(behaviour.behaviour), behaviour.period, behaviour.released ? ", released" : "");
+    text +=
+        format("clock       %-8s every %.3f s%s\n", name(behaviour.behaviour), behaviour.period, behaviour.released ? ", released" : "");
   }
   for (const std::string& trouble : status.troubles) text += "! " + trouble + "\n";
   return text;

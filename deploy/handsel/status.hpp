@@ -13,17 +13,17 @@ namespace handsel {
 /// One process of the list.
 struct ProcessLine {
   std::string component;
-  std::string state;        ///< ok, degraded, starting, stopping, silent (heard, then not for longer than the lease), missing (never heard)
+  std::string state;  ///< ok, degraded, starting, stopping, silent (heard, then not for longer than the lease), missing (never heard)
   std::string reason;
-  double rate{};            ///< samples received, all topics [Hz]
+  double rate{};  ///< samples received, all topics [Hz]
   std::uint64_t deadline_misses{}, rejected{};
   double memory_mb{}, cpu{}, uptime{};
   std::uint32_t pid{};
 };
 
 struct SystemStatus {
-  std::vector<ProcessLine> processes;   ///< in the order of kProcesses, then others heard
-  std::vector<std::string> troubles;    ///< one sentence each, naming the process or the cause; empty: all well
+  std::vector<ProcessLine> processes;  ///< in the order of kProcesses, then others heard
+  std::vector<std::string> troubles;   ///< one sentence each, naming the process or the cause; empty: all well
 };
 
 /// A component is silent when not heard for this long; health comes at 5 Hz.

@@ -28,8 +28,8 @@ std::optional<double> parse_number(const std::string& word) {
 
 struct ConditionRule {
   ConditionKind kind;
-  bool subject;   ///< one more word follows
-  bool number;    ///< one number follows
+  bool subject;  ///< one more word follows
+  bool number;   ///< one number follows
 };
 
 const std::map<std::string, ConditionRule>& condition_rules() {
@@ -114,7 +114,8 @@ class LineParser {
     } else if (verb == "stop") {
       step_.kind = StepKind::stop;
     } else {
-      fail("\"" + verb + "\" is no step; a line begins with start, wait, task, pause, resume, cancel, acknowledge, speed, kill, silence, wake, sim, "
+      fail("\"" + verb +
+           "\" is no step; a line begins with start, wait, task, pause, resume, cancel, acknowledge, speed, kill, silence, wake, sim, "
            "expect, never, listen or stop");
     }
     if (position_ < words_.size()) fail("\"" + word() + "\" is one word too many");

@@ -27,19 +27,24 @@ enum class StepKind {
 
 /// What can be waited for, expected or excluded.
 enum class ConditionKind {
-  ready,              ///< every component is ok
-  mode,               ///< mode M: that mode or, but for normal, a more severe one
-  cause,              ///< cause C: the controller names it
-  phase,              ///< phase P of the running action
-  carrier,            ///< carrier robot|human|surface|both
-  task,               ///< task done|failed|cancelled|paused|running|refused
-  handover,           ///< the simulator's oracle says so
-  moving, rest,       ///< the arm by the simulator's word
-  back,               ///< back PROCESS: heard ok again (after a kill: another incarnation)
-  degraded,           ///< degraded PROCESS
-  status_names,       ///< status names NAME: `handsel status` has a trouble that names it
-  speed_below,        ///< speed below F: factor advised or in force
-  no_limit_violations, no_ssm_violations, no_collisions, one_commander, not_dropped,
+  ready,     ///< every component is ok
+  mode,      ///< mode M: that mode or, but for normal, a more severe one
+  cause,     ///< cause C: the controller names it
+  phase,     ///< phase P of the running action
+  carrier,   ///< carrier robot|human|surface|both
+  task,      ///< task done|failed|cancelled|paused|running|refused
+  handover,  ///< the simulator's oracle says so
+  moving,
+  rest,          ///< the arm by the simulator's word
+  back,          ///< back PROCESS: heard ok again (after a kill: another incarnation)
+  degraded,      ///< degraded PROCESS
+  status_names,  ///< status names NAME: `handsel status` has a trouble that names it
+  speed_below,   ///< speed below F: factor advised or in force
+  no_limit_violations,
+  no_ssm_violations,
+  no_collisions,
+  one_commander,
+  not_dropped,
 };
 
 struct Condition {
@@ -50,12 +55,12 @@ struct Condition {
 
 struct StoryStep {
   int line{};
-  std::string text;                 ///< as written
-  std::optional<Duration> at;       ///< after the last task line
+  std::string text;            ///< as written
+  std::optional<Duration> at;  ///< after the last task line
   StepKind kind{};
-  std::vector<std::string> words;   ///< arguments
+  std::vector<std::string> words;  ///< arguments
   std::optional<Condition> condition;
-  Duration limit{};                 ///< of wait, expect, never, pause, silence (0: until wake)
+  Duration limit{};  ///< of wait, expect, never, pause, silence (0: until wake)
 };
 
 struct Story {
@@ -65,7 +70,7 @@ struct Story {
 
 /// Throws ConfigError "file:line: …" naming the word and what would be right.
 Story parse_story(const std::string& text, const std::string& name);
-Story read_story(const std::filesystem::path& file);   ///< also throws MissingError
+Story read_story(const std::filesystem::path& file);  ///< also throws MissingError
 /// "1.2s", "350ms"; nullopt if it is neither.
 std::optional<Duration> parse_duration(const std::string& word);
 }  // namespace handsel

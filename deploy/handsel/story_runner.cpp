@@ -79,10 +79,18 @@ void StoryRunner::perform(std::size_t index) {
     if (system_) system_->session().observer().note(origin_, "> " + step.text);
   }
   switch (step.kind) {
-    case StepKind::start: start(step); break;
-    case StepKind::task: send_task(step); break;
-    case StepKind::control: send_control(step); break;
-    case StepKind::sim: send_sim(step); break;
+    case StepKind::start:
+      start(step);
+      break;
+    case StepKind::task:
+      send_task(step);
+      break;
+    case StepKind::control:
+      send_control(step);
+      break;
+    case StepKind::sim:
+      send_sim(step);
+      break;
     case StepKind::kill:
       for (std::size_t i = 1; i < step.words.size(); ++i) {
         const auto health = system_->session().snapshot().health.find(step.words[i]);
@@ -94,12 +102,20 @@ void StoryRunner::perform(std::size_t index) {
       signal_process(step.words[0], SIGSTOP);
       if (step.limit > Duration::zero()) to_wake_.emplace(origin_ + step.limit, step.words[0]);
       break;
-    case StepKind::wake: signal_process(step.words[0], SIGCONT); break;
+    case StepKind::wake:
+      signal_process(step.words[0], SIGCONT);
+      break;
     case StepKind::wait:
-    case StepKind::expect: return await(step);
-    case StepKind::never: return refute(step);
-    case StepKind::listen: listen_until(now() + step.limit); break;
-    case StepKind::stop: stop(); break;
+    case StepKind::expect:
+      return await(step);
+    case StepKind::never:
+      return refute(step);
+    case StepKind::listen:
+      listen_until(now() + step.limit);
+      break;
+    case StepKind::stop:
+      stop();
+      break;
   }
   std::fprintf(stderr, "%8.3f s  %s\n", to_seconds(now() - story_begin_), step.text.c_str());
 }
@@ -149,7 +165,8 @@ void StoryRunner::send_control(const StoryStep& step) {
 }
 
 void StoryRunner::send_sim(const StoryStep& step) {
-  const auto action = std::find_if(std::begin(kSimActions), std::end(kSimActions), [&](const auto& entry) { return step.words[0] == entry.first; });
+  const auto action =
+      std::find_if(std::begin(kSimActions), std::end(kSimActions), [&](const auto& entry) { return step.words[0] == entry.first; });
   if (action == std::end(kSimActions)) throw ConfigError(where(story_, step) + "\"" + step.words[0] + "\" is no action of the simulator");
   SimControl control{.action = action->second};
   for (std::size_t i = 1; i < step.words.size(); ++i) {
@@ -187,7 +204,8 @@ void StoryRunner::await(const StoryStep& step) {
     if (!watch->held) throw Unfulfilled{"it did not hold within " + seconds(step.limit)};
     if (watch->first > deadline) throw Unfulfilled{"it took " + seconds(watch->first - origin_) + " instead of " + seconds(step.limit)};
   }
-  std::fprintf(stderr, "%8.3f s  %s (after %s)\n", to_seconds(now() - story_begin_), step.text.c_str(), seconds(watch->first - origin_).c_str());
+  std::fprintf(stderr, "%8.3f s  %s (after %s)\n", to_seconds(now() - story_begin_), step.text.c_str(),
+               seconds(watch->first - origin_).c_str());
 }
 
 void StoryRunner::refute(const StoryStep& step) {
@@ -240,7 +258,8 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
   const GroundTruth& truth = snapshot.truth.sample;
   const ExecutionStatus& execution = snapshot.execution.sample;
   switch (condition.kind) {
-    case ConditionKind::ready: return not_ready(snapshot).empty();
+    case ConditionKind::ready:
+      return not_ready(snapshot).empty();
     case ConditionKind::mode:
       if (!fresh(snapshot.execution)) return false;
       if (subject == name(Mode::normal)) return execution.mode == Mode::normal;
@@ -248,13 +267,20 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
         if (subject == name(mode)) return execution.mode >= mode;
       }
       throw ConfigError("\"" + subject + "\" is no mode; there are normal, slow, hold, stop and fault");
-    case ConditionKind::cause: return fresh(snapshot.execution) && (", " + cause_names(execution.causes) + ", ").find(", " + subject + ", ") != std::string::npos;
-    case ConditionKind::phase: return fresh(snapshot.action) && snapshot.action.sample.phase == subject;
-    case ConditionKind::carrier: return fresh(snapshot.truth) && truth.carrier == subject;
-    case ConditionKind::task: return task_is(subject, snapshot);
-    case ConditionKind::handover: return snapshot.truth.ever && truth.handover_done;
-    case ConditionKind::moving: return fresh(snapshot.truth) && truth.robot_moving;
-    case ConditionKind::rest: return fresh(snapshot.truth) && !truth.robot_moving;
+    case ConditionKind::cause:
+      return fresh(snapshot.execution) && (", " + cause_names(execution.causes) + ", ").find(", " + subject + ", ") != std::string::npos;
+    case ConditionKind::phase:
+      return fresh(snapshot.action) && snapshot.action.sample.phase == subject;
+    case ConditionKind::carrier:
+      return fresh(snapshot.truth) && truth.carrier == subject;
+    case ConditionKind::task:
+      return task_is(subject, snapshot);
+    case ConditionKind::handover:
+      return snapshot.truth.ever && truth.handover_done;
+    case ConditionKind::moving:
+      return fresh(snapshot.truth) && truth.robot_moving;
+    case ConditionKind::rest:
+      return fresh(snapshot.truth) && !truth.robot_moving;
     case ConditionKind::back: {
       const auto health = snapshot.health.find(subject);
       if (health == snapshot.health.end() || !fresh(health->second) || health->second.sample.state != HealthState::ok) return false;
@@ -267,14 +293,21 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
     }
     case ConditionKind::status_names: {
       const SystemStatus status = make_status(snapshot, at);
-      return std::any_of(status.troubles.begin(), status.troubles.end(), [&](const std::string& t) { return t.find(subject) != std::string::npos; });
+      return std::any_of(status.troubles.begin(), status.troubles.end(),
+                         [&](const std::string& t) { return t.find(subject) != std::string::npos; });
     }
-    case ConditionKind::speed_below: return fresh(snapshot.active) && std::abs(snapshot.active.sample.speed_factor) < condition.value;
-    case ConditionKind::no_limit_violations: return snapshot.truth.ever && truth.limit_violations == 0;
-    case ConditionKind::no_ssm_violations: return snapshot.truth.ever && truth.ssm_violations == 0;
-    case ConditionKind::no_collisions: return snapshot.truth.ever && truth.self_or_scene_collisions == 0;
-    case ConditionKind::one_commander: return snapshot.truth.ever && truth.commanders == 1;
-    case ConditionKind::not_dropped: return snapshot.truth.ever && !truth.dropped;
+    case ConditionKind::speed_below:
+      return fresh(snapshot.active) && std::abs(snapshot.active.sample.speed_factor) < condition.value;
+    case ConditionKind::no_limit_violations:
+      return snapshot.truth.ever && truth.limit_violations == 0;
+    case ConditionKind::no_ssm_violations:
+      return snapshot.truth.ever && truth.ssm_violations == 0;
+    case ConditionKind::no_collisions:
+      return snapshot.truth.ever && truth.self_or_scene_collisions == 0;
+    case ConditionKind::one_commander:
+      return snapshot.truth.ever && truth.commanders == 1;
+    case ConditionKind::not_dropped:
+      return snapshot.truth.ever && !truth.dropped;
   }
   return false;
 }
@@ -294,7 +327,8 @@ void StoryRunner::listen_until(TimePoint until) {
 }
 
 void StoryRunner::print_timeline() const {
-  std::fprintf(stderr, "timeline of %s (seed %llu, domain %d):\n", story_.name.c_str(), static_cast<unsigned long long>(seed_), options_.domain);
+  std::fprintf(stderr, "timeline of %s (seed %llu, domain %d):\n", story_.name.c_str(), static_cast<unsigned long long>(seed_),
+               options_.domain);
   if (!system_) return;
   for (const TimelineEvent& event : system_->session().observer().timeline()) {
     std::fprintf(stderr, "%8.3f s  %s\n", to_seconds(event.at - story_begin_), event.text.c_str());

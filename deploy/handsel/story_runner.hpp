@@ -13,7 +13,7 @@ namespace handsel {
 
 struct StoryOptions {
   int domain{0};
-  std::uint64_t seed{0};   ///< 0: as the story says
+  std::uint64_t seed{0};  ///< 0: as the story says
 };
 
 class StoryRunner {
@@ -33,7 +33,7 @@ class StoryRunner {
     TimePoint first{};
   };
 
-  void perform(std::size_t index);           ///< throws Unfulfilled
+  void perform(std::size_t index);  ///< throws Unfulfilled
   void start(const StoryStep& step);
   void send_task(const StoryStep& step);
   void send_control(const StoryStep& step);
@@ -59,8 +59,8 @@ class StoryRunner {
   std::vector<Watch> watches_;
   TimePoint origin_{}, task_time_{}, story_begin_{};
   std::uint64_t task_id_{0};
-  std::map<std::string, std::uint64_t> killed_;   ///< incarnation a killed process had
-  std::multimap<TimePoint, std::string> to_wake_; ///< silenced processes by when they go on
+  std::map<std::string, std::uint64_t> killed_;    ///< incarnation a killed process had
+  std::multimap<TimePoint, std::string> to_wake_;  ///< silenced processes by when they go on
 };
 
 }  // namespace handsel

@@ -16,9 +16,9 @@ SystemOptions checked(SystemOptions options) {
 }
 
 LauncherOptions launcher_options(const SystemOptions& options, const std::filesystem::path& log_directory) {
-  return {.processes = system_processes(options),
-          .log_directory = log_directory,
-          .on_event = [](const std::string& sentence) { std::fprintf(stderr, "handsel: %s\n", sentence.c_str()); }};
+  return {.processes = system_processes(options), .log_directory = log_directory, .on_event = [](const std::string& sentence) {
+            std::fprintf(stderr, "handsel: %s\n", sentence.c_str());
+          }};
 }
 
 std::string join(const std::vector<std::string>& items) {
@@ -73,8 +73,8 @@ std::optional<Duration> System::wait_ready(Duration limit) {
   const TimePoint begin = monotonic_now();
   if (!wait(limit, [this] { return not_ready(session_.snapshot()).empty(); })) {
     if (interrupted()) return std::nullopt;
-    throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) +
-                       " s; waiting for " + join(not_ready(session_.snapshot())) + "; logs are in " + log_directory_.string());
+    throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
+                       join(not_ready(session_.snapshot())) + "; logs are in " + log_directory_.string());
   }
   return monotonic_now() - begin;
 }
@@ -88,7 +88,8 @@ std::string System::web_address() const {
   std::string address;
   while (std::fgets(line, sizeof line, file)) {
     const std::string text = line;
-    if (const auto at = text.find("http://127.0.0.1:"); at != std::string::npos) address = text.substr(at, text.find_first_of(" \n", at) - at);
+    if (const auto at = text.find("http://127.0.0.1:"); at != std::string::npos)
+      address = text.substr(at, text.find_first_of(" \n", at) - at);
   }
   std::fclose(file);
   return address;

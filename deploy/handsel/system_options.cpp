@@ -20,7 +20,8 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
   command.add_option("--robot", options.robot, "robot description: name or file (default: the scenario's)");
   command.add_option("--scenario", options.scenario, "scenario: name or file")->capture_default_str();
   command.add_option("--seed", options.seed, "of every random choice")->capture_default_str();
-  command.add_option("--port", options.web_port, "of the page; 0: any free one (default: as in the bridge's settings)")->check(CLI::Range(0, 65535));
+  command.add_option("--port", options.web_port, "of the page; 0: any free one (default: as in the bridge's settings)")
+      ->check(CLI::Range(0, 65535));
 }
 
 void announce_page(System& system, bool headless) {

@@ -29,14 +29,16 @@ int perform(const TaskOptions& options) {
   TaskGoal goal = options.goal;
   goal.id = session.new_task_id();
   session.observer().on_event([](const TimelineEvent& event) { std::fprintf(stderr, "%s\n", event.text.c_str()); });
-  if (!session.send(goal)) throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
+  if (!session.send(goal))
+    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
   const auto status = [&]() -> const TaskStatus* {
     const auto found = session.snapshot().tasks.find(goal.id);
     return found == session.snapshot().tasks.end() ? nullptr : &found->second;
   };
   const auto over = [&] { return status() && is_over(status()->state); };
   if (!session.wait(kAnswerPatience, [&] { return status() != nullptr; }) && !interrupted()) {
-    throw MissingError("the supervisor did not answer the task within " + std::to_string(static_cast<int>(to_seconds(kAnswerPatience))) + " s");
+    throw MissingError("the supervisor did not answer the task within " + std::to_string(static_cast<int>(to_seconds(kAnswerPatience))) +
+                       " s");
   }
   if (!session.wait(std::chrono::hours(24), over) && interrupted()) {
     std::fprintf(stderr, "cancelling %s\n", describe(goal).c_str());
@@ -68,9 +70,11 @@ int tell(const TaskOptions& options) {
     std::printf("no task is running\n");
     return 1;
   }
-  if (!session.send(goal)) throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
+  if (!session.send(goal))
+    throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
   const auto answered = [&] {
-    if (const auto own = session.snapshot().tasks.find(goal.id); own != session.snapshot().tasks.end() && is_over(own->second.state)) return true;
+    if (const auto own = session.snapshot().tasks.find(goal.id); own != session.snapshot().tasks.end() && is_over(own->second.state))
+      return true;
     const TaskState state = session.snapshot().task.sample.state;
     return (goal.kind == TaskKind::pause && state == TaskState::paused) || (goal.kind == TaskKind::cancel && is_over(state)) ||
            (goal.kind == TaskKind::resume && (state == TaskState::running || state == TaskState::accepted));
@@ -88,7 +92,8 @@ int tell(const TaskOptions& options) {
   return 0;
 }
 
-std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* word, const char* help, TaskKind kind, int (*action)(const TaskOptions&)) {
+std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* word, const char* help, TaskKind kind,
+                                 int (*action)(const TaskOptions&)) {
   auto options = std::make_shared<TaskOptions>();
   options->goal.kind = kind;
   CLI::App* command = parent.add_subcommand(word, help);
@@ -138,7 +143,9 @@ void add_task_commands(CLI::App& app, int& exit_code) {
 
   auto speed = add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, tell);
   CLI::App* command = app.get_subcommand("speed");
-  command->add_option_function<double>("percent", [speed](double percent) { speed->goal.value = percent / 100.0; }, "[%]")
+  command
+      ->add_option_function<double>(
+          "percent", [speed](double percent) { speed->goal.value = percent / 100.0; }, "[%]")
       ->required()
       ->check(CLI::Range(0.0, 100.0));
 }

@@ -31,13 +31,19 @@ int list(const TopicOptions& options) {
   if (!json) std::printf("%-32s %-20s %-9s %6s %9s  %-24s %s\n", "topic", "type", "profile", "Hz", "deadline", "writers", "readers");
   for (const TopicRow& row : topics()) {
     if (json) {
-      std::printf("%s\n", nlohmann::json{{"topic", row.topic},   {"type", row.type},         {"profile", name(row.profile)}, {"rate_hz", row.rate},
-                                         {"deadline_s", row.deadline}, {"largest", row.largest}, {"writers", row.writers},       {"readers", row.readers}}
+      std::printf("%s\n", nlohmann::json{{"topic", row.topic},
+                                         {"type", row.type},
+                                         {"profile", name(row.profile)},
+                                         {"rate_hz", row.rate},
+                                         {"deadline_s", row.deadline},
+                                         {"largest", row.largest},
+                                         {"writers", row.writers},
+                                         {"readers", row.readers}}
                               .dump()
                               .c_str());
     } else {
-      std::printf("%-32s %-20s %-9s %6.0f %7.0f ms  %-24.24s %s\n", row.topic, row.type, name(row.profile), row.rate, 1e3 * row.deadline, row.writers,
-                  row.readers);
+      std::printf("%-32s %-20s %-9s %6.0f %7.0f ms  %-24.24s %s\n", row.topic, row.type, name(row.profile), row.rate, 1e3 * row.deadline,
+                  row.writers, row.readers);
     }
   }
   return 0;
@@ -49,15 +55,14 @@ int echo(const TopicOptions& options) {
   Session session(options.domain);
   std::uint64_t seen = 0;
   const auto done = [&] { return options.count > 0 && seen >= options.count; };
-  session.bus().subscribe_any(
-      type,
-      [&](const void* message, const Receipt&) {
-        if (done()) return;
-        std::printf("%s\n", type.to_json(message).c_str());
-        std::fflush(stdout);
-        ++seen;
-      },
-      {});
+  session.bus().subscribe_any(type,
+                              [&](const void* message, const Receipt&) {
+                                if (done()) return;
+                                std::printf("%s\n", type.to_json(message).c_str());
+                                std::fflush(stdout);
+                                ++seen;
+                              },
+                              {});
   session.wait(options.seconds > 0 ? from_seconds(options.seconds) : Duration(std::chrono::hours(24 * 365)), done);
   if (seen == 0) std::fprintf(stderr, "handsel: nothing came on %s\n", type.row().topic);
   return seen > 0 ? 0 : 1;
@@ -70,18 +75,17 @@ int rate(const TopicOptions& options) {
   std::uint64_t count = 0;
   TimePoint first{}, last{};
   Duration longest{0}, shortest = Duration::max();
-  session.bus().subscribe_any(
-      type,
-      [&](const void*, const Receipt& receipt) {
-        if (count++ == 0) {
-          first = receipt.arrival;
-        } else {
-          longest = std::max(longest, receipt.arrival - last);
-          shortest = std::min(shortest, receipt.arrival - last);
-        }
-        last = receipt.arrival;
-      },
-      {});
+  session.bus().subscribe_any(type,
+                              [&](const void*, const Receipt& receipt) {
+                                if (count++ == 0) {
+                                  first = receipt.arrival;
+                                } else {
+                                  longest = std::max(longest, receipt.arrival - last);
+                                  shortest = std::min(shortest, receipt.arrival - last);
+                                }
+                                last = receipt.arrival;
+                              },
+                              {});
   session.listen(from_seconds(options.seconds > 0 ? options.seconds : 2.0));
   if (count < 2) {
     std::fprintf(stderr, "handsel: %s came on %s\n", count ? "one sample" : "nothing", type.row().topic);
@@ -97,8 +101,8 @@ int rate(const TopicOptions& options) {
                             .dump()
                             .c_str());
   } else {
-    std::printf("%s: %.1f Hz, gaps %.1f to %.1f ms over %llu samples\n", type.row().topic, hz, 1e3 * to_seconds(shortest), 1e3 * to_seconds(longest),
-                static_cast<unsigned long long>(count));
+    std::printf("%s: %.1f Hz, gaps %.1f to %.1f ms over %llu samples\n", type.row().topic, hz, 1e3 * to_seconds(shortest),
+                1e3 * to_seconds(longest), static_cast<unsigned long long>(count));
   }
   return 0;
 }

@@ -3,8 +3,8 @@
 
 #include "common/base/errors.hpp"
 #include "deploy/handsel/commands.hpp"
-#include "deploy/handsel/system_options.hpp"
 #include "deploy/handsel/system.hpp"
+#include "deploy/handsel/system_options.hpp"
 
 namespace handsel {
 
