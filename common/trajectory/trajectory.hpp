@@ -37,11 +37,11 @@ struct AxisTrajectory {
 struct Trajectory {
   std::vector<AxisTrajectory> axes;
 
-  double duration() const;                         ///< [s]
+  double duration() const;  ///< [s]
   int size() const { return static_cast<int>(axes.size()); }
   /// State at time t, clamped to [0, duration]. `out` must have size() entries; allocates nothing.
   void sample(double t, MotionState3& out) const noexcept;
-  MotionState3 at(double t) const;                 ///< allocating convenience
+  MotionState3 at(double t) const;  ///< allocating convenience
 };
 
 }  // namespace handsel

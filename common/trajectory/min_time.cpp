@@ -1,0 +1,459 @@
+#include "common/trajectory/min_time.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace handsel {
+
+namespace {
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+// Where 12 x^4 + 12 x^2 = 1: the valley, over sqrt(C), at which the gain is least.
+constexpr double kInflexion = 0.27811916365;
+
+double lobe(double v, double a, double a1, double hold, double J) noexcept {
+  const double t = (a1 - a) / J;
+  const double v1 = v + (a1 - a) * (a1 + a) / (2 * J);
+  const double v2 = v1 + a1 * hold;
+  return t * (v + t * (a / 2 + J * t / 6)) + hold * (v1 + v2) / 2 + a1 / J * (v2 + a1 * a1 / (3 * J));
+}
+
+bool finite(const AxisState& s) noexcept { return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration); }
+}  // namespace
+
+const char* reason(AxisOutcome outcome) noexcept {
+  switch (outcome) {
+    case AxisOutcome::ok:
+      return "";
+    case AxisOutcome::not_finite:
+      return "a number is not finite or too large";
+    case AxisOutcome::bad_limits:
+      return "a limit is not positive";
+    case AxisOutcome::end_beyond_limits:
+      return "the end state cannot be reached inside the limits";
+    case AxisOutcome::too_short:
+      return "the imposed duration is below the minimum";
+    case AxisOutcome::blocked:
+      return "no motion inside the limits has the imposed duration";
+  }
+  return "";
+}
+
+namespace detail {
+
+MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const AxisLimits& limits, bool mirrored) noexcept
+    : V_(limits.velocity), A_(limits.acceleration), J_(limits.jerk), mirrored_(mirrored) {
+  if (mirrored) v0 = -v0, a0 = -a0, vf = -vf, af = -af;
+  const double tolerance = 64 * kEps * (a0 * a0 + af * af + J_ * (std::abs(v0) + std::abs(vf)));
+  C_ = J_ * (vf - v0) + (a0 - af) * (a0 + af) / 2;
+  if (std::abs(C_) <= tolerance) {
+    C_ = 0;
+    reversed_ = a0 < 0 && af < 0;
+  } else {
+    reversed_ = C_ < 0;
+    C_ = std::abs(C_);
+  }
+  if (reversed_) {
+    std::swap(v0, vf);
+    std::swap(a0, af);
+    a0 = -a0;
+    af = -af;
+  }
+  v0_ = v0, a0_ = a0, vf_ = vf, af_ = af;
+  const double gap = a0 * a0 - C_;
+  s_lo = -af;
+  if (a0 > 0 && gap > 0) {
+    const double r = std::sqrt(gap);
+    if (af > 0 && af * af >= gap - tolerance) {
+      island = true;
+      island_lo = -af;
+      island_hi = -std::min(r, af);
+    }
+    s_lo = std::max(r, -af);
+  }
+  if (C_ == 0) s_lo = std::max(s_lo, 0.0);
+  s_hi = std::max(s_lo, std::sqrt(std::max(0.0, J_ * (V_ - vf) + af * af / 2)));
+}
+
+double MotionFamily::duration(double s) const noexcept {
+  const double R = s * s + C_, A2 = A_ * A_;
+  const double a1 = R < A2 ? std::sqrt(R) : A_;
+  double t = std::max(0.0, a1 - a0_) + std::max(0.0, a1 + std::min(s, A_)) + std::max(0.0, af_ + std::min(s, A_));
+  if (R > A2) t += (R - A2) / A_;
+  if (s > A_) t += (s * s - A2) / A_;
+  return t / J_;
+}
+
+double MotionFamily::displacement(double s, double* slope) const noexcept {
+  const double R = s * s + C_, A2 = A_ * A_;
+  const double a1 = R < A2 ? std::sqrt(R) : A_, h1 = R > A2 ? (R - A2) / (J_ * A_) : 0.0;
+  const double a2 = std::min(s, A_), h2 = s > A_ ? (s * s - A2) / (J_ * A_) : 0.0;
+  if (slope) {
+    const double peak = vf_ + (s * s - af_ * af_ / 2) / J_;
+    const double factor = a1 > 0 ? 1 + s / a1 : 2.0;
+    *slope = 2 / J_ * factor * (peak + s * a1 / (2 * J_));
+  }
+  return lobe(v0_, a0_, a1, h1, J_) + lobe(vf_, -af_, a2, h2, J_);
+}
+
+double MotionFamily::parameter(double T, double* cruise) const noexcept {
+  *cruise = 0;
+  const double at_limit = duration(s_hi);
+  if (T >= at_limit) {
+    *cruise = T - at_limit;
+    return s_hi;
+  }
+  const double A2 = A_ * A_, JT = J_ * T;
+  double s;
+  const double K = (JT + a0_ - af_) / 2;
+  s = K > 0 ? (K - C_ / K) / 2 : s_lo;
+  if (s * s + C_ > A2) {
+    s = -A_ + std::sqrt(std::max(0.0, A_ * (JT + a0_ - af_) - C_));
+    if (s > A_) s = std::sqrt(std::max(A2, (A_ * (JT + a0_ - af_) - 2 * A2 - C_) / 2));
+  }
+  return std::clamp(s, s_lo, s_hi);
+}
+
+double MotionFamily::displacement_at(double T) const noexcept {
+  double cruise;
+  const double s = parameter(T, &cruise);
+  return displacement(s) + cruise * V_;
+}
+
+double MotionFamily::parameter_in_island(double T) const noexcept {
+  const double JT = J_ * T, K = (JT + a0_ - af_) / 2;
+  double s = K > 0 ? (K - C_ / K) / 2 : island_lo;
+  if (s * s + C_ > A_ * A_) s = -A_ + std::sqrt(std::max(0.0, A_ * (JT + a0_ - af_) - C_));
+  return std::clamp(s, island_lo, island_hi);
+}
+
+double MotionFamily::bracketed(double D, double lo, double hi, double f_lo) const noexcept {
+  if (!(f_lo < 0) || !(lo < hi)) return lo;
+  double s = std::min(hi, lo + std::cbrt(-f_lo * J_ * J_ / 2));
+  double best = lo, best_f = std::abs(f_lo);
+  for (int k = 0; k < 100; ++k) {
+    double slope;
+    const double f = displacement(s, &slope) - D;
+    if (std::abs(f) < best_f) best = s, best_f = std::abs(f);
+    if (f == 0) return s;
+    (f < 0 ? lo : hi) = s;
+    double next = s - f / slope;
+    if (!(slope > 0) || !(next > lo && next < hi)) {
+      if (std::abs(next - s) <= 2 * kEps * std::abs(s)) return best;
+      next = 0.5 * (lo + hi);
+      if (!(next > lo && next < hi)) return best;
+    }
+    if (std::abs(next - s) <= kEps * std::abs(next)) return best_f < std::abs(f) ? best : next;
+    s = next;
+  }
+  return best;
+}
+
+double MotionFamily::gain(double s) const noexcept {
+  const double a1 = std::min(std::sqrt(s * s + C_), A_);
+  return vf_ + (s * s - af_ * af_ / 2 + std::min(s, A_) * a1 / 2) / J_;
+}
+
+double MotionFamily::least_gain() const noexcept {
+  const double A2 = A_ * A_;
+  if (C_ >= 0.9375 * A2) return -A_ / 4;
+  const double root = kInflexion * std::sqrt(C_);
+  return root * root + C_ <= A2 ? -root : -std::sqrt(A2 - C_);
+}
+
+bool MotionFamily::first_root(double D, double from, double to, double* s) const noexcept {
+  double f = displacement(from) - D;
+  *s = from;
+  if (f >= 0) return true;
+  if (from < 0) {
+    const double turn = std::clamp(least_gain(), from, to);
+    if (gain(from) > 0) {
+      double peak = turn;
+      if (gain(turn) < 0) {
+        double lo = from, hi = turn;
+        for (int k = 0; k < 60 && lo < hi; ++k) {
+          peak = 0.5 * (lo + hi);
+          (gain(peak) > 0 ? lo : hi) = peak;
+        }
+      }
+      if (displacement(peak) >= D) {
+        *s = bracketed(D, from, peak, f);
+        return true;
+      }
+    }
+    from = turn;
+    f = displacement(from) - D;
+    if (f >= 0) {
+      *s = from;
+      return true;
+    }
+  }
+  if (from >= to || displacement(to) < D) return false;
+  *s = bracketed(D, from, to, f);
+  return true;
+}
+
+double MotionFamily::root(double D, double from, double* cruise) const noexcept {
+  *cruise = 0;
+  double s;
+  if (from < A_ && first_root(D, from, std::min(A_, s_hi), &s)) return s;
+  const double at_limit = displacement(s_hi);
+  if (D >= at_limit) {
+    *cruise = (D - at_limit) / V_;
+    return s_hi;
+  }
+  const double base = std::clamp(from, A_, s_hi), f_base = displacement(base) - D;
+  const double centre = vf_ + (base * base - af_ * af_ / 2) / J_ + A_ * A_ / (2 * J_);
+  const double square = std::max(0.0, centre * centre - A_ * f_base);
+  const double step = centre >= 0 ? -A_ * f_base / (std::sqrt(square) + centre) : std::sqrt(square) - centre;
+  return std::clamp(std::sqrt(base * base + J_ * std::max(0.0, step)), base, s_hi);
+}
+
+void MotionFamily::emit(double s, double cruise, AxisProfile& out) const noexcept {
+  const double R = s * s + C_, A2 = A_ * A_, j = mirrored_ ? -J_ : J_;
+  const double a1 = R < A2 ? std::sqrt(R) : A_, a2 = std::min(s, A_);
+  const double t1 = (a1 - a0_) / J_, h1 = R > A2 ? (R - A2) / (J_ * A_) : 0.0, h2 = s > A_ ? (s * s - A2) / (J_ * A_) : 0.0,
+               t5 = (a2 + af_) / J_;
+  if (reversed_) {
+    out.push(t5, j);
+    out.push(h2, 0);
+  } else {
+    out.push(t1, j);
+    out.push(h1, 0);
+  }
+  if (cruise > 0) {
+    out.push((reversed_ ? a2 : a1) / J_, -j);
+    out.push(cruise, 0);
+    out.push((reversed_ ? a1 : a2) / J_, -j);
+  } else {
+    out.push((a1 + a2) / J_, -j);
+  }
+  if (reversed_) {
+    out.push(h1, 0);
+    out.push(t1, j);
+  } else {
+    out.push(h2, 0);
+    out.push(t5, j);
+  }
+}
+
+}  // namespace detail
+
+namespace {
+
+/// Brings a state with v beyond +V (or heading beyond it) back to V as fast as possible; `side` -1 mirrors.
+void brake_velocity(AxisState& s, const AxisLimits& l, double side, AxisProfile& out) noexcept {
+  const double V = l.velocity, J = l.jerk;
+  const double v = side * s.velocity, a = side * s.acceleration;
+  const double floor = -std::min(l.acceleration, std::sqrt(4 * J * V));
+  const double a_end = -std::sqrt(std::max(0.0, a * a + 2 * J * (v - V)));
+  double t1, hold = 0;
+  if (a_end >= floor || a <= floor) {
+    t1 = std::max(0.0, (a - a_end) / J);
+    if (a <= floor) {
+      t1 = 0;
+      hold = std::max(0.0, (v - V) / -a);
+    }
+  } else {
+    t1 = (a - floor) / J;
+    const double v1 = v - (floor * floor - a * a) / (2 * J);
+    hold = std::max(0.0, (v1 - V) / -floor);
+  }
+  out.push(t1, -side * J);
+  s = advanced(s, t1, -side * J);
+  out.push(hold, 0);
+  s = advanced(s, hold, 0);
+}
+
+void bring_inside(AxisState& s, const AxisLimits& l, AxisProfile& out, double slack) noexcept {
+  const double V = l.velocity, A = l.acceleration, J = l.jerk;
+  if (std::abs(s.acceleration) > A * (1 + slack)) {
+    const double side = s.acceleration > 0 ? 1 : -1, t = (std::abs(s.acceleration) - A) / J;
+    out.push(t, -side * J);
+    s = advanced(s, t, -side * J);
+    s.acceleration = side * A;
+  }
+  for (int pass = 0; pass < 2; ++pass) {
+    const double a = s.acceleration, rest = s.velocity + a * std::abs(a) / (2 * J), bound = V * (1 + slack);
+    double side = 0;
+    if (a < 0 && rest < -bound)
+      side = -1;
+    else if (a > 0 && rest > bound)
+      side = 1;
+    else if (s.velocity > bound)
+      side = 1;
+    else if (s.velocity < -bound)
+      side = -1;
+    if (side == 0) return;
+    brake_velocity(s, l, side, out);
+  }
+}
+
+/// Adds weight * jerk of one profile to another, cutting both at each other's ends.
+void blend(const AxisProfile& p, double weight_p, const AxisProfile& q, double weight_q, AxisProfile& out) noexcept {
+  int i = 0, k = 0;
+  double left_p = p.count ? p.segments[0].duration : 0, left_q = q.count ? q.segments[0].duration : 0;
+  while (i < p.count && k < q.count) {
+    const double step = std::min(left_p, left_q);
+    out.push(step, weight_p * p.segments[i].jerk + weight_q * q.segments[k].jerk);
+    left_p -= step;
+    left_q -= step;
+    if (left_p <= 0 && ++i < p.count) left_p = p.segments[i].duration;
+    if (left_q <= 0 && ++k < q.count) left_q = q.segments[k].duration;
+  }
+  for (; i < p.count; ++i, left_p = i < p.count ? p.segments[i].duration : 0) out.push(left_p, weight_p * p.segments[i].jerk);
+  for (; k < q.count; ++k, left_q = k < q.count ? q.segments[k].duration : 0) out.push(left_q, weight_q * q.segments[k].jerk);
+}
+
+}  // namespace
+
+AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const AxisLimits& l) noexcept {
+  if (!finite(from) || !finite(to) || !std::isfinite(l.velocity + l.acceleration + l.jerk)) return AxisOutcome::not_finite;
+  if (!(l.velocity > 0) || !(l.acceleration > 0) || !(l.jerk > 0)) return AxisOutcome::bad_limits;
+  constexpr double kSlack = 1e-12;
+  const double end = to.velocity - to.acceleration * std::abs(to.acceleration) / (2 * l.jerk);
+  if (std::abs(to.velocity) > l.velocity * (1 + kSlack) || std::abs(to.acceleration) > l.acceleration * (1 + kSlack) ||
+      std::abs(end) > l.velocity * (1 + kSlack)) {
+    return AxisOutcome::end_beyond_limits;
+  }
+  brake_.clear();
+  AxisState start = from;
+  bring_inside(start, l, brake_, kSlack);
+  brake_time_ = brake_.duration();
+  distance_ = to.position - start.position;
+  scale_ = std::abs(to.position) + std::abs(start.position);
+  still_ = distance_ == 0 && start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
+  up_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, false);
+  down_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, true);
+  if (still_) {
+    best_ = {0, 0, 0, false};
+    minimum_ = brake_time_;
+    return AxisOutcome::ok;
+  }
+  best_ = first_from(0);
+  minimum_ = brake_time_ + best_.duration;
+  return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
+}
+
+double AxisProblem::slack(double least, double largest) const noexcept {
+  return 16 * kEps * (scale_ + std::abs(least) + std::abs(largest));
+}
+
+AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
+  const double D = distance_;
+  if (up_.island && down_.island) {
+    const double last = up_.duration(up_.island_hi), first = up_.duration(up_.island_lo);
+    if (T <= last) {
+      const double from = std::max(T, first);
+      const double s_up = T <= first ? up_.island_lo : up_.parameter_in_island(T);
+      const double s_down = T <= first ? down_.island_lo : down_.parameter_in_island(T);
+      const double largest = up_.displacement(s_up), least = -down_.displacement(s_down);
+      const double tolerance = 32 * slack(least, largest);
+      if (D <= largest + tolerance && D >= least - tolerance) {
+        return D - least > largest - D ? Choice{from, s_up, 0, false} : Choice{from, s_down, 0, true};
+      }
+      double s;
+      if (D > largest && up_.first_root(D, s_up, up_.island_hi, &s)) return {up_.duration(s), s, 0, false};
+      if (D < least && down_.first_root(-D, s_down, down_.island_hi, &s)) return {down_.duration(s), s, 0, true};
+      const double ending = up_.displacement(up_.island_hi);
+      if (std::abs(D - ending) <= tolerance) return {last, up_.island_hi, 0, false};
+    }
+  }
+  const double first = up_.duration(up_.s_lo);
+  double s_up = up_.s_lo, s_down = down_.s_lo, cruise_up = 0, cruise_down = 0;
+  if (T > first) {
+    s_up = up_.parameter(T, &cruise_up);
+    s_down = down_.parameter(T, &cruise_down);
+  }
+  const double largest = up_.displacement(s_up) + cruise_up * up_.cruise_velocity();
+  double cruise;
+  const double least = -(down_.displacement(s_down) + cruise_down * down_.cruise_velocity());
+  const double tolerance = slack(least, largest);
+  if (D > largest && (D > largest + tolerance || (s_up >= 0 && up_.gain(s_up) >= 0))) {
+    const double s = up_.root(D, s_up, &cruise);
+    return {up_.duration(s) + cruise, s, cruise, false};
+  }
+  if (D < least && (D < least - tolerance || (s_down >= 0 && down_.gain(s_down) >= 0))) {
+    const double s = down_.root(-D, s_down, &cruise);
+    return {down_.duration(s) + cruise, s, cruise, true};
+  }
+  return {std::max(T, first), s_up, cruise_up, false};
+}
+
+double AxisProblem::earliest(double duration) const noexcept {
+  if (still_ || duration <= minimum_) return std::max(duration, minimum_);
+  const double T = duration - brake_time_;
+  const double found = first_from(T).duration;
+  return found <= T ? duration : brake_time_ + found;
+}
+
+void AxisProblem::minimum_profile(AxisProfile& out) const noexcept {
+  out = brake_;
+  if (!still_) (best_.mirrored ? down_ : up_).emit(best_.s, best_.cruise, out);
+}
+
+AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexcept {
+  if (!std::isfinite(duration)) return AxisOutcome::not_finite;
+  if (duration < minimum_ * (1 - 1e-12)) return AxisOutcome::too_short;
+  if (still_) {
+    out = brake_;
+    out.push(duration - brake_time_, 0);
+    return AxisOutcome::ok;
+  }
+  if (duration <= minimum_ * (1 + 4 * kEps)) {
+    minimum_profile(out);
+    return AxisOutcome::ok;
+  }
+  const double T = duration - brake_time_, D = distance_;
+  double s_up, s_down, cruise_up = 0, cruise_down = 0;
+  if (up_.island && down_.island && T <= up_.duration(up_.island_hi)) {
+    s_up = up_.parameter_in_island(T);
+    s_down = down_.parameter_in_island(T);
+  } else {
+    if (T < up_.duration(up_.s_lo) * (1 - 1e-14)) return AxisOutcome::blocked;
+    s_up = up_.parameter(T, &cruise_up);
+    s_down = down_.parameter(T, &cruise_down);
+  }
+  const double largest = up_.displacement(s_up) + cruise_up * up_.cruise_velocity();
+  const double least = -(down_.displacement(s_down) + cruise_down * down_.cruise_velocity());
+  const double tolerance = slack(least, largest);
+  if (D > largest + 16 * tolerance || D < least - 16 * tolerance) return AxisOutcome::blocked;
+  const double width = largest - least;
+  const double weight = width > 0 ? std::clamp((D - least) / width, 0.0, 1.0) : 0.5;
+  AxisProfile high, low;
+  up_.emit(s_up, cruise_up, high);
+  down_.emit(s_down, cruise_down, low);
+  out = brake_;
+  if (weight == 1.0) {
+    for (int k = 0; k < high.count; ++k) out.push(high.segments[k].duration, high.segments[k].jerk);
+  } else if (weight == 0.0) {
+    for (int k = 0; k < low.count; ++k) out.push(low.segments[k].duration, low.segments[k].jerk);
+  } else {
+    blend(high, weight, low, 1 - weight, out);
+  }
+  return AxisOutcome::ok;
+}
+
+AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept {
+  AxisProblem problem;
+  const AxisOutcome outcome = problem.init(from, to, limits);
+  if (outcome == AxisOutcome::ok) problem.minimum_profile(out);
+  return outcome;
+}
+
+double rest_to_rest_time(double distance, const AxisLimits& l) noexcept {
+  const double D = std::abs(distance), V = l.velocity, A = l.acceleration, J = l.jerk;
+  if (!(D > 0)) return 0;
+  if (V * J >= A * A) {
+    const double d1 = V * V / A + V * A / J, d2 = 2 * A * A * A / (J * J);
+    if (D >= d1) return 4 * A / J + 2 * (V / A - A / J) + (D - d1) / V;
+    if (D >= d2) return 4 * A / J + 2 * (-1.5 * A / J + std::sqrt(A * A / (4 * J * J) + D / A));
+  } else {
+    const double d1 = 2 * V * std::sqrt(V / J);
+    if (D >= d1) return 4 * std::sqrt(V / J) + (D - d1) / V;
+  }
+  return 4 * std::cbrt(D / (2 * J));
+}
+
+}  // namespace handsel

@@ -1,0 +1,39 @@
+// Minimum-time stop of one axis: velocity and acceleration to zero, position free (the critical movement, chapter section 4.3.4).
+#pragma once
+
+#include "common/trajectory/min_time.hpp"
+
+namespace handsel {
+
+/// Fastest change from (v, a) to (v_end, a_end), position free: at most three segments, four when |a| starts beyond the limit.
+/// The velocity goes beyond both ends only where the start acceleration makes it. Never fails for finite numbers and positive limits.
+void critical_movement(double velocity, double acceleration, double velocity_end, double acceleration_end, double max_acceleration,
+                       double max_jerk, AxisProfile& out) noexcept;
+
+/// Time and distance of the minimum-time stop.
+struct StopMeasure {
+  double duration{};  ///< [s]
+  double distance{};  ///< signed [rad]
+};
+StopMeasure measure_stop(double velocity, double acceleration, double max_acceleration, double max_jerk) noexcept;
+
+/// A stop in progress, for a cycle: no allocation.
+class SoftStop {
+ public:
+  void init(const AxisState& state, const AxisLimits& limits) noexcept;
+  const AxisState& step(double dt) noexcept;  ///< state dt later
+  const AxisState& state() const noexcept { return state_; }
+  bool finished() const noexcept { return segment_ >= profile_.count; }
+  double remaining() const noexcept;  ///< [s]
+
+ private:
+  AxisProfile profile_;
+  AxisState state_, segment_start_;
+  int segment_{};
+  double elapsed_{};
+};
+
+/// Every axis stops by itself as fast as it can; the trajectory lasts as long as the slowest.
+Trajectory stop_trajectory(const MotionState3& state, const KinematicLimits& limits);
+
+}  // namespace handsel

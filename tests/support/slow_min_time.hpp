@@ -1,0 +1,125 @@
+// An independent, slow minimum-time solver for one axis: scans every family of bang-bang profiles for every root, assumes nothing about
+// monotony or the sign of the motion. For tests only.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/trajectory/min_time.hpp"
+
+namespace handsel::test {
+
+struct SlowProfile {
+  std::vector<Segment> segments;
+  bool valid{};
+  double duration() const {
+    double t = 0;
+    for (const Segment& s : segments) t += s.duration;
+    return t;
+  }
+};
+
+/// +J to a1, hold, -J to a2, hold, +J to af; velocity end met by the caller's choice.
+inline AxisState run(AxisState s, const std::vector<Segment>& segments) {
+  for (const Segment& g : segments) s = advanced(s, g.duration, g.jerk);
+  return s;
+}
+
+/// From (v, a) to (peak, 0), rising lobe; invalid if it does not exist.
+inline bool rising(double v, double a, double peak, double A, double J, std::vector<Segment>& out) {
+  const double R = J * (peak - v) + a * a / 2;
+  if (R < -1e-14 * (J * (std::abs(peak) + std::abs(v)) + a * a)) return false;
+  double a1 = std::sqrt(std::max(0.0, R)), hold = 0;
+  if (a1 > A) {
+    a1 = A;
+    hold = (peak - v - (2 * A * A - a * a) / (2 * J)) / A;
+  }
+  const double slop = 1e-9 * (A + std::abs(a));
+  if (a1 - a < -slop || hold < 0) return false;
+  out = {{std::max(0.0, a1 - a) / J, J}, {hold, 0}, {a1 / J, -J}};
+  return true;
+}
+
+inline double slow_min_time(const AxisState& from, const AxisState& to, const AxisLimits& l, int grid = 600) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const double side : {1.0, -1.0}) {
+    const double v0 = side * from.velocity, a0 = side * from.acceleration, vf = side * to.velocity, af = side * to.acceleration;
+    const double D = side * (to.position - from.position), V = l.velocity, A = l.acceleration, J = l.jerk;
+    // With a zero crossing at peak velocity p.
+    const auto peak_profile = [&](double p, SlowProfile& out) {
+      std::vector<Segment> up, down;
+      out.valid = rising(v0, a0, p, A, J, up) && rising(vf, -af, p, A, J, down);
+      if (!out.valid) return 0.0;
+      std::reverse(down.begin(), down.end());
+      out.segments = up;
+      out.segments.insert(out.segments.end(), down.begin(), down.end());
+      return run({0, v0, a0}, out.segments).position - D;
+    };
+    // Without one: valley or peak at `b` between; `early` picks which of the two is the parameter.
+    const auto flat_profile = [&](double b, bool early, SlowProfile& out) {
+      std::vector<Segment> g;
+      out.valid = false;
+      if (!early) {  // +J to a1 (hold), -J to b in [0, af], +J to af
+        const double square = b * b + J * (vf - v0) - (af * af - a0 * a0) / 2;
+        if (square < 0) return 0.0;
+        double a1 = std::sqrt(square), hold = 0;
+        if (a1 > A) hold = (square - A * A) / (J * A), a1 = A;
+        if (a1 < a0 - 1e-12 || a1 < b || b > af) return 0.0;
+        g = {{std::max(0.0, a1 - a0) / J, J}, {hold, 0}, {(a1 - b) / J, -J}, {(af - b) / J, J}};
+      } else {  // +J from a0 to b in [a0, 0], -J to a2 (hold), +J to af
+        const double square = b * b - J * (vf - v0) + (af * af - a0 * a0) / 2;
+        if (square < 0) return 0.0;
+        double a2 = -std::sqrt(square), hold = 0;
+        if (a2 < -A) hold = (square - A * A) / (J * A), a2 = -A;
+        if (a2 > af + 1e-12 || a2 > b || b < a0) return 0.0;
+        g = {{(b - a0) / J, J}, {(b - a2) / J, -J}, {hold, 0}, {std::max(0.0, af - a2) / J, J}};
+      }
+      out.segments = g;
+      out.valid = true;
+      return run({0, v0, a0}, g).position - D;
+    };
+    const auto scan = [&](auto&& f, double lo, double hi) {
+      if (!(hi >= lo)) return;
+      SlowProfile p, q;
+      double last_x = 0, last_f = 0;
+      bool have = false;
+      for (int k = 0; k <= grid; ++k) {
+        const double u = static_cast<double>(k) / grid;
+        const double x = lo + (hi - lo) * u * u * (3 - 2 * u);
+        const double fx = f(x, p);
+        if (!p.valid) {
+          have = false;
+          continue;
+        }
+        const double near = 1e-16 * (std::abs(from.position) + std::abs(to.position) + std::abs(D));
+        if (std::abs(fx) <= near) best = std::min(best, p.duration());
+        if (have && (last_f < 0) != (fx < 0)) {
+          double a = last_x, b = x;
+          const bool rise = last_f < 0;
+          for (int i = 0; i < 200 && a < b; ++i) {
+            const double m = 0.5 * (a + b), fm = f(m, q);
+            if (!q.valid || m <= a || m >= b) break;
+            ((fm < 0) == rise ? a : b) = m;
+          }
+          f(b, q);
+          if (q.valid) best = std::min(best, q.duration());
+        }
+        last_x = x;
+        last_f = fx;
+        have = true;
+      }
+    };
+    const double lowest = std::max(v0 + a0 * std::abs(a0) / (2 * J), vf - af * std::abs(af) / (2 * J));
+    scan(peak_profile, std::min(lowest, V), V);
+    if (af > 0) scan([&](double b, SlowProfile& o) { return flat_profile(b, false, o); }, 0, af);
+    if (a0 < 0) scan([&](double b, SlowProfile& o) { return flat_profile(b, true, o); }, a0, 0);
+    SlowProfile cruise;
+    const double missing = -peak_profile(V, cruise);
+    if (cruise.valid && missing >= 0) best = std::min(best, cruise.duration() + missing / V);
+  }
+  return best;
+}
+
+}  // namespace handsel::test
