@@ -1,0 +1,197 @@
+#!/usr/bin/env python3
+"""Writes hands/sah/sah.urdf and robots/jido/jido.urdf from the numbers below. Run it after changing a number; standard library only.
+
+Shapes are primitives that enclose the real parts; inertias are those of the shapes filled evenly with the link's mass. Metres, kg, radians.
+"""
+import math
+import os
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+DEG = math.pi / 180
+
+
+# --- small linear algebra -------------------------------------------------------------------------------------------------------------
+def mul(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+
+
+def transpose(a):
+    return [[a[j][i] for j in range(3)] for i in range(3)]
+
+
+def rpy(roll, pitch, yaw):
+    cr, sr, cp, sp, cy, sy = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch), math.cos(yaw), math.sin(yaw)
+    return [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr], [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr]]
+
+
+def to_rpy(R):
+    pitch = math.atan2(-R[2][0], math.hypot(R[0][0], R[1][0]))
+    if math.hypot(R[0][0], R[1][0]) > 1e-6:
+        return math.atan2(R[2][1], R[2][2]), pitch, math.atan2(R[1][0], R[0][0])
+    return math.atan2(-R[1][2], R[1][1]), pitch, 0.0
+
+
+def numbers(values):
+    return " ".join(f"{v:.9g}" if abs(v) > 1e-12 else "0" for v in values)
+
+
+# --- shapes: (kind, sizes, xyz, rpy) ----------------------------------------------------------------------------------------------------
+def box(x, y, z, at=(0, 0, 0), turn=(0, 0, 0)):
+    return "box", (x, y, z), at, turn
+
+
+def cylinder(radius, length, at=(0, 0, 0), turn=(0, 0, 0)):
+    return "cylinder", (radius, length), at, turn
+
+
+def sphere(radius, at=(0, 0, 0)):
+    return "sphere", (radius,), at, (0, 0, 0)
+
+
+def rod(radius, a, b):
+    """A cylinder between two points."""
+    d = [q - p for p, q in zip(a, b)]
+    length = math.sqrt(sum(x * x for x in d))
+    turn = (0, math.atan2(math.hypot(d[0], d[1]), d[2]), math.atan2(d[1], d[0]))
+    return cylinder(radius, length, tuple((p + q) / 2 for p, q in zip(a, b)), turn)
+
+
+def volume(shape):
+    kind, s = shape[:2]
+    return {"box": lambda: s[0] * s[1] * s[2], "cylinder": lambda: math.pi * s[0]**2 * s[1], "sphere": lambda: 4 / 3 * math.pi * s[0]**3}[kind]()
+
+
+def inertia(shape, m):
+    """About the shape's own centre, in the link's axes."""
+    kind, s, _, turn = shape
+    if kind == "box":
+        d = [m / 12 * (s[1]**2 + s[2]**2), m / 12 * (s[0]**2 + s[2]**2), m / 12 * (s[0]**2 + s[1]**2)]
+    elif kind == "cylinder":
+        d = [m / 12 * (3 * s[0]**2 + s[1]**2)] * 2 + [m / 2 * s[0]**2]
+    else:
+        d = [0.4 * m * s[0]**2] * 3
+    R = rpy(*turn)
+    return mul(mul(R, [[d[0], 0, 0], [0, d[1], 0], [0, 0, d[2]]]), transpose(R))
+
+
+# --- URDF -----------------------------------------------------------------------------------------------------------------------------
+def link(name, mass=0.0, shapes=()):
+    if not shapes:
+        return [f'  <link name="{name}"/>']
+    total = sum(volume(s) for s in shapes)
+    com = [sum(volume(s) / total * s[2][i] for s in shapes) for i in range(3)]
+    I = [[0.0] * 3 for _ in range(3)]
+    for s in shapes:
+        m = mass * volume(s) / total
+        own, d = inertia(s, m), [s[2][i] - com[i] for i in range(3)]
+        for i in range(3):
+            for j in range(3):
+                I[i][j] += own[i][j] + m * ((sum(x * x for x in d) if i == j else 0) - d[i] * d[j])
+    out = [f'  <link name="{name}">', f'    <inertial><origin xyz="{numbers(com)}"/><mass value="{mass:g}"/>',
+           f'      <inertia ixx="{I[0][0]:.4g}" ixy="{I[0][1]:.4g}" ixz="{I[0][2]:.4g}" iyy="{I[1][1]:.4g}" iyz="{I[1][2]:.4g}" '
+           f'izz="{I[2][2]:.4g}"/></inertial>']
+    for kind, sizes, at, turn in shapes:
+        geometry = {"box": lambda: f'<box size="{numbers(sizes)}"/>', "sphere": lambda: f'<sphere radius="{sizes[0]:g}"/>',
+                    "cylinder": lambda: f'<cylinder radius="{sizes[0]:g}" length="{sizes[1]:.6g}"/>'}[kind]()
+        for use in ("visual", "collision"):
+            out.append(f'    <{use}><origin xyz="{numbers(at)}" rpy="{numbers(turn)}"/><geometry>{geometry}</geometry></{use}>')
+    return out + ["  </link>"]
+
+
+def joint(name, kind, parent, child, xyz=(0, 0, 0), turn=(0, 0, 0), axis=None, limits=None, mimic=None):
+    out = [f'  <joint name="{name}" type="{kind}">', f'    <parent link="{parent}"/><child link="{child}"/>',
+           f'    <origin xyz="{numbers(xyz)}" rpy="{numbers(turn)}"/>']
+    if axis:
+        lower, upper, velocity, effort = limits
+        out.append(f'    <axis xyz="{numbers(axis)}"/><limit lower="{lower:.6f}" upper="{upper:.6f}" velocity="{velocity:g}" effort="{effort:g}"/>')
+    if mimic:
+        out.append(f'    <mimic joint="{mimic}" multiplier="1" offset="0"/>')
+    return out + ["  </joint>"]
+
+
+# --- Schunk Anthropomorphic Hand, right (numbers of the published models of the hand) ----------------------------------------------------
+PROXIMAL, MIDDLE, TIP, TIP_RADIUS = 0.067816, 0.029980, 0.029, 0.013
+HAND_SPEED, HAND_EFFORT = 3.14, 4.0
+FINGER_BASES = {
+    "fore": ((-0.003, 0.04025, 0.15584), [[0, 0, 1], [0.0354751, -0.9993706, 0], [0.9993706, 0.0354751, 0]]),
+    "middle": ((-0.003, 0, 0.16056), [[0, 0, 1], [0, -1, 0], [1, 0, 0]]),
+    "ring": ((-0.003, -0.04025, 0.15584), [[0, 0, 1], [-0.0343239, -0.9994108, 0], [0.9994108, -0.0343239, 0]]),
+}
+THUMB_AXIS = (-0.003, 0.0271, 0)
+THUMB_BASE = ((0, 0.0855, -0.10282), [[-0.0122170, 0.9999254, 0], [0.5735336, 0.0070074, -0.8191520], [-0.8190909, -0.0100076, -0.5735764]])
+
+
+def finger(name, parent, at, R):
+    """Abduction, proximal, middle, distal (mimics middle), then the centre of the fingertip."""
+    def bend(lower):
+        return lower * DEG, 75 * DEG, HAND_SPEED, HAND_EFFORT
+
+    along = (0, math.pi / 2, 0)
+    out = joint(f"{name}_abduction", "revolute", parent, f"{name}_base", at, to_rpy(R), (0, 0, 1), (-15 * DEG, 15 * DEG, HAND_SPEED, HAND_EFFORT))
+    out += link(f"{name}_base", 0.03, [sphere(0.012)])
+    out += joint(f"{name}_proximal", "revolute", f"{name}_base", f"{name}_proximal_link", (0, 0, 0), (math.pi / 2, 0, 0), (0, 0, 1), bend(-4))
+    out += link(f"{name}_proximal_link", 0.07, [cylinder(0.0125, PROXIMAL - 0.008, (PROXIMAL / 2, 0, 0), along)])
+    out += joint(f"{name}_middle", "revolute", f"{name}_proximal_link", f"{name}_middle_link", (PROXIMAL, 0, 0), (0, 0, 0), (0, 0, 1), bend(0))
+    out += link(f"{name}_middle_link", 0.035, [sphere(0.0125), cylinder(0.012, MIDDLE, (MIDDLE / 2, 0, 0), along)])
+    out += joint(f"{name}_distal", "revolute", f"{name}_middle_link", f"{name}_distal_link", (MIDDLE, 0, 0), (0, 0, 0), (0, 0, 1), bend(0),
+                 mimic=f"{name}_middle")
+    out += link(f"{name}_distal_link", 0.03, [cylinder(0.012, TIP, (TIP / 2, 0, 0), along), sphere(TIP_RADIUS, (TIP, 0, 0))])
+    out += joint(f"{name}_tip_fixed", "fixed", f"{name}_distal_link", f"{name}_tip", (TIP, 0, 0))
+    return out + link(f"{name}_tip")
+
+
+def hand():
+    out = link("palm", 1.2, [cylinder(0.035, 0.042, (0, 0, 0.009)), box(0.05, 0.105, 0.112, (-0.008, 0, 0.084))])
+    out += joint("thumb_rotation", "revolute", "palm", "thumb_carrier", THUMB_AXIS, (0, math.pi, 0), (0, 0, 1), (0, 90 * DEG, HAND_SPEED, HAND_EFFORT))
+    out += link("thumb_carrier", 0.1, [rod(0.016, (0, 0.01, -0.08), THUMB_BASE[0])])
+    out += finger("thumb", "thumb_carrier", *THUMB_BASE)
+    for name, (at, R) in FINGER_BASES.items():
+        out += finger(name, "palm", at, R)
+    return out
+
+
+# --- Jido: mobile platform, column, KUKA LWR 4+ mounted sideways, pan-tilt head ----------------------------------------------------------
+ARM_BASE = ((0.165, -0.1105, 0.907), [[0, 1, 0], [0, 0, -1], [-1, 0, 0]])
+# joint, height above the previous joint, axis, limit [deg], velocity [deg/s], torque [Nm], mass of the link [kg], shapes of the link
+ARM = [
+    ("arm_a1", 0.11, (0, 0, 1), 170, 110, 176, 2.35, [cylinder(0.068, 0.15, (0, 0, 0.075)), sphere(0.083, (0, 0, 0.2005))]),
+    ("arm_a2", 0.2005, (0, -1, 0), 120, 110, 176, 2.35, [cylinder(0.066, 0.2, (0, 0, 0.1))]),
+    ("arm_e1", 0.2, (0, 0, 1), 170, 128, 100, 2.35, [cylinder(0.066, 0.15, (0, 0, 0.075)), sphere(0.081, (0, 0, 0.2))]),
+    ("arm_a3", 0.2, (0, 1, 0), 120, 128, 100, 2.35, [cylinder(0.064, 0.2, (0, 0, 0.1))]),
+    ("arm_a4", 0.2, (0, 0, 1), 170, 204, 100, 2.35, [cylinder(0.053, 0.13, (0, 0, 0.065))]),
+    ("arm_a5", 0.19, (0, -1, 0), 120, 184, 38, 1.1, [sphere(0.058)]),
+    ("arm_a6", 0.078, (0, 0, 1), 170, 184, 38, 0.25, [cylinder(0.035, 0.04)]),
+]
+WRIST_TO_HAND = 0.1105
+
+
+def jido():
+    out = link("base_link", 150, [box(0.68, 0.60, 0.36, (0, 0, 0.2)), box(0.26, 0.221, 0.70, (0.165, 0, 0.73))])
+    out += joint("arm_mount", "fixed", "base_link", "arm_base", ARM_BASE[0], to_rpy(ARM_BASE[1]))
+    out += link("arm_base", 2.0, [cylinder(0.08, 0.11, (0, 0, 0.055))])
+    parent = "arm_base"
+    for i, (name, height, axis, limit, speed, torque, mass, shapes) in enumerate(ARM):
+        child = f"arm_link_{i + 1}"
+        out += joint(name, "revolute", parent, child, (0, 0, height), (0, 0, 0), axis,
+                     (-limit * DEG, limit * DEG, math.floor(speed * DEG * 1000) / 1000, torque))
+        out += link(child, mass, shapes)
+        parent = child
+    out += joint("hand_mount", "fixed", parent, "palm", (0, 0, WRIST_TO_HAND - ARM[-1][1]))
+    out += hand()
+    out += joint("head_pan", "revolute", "base_link", "pan_link", (0.243, 0, 1.244), (0, 0, 0), (0, 0, 1), (-170 * DEG, 170 * DEG, 2.0, 10))
+    out += link("pan_link", 0.8, [cylinder(0.045, 0.12, (0, 0, -0.06))])
+    out += joint("head_tilt", "revolute", "pan_link", "tilt_link", (0, 0, 0.06), (0, 0, 0), (0, -1, 0), (-45 * DEG, 30 * DEG, 2.0, 10))
+    out += link("tilt_link", 0.8, [box(0.07, 0.2, 0.07, (0.03, 0, 0.04))])
+    out += joint("camera_fixed", "fixed", "tilt_link", "camera", (0.057, 0, 0.046))
+    return out + link("camera")
+
+
+def write(path, name, body):
+    with open(os.path.join(HERE, path), "w") as f:
+        f.write(f'<?xml version="1.0"?>\n<!-- Made by robots/generate.py; change numbers there. -->\n<robot name="{name}">\n')
+        f.write("\n".join(body) + "\n</robot>\n")
+
+
+write("../hands/sah/sah.urdf", "sah", hand())
+write("jido/jido.urdf", "jido", jido())
