@@ -1,0 +1,42 @@
+#include "common/messages/attention.hpp"
+
+#include "common/wire/parts.hpp"
+#include "idl/attention.h"
+
+namespace handsel {
+namespace {
+constexpr const char* kBehaviours[] = {"search", "track", "avoid", "pick", "place", "give", "receive"};
+}
+
+void describe(WireIo& io, BehaviourState& m, handsel_BehaviourState& w) {
+  io.choice("behaviour", m.behaviour, w.behaviour, kBehaviours);
+  io.number("period", m.period, w.period, kPeriod);
+  io.integer("activations", m.activations, w.activations);
+  io.integer("activations_at_fastest", m.activations_at_fastest, w.activations_at_fastest);
+  io.flag("released", m.released, w.released);
+  io.number("stimulus", m.stimulus, w.stimulus, {-1e9, 1e9});
+  io.number("speed_factor", m.speed_factor, w.speed_factor, kSigned);
+}
+
+void describe(WireIo& io, AttentionState& m, handsel_AttentionState& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.list("behaviours", m.behaviours, w.behaviours, 16);
+}
+
+void describe(WireIo& io, AttentionAdvice& m, handsel_AttentionAdvice& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.number("speed_factor", m.speed_factor, w.speed_factor, kSigned);
+  io.choice("limiting", m.limiting, w.limiting, kBehaviours);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.flag("has_gaze_target", m.has_gaze_target, w.has_gaze_target);
+  io.point("gaze_target", m.gaze_target, w.gaze_target);
+  io.flag("has_target_shift", m.has_target_shift, w.has_target_shift);
+  io.point("target_shift", m.target_shift, w.target_shift);
+  io.number("cost_gain", m.cost_gain, w.cost_gain, {0, 1e3});
+  io.number("human_period", m.human_period, w.human_period, kPeriod);
+}
+
+HANDSEL_WIRE(AttentionState)
+HANDSEL_WIRE(AttentionAdvice)
+
+}  // namespace handsel

@@ -1,0 +1,51 @@
+#include "common/messages/perception.hpp"
+
+#include "common/wire/parts.hpp"
+#include "idl/perception.h"
+
+namespace handsel {
+
+void describe(WireIo& io, ObservedJoint& m, handsel_ObservedJoint& w) {
+  io.text("name", m.name, w.name, Text::name);
+  io.point("position", m.position, w.position);
+  io.number("confidence", m.confidence, w.confidence, kShare);
+}
+
+void describe(WireIo& io, ObservedPerson& m, handsel_ObservedPerson& w) {
+  io.text("body", m.body, w.body, Text::name);
+  io.list("joints", m.joints, w.joints, 64);
+  io.flag("has_gaze", m.has_gaze, w.has_gaze);
+  io.point("gaze_origin", m.gaze_origin, w.gaze_origin);
+  io.direction("gaze_direction", m.gaze_direction, w.gaze_direction, m.has_gaze);
+}
+
+void describe(WireIo& io, Coverage& m, handsel_Coverage& w) {
+  io.point("low", m.low, w.low);
+  io.point("high", m.high, w.high);
+  io.check((m.low.array() <= m.high.array()).all(), "high", "lies below low");
+}
+
+void describe(WireIo& io, ObservedObject& m, handsel_ObservedObject& w) {
+  io.text("id", m.id, w.id, Text::name);
+  io.text("model", m.model, w.model, Text::maybe_empty);
+  io.pose("T_world_object", m.T_world_object, w.T_world_object);
+  io.number("confidence", m.confidence, w.confidence, kShare);
+}
+
+void describe(WireIo& io, HumanObservation& m, handsel_HumanObservation& w) {
+  io.text("source", m.source, w.source, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.part("coverage", m.coverage, w.coverage);
+  io.list("people", m.people, w.people, 16);
+}
+
+void describe(WireIo& io, ObjectObservation& m, handsel_ObjectObservation& w) {
+  io.text("source", m.source, w.source, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.list("objects", m.objects, w.objects, 64);
+}
+
+HANDSEL_WIRE_KEYED(HumanObservation, source)
+HANDSEL_WIRE_KEYED(ObjectObservation, source)
+
+}  // namespace handsel

@@ -1,0 +1,136 @@
+#include "common/messages/planning.hpp"
+
+#include "common/wire/parts.hpp"
+
+namespace handsel {
+namespace {
+constexpr const char* kPlanners[] = {"automatic", "rrt", "rrt_connect", "trrt", "bitrrt"};
+}
+
+void describe(WireIo& io, Contact& m, handsel_Contact& w) {
+  io.integer("finger", m.finger, w.finger);
+  io.point("position", m.position, w.position);
+  io.direction("normal", m.normal, w.normal);
+  io.integer("triangle", m.triangle, w.triangle);
+  io.point("barycentric", m.barycentric, w.barycentric, {-1, 2});
+  io.number("friction", m.friction, w.friction, {0, 10});
+  io.number("curvature", m.curvature, w.curvature, kShare);
+}
+
+void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
+  io.integer("id", m.id, w.id);
+  io.pose("T_object_hand", m.T_object_hand, w.T_object_hand);
+  io.vector("hand_joints", m.hand_joints, w.hand_joints, kCoordinate);
+  io.vector("pregrasp_joints", m.pregrasp_joints, w.pregrasp_joints, kCoordinate);
+  io.list("contacts", m.contacts, w.contacts, 16);
+  io.number("epsilon", m.epsilon, w.epsilon, {-1e3, 1e3});
+  io.number("quality", m.quality, w.quality, {-1e3, 1e3});
+  io.vector("arm_joints", m.arm_joints, w.arm_joints, kCoordinate);
+  io.vector("approach_joints", m.approach_joints, w.approach_joints, kCoordinate);
+  io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0, "pregrasp_joints",
+           "has not as many values as hand_joints");
+}
+
+void describe(WireIo& io, PathRequest& m, handsel_PathRequest& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.text("group", m.group, w.group, Text::name);
+  io.vector("start", m.start, w.start, kCoordinate);
+  io.list("goals", m.goals, w.goals, 64);
+  io.part("attachment", m.attachment, w.attachment);
+  describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
+  io.choice("planner", m.planner, w.planner, kPlanners);
+  io.number("time_limit", m.time_limit, w.time_limit, kPeriod);
+  io.integer("seed", m.seed, w.seed);
+  io.flag("straight", m.straight, w.straight);
+  io.check(m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
+  io.check(equally_wide(m.goals), "goals", "have different numbers of axes");
+}
+
+void describe(WireIo& io, PathReply& m, handsel_PathReply& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.flag("solved", m.solved, w.solved);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.integer("goal", m.goal, w.goal, 0, 63);
+  io.list("path", m.path, w.path, 4096);
+  io.number("cost", m.cost, w.cost, {0, 1e9});
+  io.number("length", m.length, w.length, {0, 1e9});
+  io.integer("checks", m.checks, w.checks);
+  io.check(equally_wide(m.path), "path", "has points with different numbers of axes");
+}
+
+void describe(WireIo& io, TrajectoryRequest& m, handsel_TrajectoryRequest& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.text("group", m.group, w.group, Text::name);
+  io.list("nodes", m.nodes, w.nodes, 4096);
+  io.vector("start", m.start, w.start, kCoordinate);
+  io.part("attachment", m.attachment, w.attachment);
+  describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
+  io.number("speed_scale", m.speed_scale, w.speed_scale, {0, 1, true});
+  io.check(equally_wide(m.nodes), "nodes", "have different numbers of axes");
+}
+
+void describe(WireIo& io, TrajectoryReply& m, handsel_TrajectoryReply& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.flag("solved", m.solved, w.solved);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.part("trajectory", m.trajectory, w.trajectory);
+  io.number("duration_ptp", m.duration_ptp, w.duration_ptp, kTime);
+  io.list("corners", m.corners, w.corners, 256, true);
+}
+
+void describe(WireIo& io, GraspRequest& m, handsel_GraspRequest& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.text("object", m.object, w.object, Text::name);
+  io.vector("start", m.start, w.start, kCoordinate);
+  io.text("for_human", m.for_human, w.for_human, Text::maybe_empty);
+  io.integer("max_grasps", m.max_grasps, w.max_grasps, 1, 200);
+  io.integer("seed", m.seed, w.seed);
+}
+
+void describe(WireIo& io, GraspReply& m, handsel_GraspReply& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.list("grasps", m.grasps, w.grasps, 200, true);
+  io.list("rejected", m.rejected, w.rejected, 256, true);
+}
+
+void describe(WireIo& io, GraspCandidates& m, handsel_GraspCandidates& w) {
+  io.text("object", m.object, w.object, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.list("grasps", m.grasps, w.grasps, 200, true);
+}
+
+void describe(WireIo& io, StateQuery& m, handsel_StateQuery& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.list("states", m.states, w.states, 4096);
+  io.part("attachment", m.attachment, w.attachment);
+  describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
+  io.check(equally_wide(m.states), "states", "have different numbers of axes");
+}
+
+void describe(WireIo& io, StateVerdict& m, handsel_StateVerdict& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.bytes("free", m.free, w.free, 4096, 1);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.horizon("clearance", m.clearance, w.clearance, -1e4);
+}
+
+HANDSEL_WIRE(PathRequest)
+HANDSEL_WIRE(PathReply)
+HANDSEL_WIRE(TrajectoryRequest)
+HANDSEL_WIRE(TrajectoryReply)
+HANDSEL_WIRE(GraspRequest)
+HANDSEL_WIRE(GraspReply)
+HANDSEL_WIRE_KEYED(GraspCandidates, object)
+HANDSEL_WIRE(StateQuery)
+HANDSEL_WIRE(StateVerdict)
+
+}  // namespace handsel

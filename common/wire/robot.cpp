@@ -1,0 +1,49 @@
+#include "common/messages/robot.hpp"
+
+#include "common/wire/parts.hpp"
+#include "idl/robot.h"
+
+namespace handsel {
+namespace {
+
+constexpr const char* kDriveModes[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
+
+}  // namespace
+
+void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
+  io.text("robot", m.robot, w.robot, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.integer("sequence", m.sequence, w.sequence_number);
+  io.pose("T_world_base", m.T_world_base, w.T_world_base);
+  io.vector("position", m.position, w.position, kCoordinate);
+  io.vector("velocity", m.velocity, w.velocity, kCoordinate);
+  io.vector("effort", m.effort, w.effort, kForce);
+  io.vector("external_torque", m.external_torque, w.external_torque, kForce);
+  io.wrench("wrist_wrench", m.wrist_wrench, w.wrist_wrench);
+  io.number("hand_effort", m.hand_effort, w.hand_effort, {0, 1e5});
+  io.number("payload", m.payload, w.payload, {-1e3, 1e3});
+  io.choice("mode", m.mode, w.mode, kDriveModes);
+  const auto n = m.position.size();
+  io.check(n > 0, "position", "is empty, one value per axis is needed");
+  io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
+  io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has not as many values as position");
+  io.check(m.external_torque.size() == n || m.external_torque.size() == 0, "external_torque", "has not as many values as position");
+}
+
+void describe(WireIo& io, JointCommand& m, handsel_JointCommand& w) {
+  io.text("robot", m.robot, w.robot, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.integer("sequence", m.sequence, w.sequence_number);
+  io.vector("position", m.position, w.position, kCoordinate);
+  io.vector("velocity", m.velocity, w.velocity, kCoordinate);
+  io.vector("acceleration", m.acceleration, w.acceleration, kAcceleration);
+  const auto n = m.position.size();
+  io.check(n > 0, "position", "is empty, one value per axis is needed");
+  io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
+  io.check(m.acceleration.size() == n, "acceleration", "has not as many values as position");
+}
+
+HANDSEL_WIRE_KEYED(RobotState, robot)
+HANDSEL_WIRE_KEYED(JointCommand, robot)
+
+}  // namespace handsel

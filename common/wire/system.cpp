@@ -1,0 +1,80 @@
+#include "common/messages/system.hpp"
+
+#include "common/wire/parts.hpp"
+#include "idl/system.h"
+
+namespace handsel {
+namespace {
+constexpr const char* kHealthStates[] = {"starting", "ok", "degraded", "stopping"};
+constexpr const char* kSimActions[] = {
+    "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
+    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore"};
+constexpr Range kLimitShare{0, 1e9};
+}  // namespace
+
+void describe(WireIo& io, TopicHealth& m, handsel_TopicHealth& w) {
+  io.text("topic", m.topic, w.topic, Text::name);
+  io.integer("received", m.received, w.received);
+  io.number("rate", m.rate, w.rate, {0, 1e6});
+  io.number("age", m.age, w.age, {-1, 1e9});
+  io.integer("deadline_misses", m.deadline_misses, w.deadline_misses);
+  io.integer("rejected", m.rejected, w.rejected);
+  io.text("last_rejection", m.last_rejection, w.last_rejection, Text::sentence);
+}
+
+void describe(WireIo& io, ComponentHealth& m, handsel_ComponentHealth& w) {
+  io.text("component", m.component, w.component, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.integer("incarnation", m.incarnation, w.incarnation);
+  io.integer("pid", m.pid, w.pid);
+  io.choice("state", m.state, w.state, kHealthStates);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.number("cpu", m.cpu, w.cpu, {0, 1e4});
+  io.number("memory_mb", m.memory_mb, w.memory_mb, {0, 1e9});
+  io.number("uptime", m.uptime, w.uptime, kTime);
+  io.list("topics", m.topics, w.topics, 64);
+}
+
+void describe(WireIo& io, SimControl& m, handsel_SimControl& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.choice("action", m.action, w.action, kSimActions);
+  io.text("subject", m.subject, w.subject, Text::maybe_empty);
+  io.number("value", m.value, w.value, {-1e9, 1e9});
+}
+
+void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.number("sim_time", m.sim_time, w.sim_time, kTime);
+  io.number("real_time_factor", m.real_time_factor, w.real_time_factor, {0, 1e6});
+  io.text("carrier", m.carrier, w.carrier, Text::maybe_empty);
+  io.text("object", m.object, w.object, Text::maybe_empty);
+  io.pose("T_world_object", m.T_world_object, w.T_world_object);
+  io.number("lifted", m.lifted, w.lifted, kCoordinate);
+  io.number("max_lifted", m.max_lifted, w.max_lifted, kCoordinate);
+  io.number("human_contact_before_release", m.human_contact_before_release, w.human_contact_before_release, kTime);
+  io.number("human_alone", m.human_alone, w.human_alone, kTime);
+  io.flag("dropped", m.dropped, w.dropped);
+  io.flag("handover_done", m.handover_done, w.handover_done);
+  io.horizon("separation", m.separation, w.separation, -1e4);
+  io.horizon("least_separation", m.least_separation, w.least_separation, -1e4);
+  io.integer("ssm_violations", m.ssm_violations, w.ssm_violations);
+  io.number("peak_closing_speed", m.peak_closing_speed, w.peak_closing_speed, kCoordinate);
+  io.number("contact_force", m.contact_force, w.contact_force, {0, 1e9});
+  io.number("limit_share_velocity", m.limit_share_velocity, w.limit_share_velocity, kLimitShare);
+  io.number("limit_share_acceleration", m.limit_share_acceleration, w.limit_share_acceleration, kLimitShare);
+  io.number("limit_share_jerk", m.limit_share_jerk, w.limit_share_jerk, kLimitShare);
+  io.integer("limit_violations", m.limit_violations, w.limit_violations);
+  io.integer("self_or_scene_collisions", m.self_or_scene_collisions, w.self_or_scene_collisions);
+  io.integer("commanders", m.commanders, w.commanders);
+  io.number("setpoint_gap_max", m.setpoint_gap_max, w.setpoint_gap_max, kTime);
+  io.integer("set_points", m.set_points, w.set_points);
+  io.flag("robot_moving", m.robot_moving, w.robot_moving);
+  io.integer("hash", m.hash, w.hash);
+  io.list("person", m.person, w.person, 64);
+}
+
+HANDSEL_WIRE_KEYED(ComponentHealth, component)
+HANDSEL_WIRE(SimControl)
+HANDSEL_WIRE(GroundTruth)
+
+}  // namespace handsel

@@ -1,0 +1,74 @@
+#include "common/messages/task.hpp"
+
+#include "common/wire/parts.hpp"
+#include "idl/task.h"
+
+namespace handsel {
+namespace {
+
+constexpr const char* kTasks[] = {"give", "receive", "pick",  "place",  "clear",  "tidy",        "regrasp",
+                                  "lift", "go_to",   "pause", "resume", "cancel", "acknowledge", "speed"};
+constexpr const char* kTaskStates[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
+constexpr const char* kActions[] = {"pick", "place", "give", "receive", "go_to"};
+constexpr const char* kActionStates[] = {"idle", "running", "succeeded", "failed", "cancelled"};
+
+}  // namespace
+
+void describe(WireIo& io, TaskGoal& m, handsel_TaskGoal& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.integer("id", m.id, w.id);
+  io.choice("kind", m.kind, w.kind, kTasks);
+  io.text("object", m.object, w.object, Text::maybe_empty);
+  io.text("human", m.human, w.human, Text::maybe_empty);
+  io.text("surface", m.surface, w.surface, Text::maybe_empty);
+  io.number("value", m.value, w.value, {-1e9, 1e9});
+  io.check(m.kind != TaskKind::speed || (m.value >= 0 && m.value <= 1), "value", "must be from 0 to 1 for a speed goal");
+}
+
+void describe(WireIo& io, TaskStatus& m, handsel_TaskStatus& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.integer("id", m.id, w.id);
+  io.choice("kind", m.kind, w.kind, kTasks);
+  io.choice("state", m.state, w.state, kTaskStates);
+  io.texts("plan", m.plan, w.plan, 64, Text::sentence);
+  io.integer("step", m.step, w.step);
+  io.text("phase", m.phase, w.phase, Text::sentence);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.list("refusals", m.refusals, w.refusals, 256, true);
+  io.check(m.step <= m.plan.size(), "step", "is beyond the end of plan");
+}
+
+void describe(WireIo& io, ActionGoal& m, handsel_ActionGoal& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.integer("id", m.id, w.id);
+  io.integer("task", m.task, w.task);
+  io.integer("epoch", m.epoch, w.epoch);
+  io.choice("kind", m.kind, w.kind, kActions);
+  io.flag("cancel", m.cancel, w.cancel);
+  io.text("object", m.object, w.object, Text::maybe_empty);
+  io.text("human", m.human, w.human, Text::maybe_empty);
+  io.text("surface", m.surface, w.surface, Text::maybe_empty);
+}
+
+void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.integer("id", m.id, w.id);
+  io.integer("task", m.task, w.task);
+  io.choice("kind", m.kind, w.kind, kActions);
+  io.choice("state", m.state, w.state, kActionStates);
+  io.text("phase", m.phase, w.phase, Text::sentence);
+  io.text("object", m.object, w.object, Text::maybe_empty);
+  io.text("human", m.human, w.human, Text::maybe_empty);
+  io.flag("holding", m.holding, w.holding);
+  io.flag("exchange_engaged", m.exchange_engaged, w.exchange_engaged);
+  io.point("exchange_point", m.exchange_point, w.exchange_point);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.list("refusals", m.refusals, w.refusals, 256, true);
+}
+
+HANDSEL_WIRE(TaskGoal)
+HANDSEL_WIRE(TaskStatus)
+HANDSEL_WIRE(ActionGoal)
+HANDSEL_WIRE(ActionStatus)
+
+}  // namespace handsel
