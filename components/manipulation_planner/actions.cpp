@@ -7,7 +7,7 @@
 
 namespace handsel::manipulation_planner {
 
-Routine<Outcome> ManipulationPlanner::pick(std::string object_id, std::string for_human) {
+Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human) {
   if (status_.holding && attachment_.object == object_id) co_return Outcome{};
   if (object(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
   Outcome last;
@@ -29,7 +29,7 @@ Routine<Outcome> ManipulationPlanner::pick(std::string object_id, std::string fo
   co_return last;
 }
 
-Routine<Outcome> ManipulationPlanner::try_grasp(std::string object_id, Grasp grasp) {
+Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, const Grasp& grasp) {
   status_.phase = "planning";
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
   if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
@@ -72,7 +72,7 @@ Routine<Outcome> ManipulationPlanner::try_grasp(std::string object_id, Grasp gra
     co_return Outcome::failure(closed.outcome.good ? "the hand closed on nothing" : closed.outcome.reason);
   }
   grasp_ = grasp;
-  co_await waiting_.until([] { return false; }, settings_.settle_time());
+  co_await waiting_.pause(settings_.settle_time());
   const SceneObject* held = object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
@@ -80,7 +80,7 @@ Routine<Outcome> ManipulationPlanner::try_grasp(std::string object_id, Grasp gra
   co_return lifted;
 }
 
-Routine<Outcome> ManipulationPlanner::lift(std::string object_id) {
+Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id) {
   Motion up;
   up.phase = "lift";
   up.straight = true;
@@ -98,13 +98,13 @@ Routine<Outcome> ManipulationPlanner::lift(std::string object_id) {
   co_return Outcome::failure("the arm cannot lift " + object_id + " straight up by " + std::to_string(settings_.lift_height()) + " m");
 }
 
-Routine<Outcome> ManipulationPlanner::give(std::string object_id, std::string human) {
+Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const std::string& human) {
   const SceneObject* held = object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
   if (held->holder == Holder::human) co_return Outcome{};
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
   status_.phase = "choosing the exchange point";
-  const bool seen = co_await waiting_.until([this, human] { return person(human) != nullptr; }, settings_.offer_timeout());
+  const bool seen = co_await waiting_.until([this, &human] { return person(human) != nullptr; }, settings_.offer_timeout());
   if (!seen) co_return Outcome::failure(human.empty() ? "nobody is in sight" : "person " + human + " is not in sight");
   const std::string receiver = person(human)->id;
   status_.human = receiver;
@@ -115,7 +115,7 @@ Routine<Outcome> ManipulationPlanner::give(std::string object_id, std::string hu
     const Person* whom = person(receiver);
     if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
     auto search = std::make_shared<ExchangeSearch>();
-    const auto job = [this, search, scene = scene_, who = *whom, q = set_point_, T = attachment_.T_tool_object] {
+    const std::function<void()> job = [this, search, scene = scene_, who = *whom, q = set_point_, T = attachment_.T_tool_object] {
       *search = find_exchange(*robot_, scene, who, q, T, settings_);
     };
     last = co_await work(job);
@@ -123,7 +123,7 @@ Routine<Outcome> ManipulationPlanner::give(std::string object_id, std::string hu
     if (search->poses.empty()) {
       last = Outcome::failure(search->reason);
       refuse("exchange point", last.reason);
-      co_await waiting_.until([] { return false; }, 0.5);
+      co_await waiting_.pause(0.5);
       continue;
     }
     Motion carry;
@@ -150,13 +150,13 @@ Routine<Outcome> ManipulationPlanner::give(std::string object_id, std::string hu
   }
   release_object();
   status_.phase = "retreat";
-  co_await waiting_.until([] { return false; }, 0.5);
+  co_await waiting_.pause(0.5);
   Outcome back = co_await retreat(receiver, object_id);
   if (!back.good) refuse("retreat", back.reason);
   co_return Outcome{};
 }
 
-Routine<Outcome> ManipulationPlanner::place(std::string object_id, std::string surface) {
+Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const std::string& surface) {
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
   const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == surface; });
   if (box == scene_.boxes.end() || !box->supports) co_return Outcome::failure("there is no surface called " + surface);
@@ -171,8 +171,8 @@ Routine<Outcome> ManipulationPlanner::place(std::string object_id, std::string s
     Vector arm_above, arm_at;
   };
   auto spots = std::make_shared<std::vector<Spot>>();
-  const auto job = [this, spots, scene = scene_, surface_box = *box, T_tool_object = attachment_.T_tool_object, q = set_point_, model, top,
-                    heading, object_id] {
+  const std::function<void()> job = [this, spots, scene = scene_, surface_box = *box, T_tool_object = attachment_.T_tool_object,
+                                     q = set_point_, model, top, heading, object_id] {
     IkOptions options;
     options.restarts = 2;
     constexpr double kMargin = 0.08;
@@ -218,7 +218,8 @@ Routine<Outcome> ManipulationPlanner::place(std::string object_id, std::string s
     HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
     if (!released.outcome.good) co_return released.outcome;
     release_object();
-    Outcome back = co_await retreat("", object_id);
+    const std::string nobody;
+    Outcome back = co_await retreat(nobody, object_id);
     if (!back.good) refuse("retreat", back.reason);
     co_return Outcome{};
   }

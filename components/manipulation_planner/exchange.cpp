@@ -64,10 +64,9 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
           ++blocked;
           continue;
         }
-        const double base_cost = settings.w_comfort() * arm_comfort_cost(person, p) +
-                                 settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
-                                 settings.w_visibility() * visibility_cost(person, p, 3.0) +
-                                 settings.w_effort() * (p - T_world_object_now.translation()).norm();
+        const double base_cost =
+            settings.w_comfort() * arm_comfort_cost(person, p) + settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
+            settings.w_visibility() * visibility_cost(person, p, 3.0) + settings.w_effort() * (p - T_world_object_now.translation()).norm();
         for (int k = 0; k < 12; ++k) {
           const double yaw = 2 * std::numbers::pi * k / 12;
           Pose T = T_world_object_now;

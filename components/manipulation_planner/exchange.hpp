@@ -15,7 +15,7 @@ namespace handsel::manipulation_planner {
 
 struct ExchangePose {
   Pose T_world_object{Pose::Identity()};
-  Vector arm_joints;      ///< arm axes that put the held object there
+  Vector arm_joints;  ///< arm axes that put the held object there
   double cost{};
 };
 

@@ -77,9 +77,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = nullptr;
 }
 
-bool ManipulationPlanner::at_rest() const {
-  return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9;
-}
+bool ManipulationPlanner::at_rest() const { return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9; }
 
 bool ManipulationPlanner::may_move() const { return execution_ && execution_->mode < Mode::hold; }
 
@@ -127,14 +125,14 @@ void ManipulationPlanner::refuse(const std::string& what, const std::string& rea
   if (status_.refusals.size() < 32) status_.refusals.push_back({what, reason});
 }
 
-Routine<Outcome> ManipulationPlanner::work(std::function<void()> job) {
+Routine<Outcome> ManipulationPlanner::work(const std::function<void()>& job) {
   const std::uint64_t mine = ++jobs_started_;
-  out_->jobs.push_back(std::move(job));
+  out_->jobs.push_back(job);
   const bool done = co_await waiting_.until([this, mine] { return jobs_done_ >= mine; }, settings_.request_timeout());
   co_return done ? Outcome{} : Outcome::failure("the computation did not end in time");
 }
 
-Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(std::string object_id, std::string for_human) {
+Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const std::string& object_id, const std::string& for_human) {
   status_.phase = "choosing a grasp";
   GraspRequest request;
   request.id = next_request();
@@ -159,7 +157,7 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(std::str
   co_return none;
 }
 
-Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(Vector start, Motion motion) {
+Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const Vector& start, const Motion& motion) {
   PathRequest request;
   request.id = next_request();
   request.group = arm_.name;
@@ -184,7 +182,7 @@ Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(Vector 
   co_return planned;
 }
 
-Routine<Outcome> ManipulationPlanner::execute(std::vector<Vector> nodes, Motion motion) {
+Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, const Motion& motion) {
   TrajectoryRequest request;
   request.id = next_request();
   request.group = arm_.name;
@@ -232,7 +230,7 @@ Routine<Outcome> ManipulationPlanner::execute(std::vector<Vector> nodes, Motion 
   co_return Outcome{};
 }
 
-Routine<Outcome> ManipulationPlanner::move(Motion motion) {
+Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
   Outcome last;
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts(); ++attempt) {
     status_.phase = motion.phase;
@@ -246,12 +244,12 @@ Routine<Outcome> ManipulationPlanner::move(Motion motion) {
       last = planned.outcome;
     }
     refuse(motion.phase, last.reason);
-    co_await waiting_.until([] { return false; }, 0.3);
+    co_await waiting_.pause(0.3);
   }
   co_return last;
 }
 
-Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, Vector position, double timeout) {
+Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout) {
   HandCommand command;
   command.id = ++commands_;
   command.robot = robot_->name();
@@ -272,8 +270,8 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
     result.outcome = Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
     co_return result;
   }
-  const bool ended = co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand != HandState::moving; },
-                                             timeout);
+  const bool ended =
+      co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand != HandState::moving; }, timeout);
   const bool waits_for_pull = action == HandAction::release_on_pull;
   if (ended && waits_for_pull)
     co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand == HandState::released; }, timeout);
@@ -283,7 +281,7 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
   co_return result;
 }
 
-Routine<Outcome> ManipulationPlanner::retreat(std::string allowed_person, std::string object_id) {
+Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person, const std::string& object_id) {
   const Pose T_now = T_world_tool();
   Vector3 away = -T_now.linear().col(2);
   if (const SceneObject* left = object(object_id)) {
@@ -328,11 +326,21 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
   }
   Outcome outcome;
   switch (goal.kind) {
-    case ActionKind::pick: outcome = co_await pick(goal.object, goal.human); break;
-    case ActionKind::give: outcome = co_await give(goal.object, goal.human); break;
-    case ActionKind::place: outcome = co_await place(goal.object, goal.surface); break;
-    case ActionKind::go_to: outcome = co_await go_to_rest(); break;
-    case ActionKind::receive: outcome = Outcome::failure("receive needs a person who offers; this version does not take objects"); break;
+    case ActionKind::pick:
+      outcome = co_await pick(goal.object, goal.human);
+      break;
+    case ActionKind::give:
+      outcome = co_await give(goal.object, goal.human);
+      break;
+    case ActionKind::place:
+      outcome = co_await place(goal.object, goal.surface);
+      break;
+    case ActionKind::go_to:
+      outcome = co_await go_to_rest();
+      break;
+    case ActionKind::receive:
+      outcome = Outcome::failure("receive needs a person who offers; this version does not take objects");
+      break;
   }
   co_return outcome;
 }

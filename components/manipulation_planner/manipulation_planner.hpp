@@ -1,5 +1,5 @@
-// The human-aware manipulation planner (MHP, chapter section 2.1): brings grasp, path and trajectory planner together to carry out one action.
-// Pure: messages come in, time comes in, messages go out through the Outbox.
+// The human-aware manipulation planner (MHP, chapter section 2.1): brings grasp, path and trajectory planner together to carry out one
+// action. Pure: messages come in, time comes in, messages go out through the Outbox.
 #pragma once
 
 #include <cstdint>
@@ -80,21 +80,21 @@ class ManipulationPlanner {
 
   // Actions.
   Routine<Outcome> run(ActionGoal goal);
-  Routine<Outcome> pick(std::string object, std::string for_human);
-  Routine<Outcome> try_grasp(std::string object, Grasp grasp);
-  Routine<Outcome> lift(std::string object);
-  Routine<Outcome> give(std::string object, std::string human);
-  Routine<Outcome> place(std::string object, std::string surface);
+  Routine<Outcome> pick(const std::string& object, const std::string& for_human);
+  Routine<Outcome> try_grasp(const std::string& object, const Grasp& grasp);
+  Routine<Outcome> lift(const std::string& object);
+  Routine<Outcome> give(const std::string& object, const std::string& human);
+  Routine<Outcome> place(const std::string& object, const std::string& surface);
   Routine<Outcome> go_to_rest();
 
-  // Parts of actions.
-  Routine<GraspList> ask_grasps(std::string object, std::string for_human);
-  Routine<PlannedPath> plan_path(Vector start, Motion motion);
-  Routine<Outcome> move(Motion motion);
-  Routine<Outcome> execute(std::vector<Vector> nodes, Motion motion);
-  Routine<HandResult> hand(HandAction action, Vector position, double timeout);
-  Routine<Outcome> retreat(std::string allowed_person, std::string object);
-  Routine<Outcome> work(std::function<void()> job);
+  // Parts of actions. References are to what lives in the frame of the routine that awaits.
+  Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human);
+  Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
+  Routine<Outcome> move(const Motion& motion);
+  Routine<Outcome> execute(const std::vector<Vector>& nodes, const Motion& motion);
+  Routine<HandResult> hand(HandAction action, const Vector& position, double timeout);
+  Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
+  Routine<Outcome> work(const std::function<void()>& job);
 
   bool at_rest() const;
   bool may_move() const;

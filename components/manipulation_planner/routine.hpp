@@ -3,8 +3,8 @@
 
 #include <coroutine>
 #include <exception>
-#include <functional>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "common/base/time.hpp"
@@ -72,33 +72,41 @@ class Waiting {
   /// Resumes the waiting routine when its condition holds or its time is up.
   void poll(TimePoint now) {
     now_ = now;
-    if (!handle_ || (!condition_() && now < deadline_)) return;
+    if (!handle_ || (!holds_(condition_) && now < deadline_)) return;
     const auto handle = std::exchange(handle_, {});
     handle.resume();
   }
   void clear() { handle_ = {}; }
-  TimePoint now() const { return now_; }
   void set_now(TimePoint now) { now_ = now; }
 
+  /// Lives in the waiting routine's frame. Conditions capture by reference or trivially: g++ 12 may copy the operands of co_await bitwise.
+  template <class Condition>
   struct Until {
+    static_assert(std::is_trivially_copyable_v<Condition>);
     Waiting& waiting;
-    std::function<bool()> condition;
+    Condition condition;
     TimePoint deadline;
     bool await_ready() const { return condition(); }
     void await_suspend(std::coroutine_handle<> handle) {
       waiting.handle_ = handle;
-      waiting.condition_ = condition;
+      waiting.condition_ = &condition;
+      waiting.holds_ = [](const void* c) { return (*static_cast<const Condition*>(c))(); };
       waiting.deadline_ = deadline;
     }
     bool await_resume() const { return condition(); }  ///< false: the time ran out
   };
-  Until until(std::function<bool()> condition, double timeout) {
-    return {*this, std::move(condition), now_ + from_seconds(timeout)};
+  template <class Condition>
+  Until<Condition> until(Condition condition, double timeout) {
+    return {*this, condition, now_ + from_seconds(timeout)};
+  }
+  auto pause(double duration) {
+    return until([] { return false; }, duration);
   }
 
  private:
   std::coroutine_handle<> handle_{};
-  std::function<bool()> condition_;
+  const void* condition_{nullptr};
+  bool (*holds_)(const void*){nullptr};
   TimePoint deadline_{}, now_{};
 };
 

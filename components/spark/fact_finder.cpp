@@ -14,9 +14,7 @@ constexpr std::array kZoneLimits = {0.1, 0.45, 1.2, 3.6};  // contact, danger, i
 constexpr std::array kZoneFacts = {FactKind::in_contact_zone, FactKind::in_danger_zone, FactKind::in_interaction_zone,
                                    FactKind::in_social_zone};
 
-const BodyJoint& joint(const Person& person, const char* name) {
-  return person.joints[static_cast<std::size_t>(body_joint_index(name))];
-}
+const BodyJoint& joint(const Person& person, const char* name) { return person.joints[static_cast<std::size_t>(body_joint_index(name))]; }
 
 double speed_toward(const BodyJoint& joint, const Vector3& target) {
   const Vector3 gap = target - joint.position;
@@ -82,10 +80,17 @@ void FactFinder::person_facts(const Scene& scene, const Person& person, TimePoin
 void FactFinder::object_facts(const Scene& scene, const HumanState& people, std::vector<Fact>& out) const {
   for (const auto& object : scene.objects) {
     switch (object.holder) {
-      case Holder::surface: out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, 0}); break;
-      case Holder::robot: out.push_back({FactKind::held_by_robot, object.id, "", 1, 0}); break;
-      case Holder::human: out.push_back({FactKind::held_by_human, object.id, object.holder_id, 1, 0}); break;
-      case Holder::nobody: break;
+      case Holder::surface:
+        out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, 0});
+        break;
+      case Holder::robot:
+        out.push_back({FactKind::held_by_robot, object.id, "", 1, 0});
+        break;
+      case Holder::human:
+        out.push_back({FactKind::held_by_human, object.id, object.holder_id, 1, 0});
+        break;
+      case Holder::nobody:
+        break;
     }
     for (const auto& person : people.people)
       if (within_reach(person, object.T_world_object.translation()))

@@ -25,8 +25,8 @@ std::vector<SceneBox> boxes_of(const NodeContext& context) {
     const auto& rpy = box.pose().rpy();
     const Eigen::Quaterniond q = Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) * Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
                                  Eigen::AngleAxisd(rpy.x(), Vector3::UnitX());
-    boxes.push_back({box.id(), make_pose({xyz.x(), xyz.y(), xyz.z()}, q), {box.size().x(), box.size().y(), box.size().z()},
-                     box.supports()});
+    boxes.push_back(
+        {box.id(), make_pose({xyz.x(), xyz.y(), xyz.z()}, q), {box.size().x(), box.size().y(), box.size().z()}, box.supports()});
   }
   return boxes;
 }
@@ -46,9 +46,8 @@ Node::Node(Bus& bus, const NodeContext& context)
     tracker_.observe(observation, receipt.arrival - receipt.age);
     publish_people(bus_.now());
   });
-  bus.subscribe<ObjectObservation>([this](const ObjectObservation& observation, const Receipt& receipt) {
-    scene_.observe(observation, receipt.arrival - receipt.age);
-  });
+  bus.subscribe<ObjectObservation>(
+      [this](const ObjectObservation& observation, const Receipt& receipt) { scene_.observe(observation, receipt.arrival - receipt.age); });
   bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { scene_.update(state); });
   bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt&) { wanted_period_ = advice.human_period; });
   bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())), [this](TimePoint now) {

@@ -8,8 +8,10 @@
 namespace handsel::spark {
 namespace {
 
+// People move over the floor: the margin is horizontal.
 bool contains(const Coverage& box, const Vector3& p, double margin) {
-  return (p.array() >= box.low.array() + margin).all() && (p.array() <= box.high.array() - margin).all();
+  const Eigen::Array3d m(margin, margin, 0);
+  return (p.array() >= box.low.array() + m).all() && (p.array() <= box.high.array() - m).all();
 }
 
 std::optional<Vector3> observed_centre(const ObservedPerson& body) {
@@ -100,8 +102,8 @@ void PeopleTracker::observe(const HumanObservation& observation, TimePoint seen)
     if (track == nullptr) {
       if (!observed_centre(body)) continue;
       Track fresh;
-      const bool name_free = !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(),
-                                                                [&](const Track& t) { return t.person.id == body.body; });
+      const bool name_free =
+          !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == body.body; });
       fresh.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
       fresh.seen = seen;
       tracks_.push_back(std::move(fresh));

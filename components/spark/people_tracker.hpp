@@ -12,8 +12,8 @@
 
 namespace handsel::spark {
 
-/// A lost person is never gone (reliability promise P3): the last body stays, inflated by lost_speed x age, until its volume is seen empty or
-/// the person is seen elsewhere.
+/// A lost person is never gone (reliability promise P3): the last body stays, inflated by lost_speed x age, until its volume is seen empty
+/// or the person is seen elsewhere.
 class PeopleTracker {
  public:
   explicit PeopleTracker(const config::SparkSettings& settings) : settings_(settings) {}
@@ -26,7 +26,7 @@ class PeopleTracker {
  private:
   struct Track {
     Person person;
-    std::string body;       // the tracker's id when last seen
+    std::string body;  // the tracker's id when last seen
     TimePoint seen{};
   };
   struct Source {

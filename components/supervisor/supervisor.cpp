@@ -73,9 +73,14 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
       }
       finish(TaskState::cancelled, "cancelled on request", out);
       break;
-    case TaskKind::acknowledge: permission_.acknowledge(); break;
-    case TaskKind::speed: permission_.set_override(std::clamp(goal.value, 0.0, 1.0)); break;
-    default: break;
+    case TaskKind::acknowledge:
+      permission_.acknowledge();
+      break;
+    case TaskKind::speed:
+      permission_.set_override(std::clamp(goal.value, 0.0, 1.0));
+      break;
+    default:
+      break;
   }
   out.task_statuses.push_back(done);
 }
@@ -165,8 +170,10 @@ void Supervisor::step(TimePoint now, Outbox& out) {
   if (!out.task_statuses.empty()) {
     status_sent_ = now;
   } else if (to_seconds(now - status_sent_) >= settings_.status_period()) {
-    if (task_) report(out);
-    else if (last_) out.task_statuses.push_back(*last_);
+    if (task_)
+      report(out);
+    else if (last_)
+      out.task_statuses.push_back(*last_);
     status_sent_ = now;
   }
 }

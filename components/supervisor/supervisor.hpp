@@ -38,9 +38,9 @@ class Supervisor {
   struct Task {
     TaskStatus status;
     std::vector<PlannedAction> actions;
-    std::string home;          // surface the object came from
-    std::string failure;       // set once an action failed; what is left only recovers
-    bool begun{false};         // the current action was sent
+    std::string home;     // surface the object came from
+    std::string failure;  // set once an action failed; what is left only recovers
+    bool begun{false};    // the current action was sent
     std::uint64_t action{};
     TimePoint sent{};
   };

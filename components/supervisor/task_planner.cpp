@@ -6,7 +6,8 @@ namespace handsel::supervisor {
 namespace {
 
 const Fact* find(const Facts& facts, FactKind kind, const std::string& subject) {
-  const auto it = std::find_if(facts.facts.begin(), facts.facts.end(), [&](const Fact& f) { return f.kind == kind && f.subject == subject; });
+  const auto it =
+      std::find_if(facts.facts.begin(), facts.facts.end(), [&](const Fact& f) { return f.kind == kind && f.subject == subject; });
   return it == facts.facts.end() ? nullptr : &*it;
 }
 
@@ -39,7 +40,9 @@ TaskPlan plan_task(const TaskGoal& goal, const Facts& facts) {
       plan.actions.push_back({ActionKind::give, goal.object, goal.human, ""});
       plan.actions.push_back(kRest);
       break;
-    case TaskKind::pick: plan.actions.push_back({ActionKind::pick, goal.object, "", ""}); break;
+    case TaskKind::pick:
+      plan.actions.push_back({ActionKind::pick, goal.object, "", ""});
+      break;
     case TaskKind::place:
       if (goal.surface.empty()) {
         plan.reason = "place needs the name of a surface";
@@ -49,8 +52,12 @@ TaskPlan plan_task(const TaskGoal& goal, const Facts& facts) {
       plan.actions.push_back({ActionKind::place, goal.object, "", goal.surface});
       plan.actions.push_back(kRest);
       break;
-    case TaskKind::go_to: plan.actions.push_back(kRest); break;
-    default: plan.reason = std::string("this version plans give, pick, place and goto, not ") + name(goal.kind); break;
+    case TaskKind::go_to:
+      plan.actions.push_back(kRest);
+      break;
+    default:
+      plan.reason = std::string("this version plans give, pick, place and goto, not ") + name(goal.kind);
+      break;
   }
   return plan;
 }

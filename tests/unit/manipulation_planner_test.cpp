@@ -14,13 +14,15 @@ config::ManipulationPlannerSettings settings() {
   return s;
 }
 
-// Plays the planners and the controller: every request is answered at once unless the test says otherwise, every trajectory reaches its end.
+// Plays the planners and the controller: every request is answered at once unless the test says otherwise, every trajectory reaches its
+// end.
 class Rig {
  public:
   Rig()
       : robot(std::make_shared<RobotModel>(RobotModel::load(robot_description("jido")))),
         mug(ObjectModel::load(object_description("mug"))),
-        planner(settings(), robot, [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
+        planner(
+            settings(), robot, [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
     q = robot->rest_posture();
     scene.robot_known = true;
     scene.T_world_base = Pose::Identity();
@@ -84,8 +86,10 @@ class Rig {
     grasp.approach_joints = grasp.arm_joints;
     grasp.approach_joints[1] += 0.1;
     grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(q, robot->require_group("hand"));
-    if (grasps_exist) reply.grasps.push_back(grasp);
-    else reply.reason = "no frame gives three contacts";
+    if (grasps_exist)
+      reply.grasps.push_back(grasp);
+    else
+      reply.reason = "no frame gives three contacts";
     if (grasp_planner_lives) planner.on(reply);
   }
   void answer(const PathRequest& request) {
@@ -110,13 +114,16 @@ class Rig {
     allowed.push_back(command.allowed_contacts);
     execution.trajectory = command.id;
     execution.motion = stops > 0 ? MotionState::stopped : MotionState::finished;
-    if (stops > 0) --stops;
-    else q = RobotModel::with(q, robot->require_group("arm"), target);
+    if (stops > 0)
+      --stops;
+    else
+      q = RobotModel::with(q, robot->require_group("arm"), target);
   }
   void obey(const HandCommand& command) {
     execution.hand_command = command.id;
-    execution.hand = command.action == HandAction::grasp ? (grasp_holds ? HandState::grasped : HandState::empty)
-                     : command.action == HandAction::release_on_pull ? HandState::grasped : HandState::idle;
+    execution.hand = command.action == HandAction::grasp             ? (grasp_holds ? HandState::grasped : HandState::empty)
+                     : command.action == HandAction::release_on_pull ? HandState::grasped
+                                                                     : HandState::idle;
     if (command.action == HandAction::grasp && grasp_holds) {
       scene.objects[0].holder = Holder::robot;
       T_tool_mug = make_pose({0.08, 0.02, 0.23});
