@@ -1,0 +1,19 @@
+// handsel model check | info | fk: robot descriptions and URDFs without a running system.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+/// Adds the subcommands; a run writes its exit code to `exit_code`.
+void add_model_commands(CLI::App& app, int& exit_code);
+
+/// What a robot lacks to be driven by Handsel, one sentence each; empty when nothing does.
+std::vector<std::string> lacks_of(const RobotModel& robot);
+
+}  // namespace handsel
