@@ -1,0 +1,100 @@
+#include "sim/limits_oracle.hpp"
+
+#include <cmath>
+
+namespace handsel::sim {
+
+namespace {
+
+constexpr double kTolerance = 1e-6;    // relative
+constexpr double kRounding = 1e-12;    // of positions [rad]
+constexpr double kRestartJump = 0.05;  // from the robot's posture [rad]
+constexpr std::size_t kLearn = 100;
+
+double snapped(double period) {
+  for (double usual : {0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020}) {
+    if (std::abs(period - usual) < 0.15 * usual) return usual;
+  }
+  return period;
+}
+
+}  // namespace
+
+LimitsOracle::LimitsOracle(const RobotModel& model, double restart_after, double period)
+    : model_(model), limits_(model.guard_limits()), restart_after_(restart_after), period_(period) {}
+
+void LimitsOracle::violated(const char* what, Eigen::Index axis, double value, double bound) {
+  bad_ = true;
+  last_ = std::string(what) + " of " + model_.axes()[axis].name + ": " + std::to_string(value) + " beyond " + std::to_string(bound);
+}
+
+void LimitsOracle::judge_bounds(const JointCommand& c) {
+  for (Eigen::Index i = 0; i < c.position.size(); ++i) {
+    const double v = std::abs(c.velocity[i]), a = std::abs(c.acceleration[i]);
+    shares_[0] = std::max(shares_[0], v / limits_.velocity[i]);
+    shares_[1] = std::max(shares_[1], a / limits_.acceleration[i]);
+    if (v > limits_.velocity[i] * (1 + kTolerance)) violated("velocity", i, v, limits_.velocity[i]);
+    if (a > limits_.acceleration[i] * (1 + kTolerance)) violated("acceleration", i, a, limits_.acceleration[i]);
+    const Axis& axis = model_.axes()[i];
+    if (axis.lower < axis.upper && (c.position[i] < axis.lower - kTolerance || c.position[i] > axis.upper + kTolerance)) {
+      violated("position", i, c.position[i], c.position[i] < axis.lower ? axis.lower : axis.upper);
+    }
+  }
+}
+
+void LimitsOracle::judge_step(const JointCommand& from, const JointCommand& to) {
+  const double t = period_ * static_cast<double>(to.sequence - from.sequence);
+  for (Eigen::Index i = 0; i < to.position.size(); ++i) {
+    const double J = limits_.jerk[i];
+    const double da = std::abs(to.acceleration[i] - from.acceleration[i]);
+    const double dv = std::abs(to.velocity[i] - from.velocity[i] - from.acceleration[i] * t);
+    const double dp = std::abs(to.position[i] - from.position[i] - from.velocity[i] * t - from.acceleration[i] * t * t / 2);
+    const double share = std::max(da / (J * t), dv / (J * t * t / 2));
+    shares_[2] = std::max(shares_[2], share);
+    if (share > 1 + kTolerance) violated("jerk", i, share * J, J);
+    const double room = J * t * t * t / 6 * (1 + kTolerance) + kRounding;
+    if (dp > room) violated("position step", i, dp, room);
+  }
+}
+
+void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, double now, const Vector& actual) {
+  if (command.position.size() != actual.size() || command.velocity.size() != actual.size() ||
+      command.acceleration.size() != actual.size()) {
+    return;
+  }
+  bad_ = false;
+  const bool first = count_ == 0;
+  if (!first) longest_gap_ = std::max(longest_gap_, now - last_time_);
+  const bool starts = first || writer != last_writer_ || command.sequence <= previous_.sequence || now - last_time_ > restart_after_;
+  writers_.insert(writer);
+  ++count_;
+  judge_bounds(command);
+  if (starts) {
+    for (Eigen::Index i = 0; i < actual.size(); ++i) {
+      const double jump = std::abs(command.position[i] - actual[i]);
+      if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
+    }
+  }
+  if (period_ > 0) {
+    if (!starts) judge_step(previous_, command);
+  } else {
+    if (starts) {
+      waiting_.clear();
+      first_time_ = now;
+      first_sequence_ = command.sequence;
+    }
+    waiting_.push_back({command, starts});
+    if (waiting_.size() >= kLearn) {
+      period_ = snapped((now - first_time_) / static_cast<double>(command.sequence - first_sequence_));
+      for (std::size_t i = 1; i < waiting_.size(); ++i) judge_step(waiting_[i - 1].command, waiting_[i].command);
+      waiting_.clear();
+      waiting_.shrink_to_fit();
+    }
+  }
+  if (bad_) ++violations_;
+  previous_ = command;
+  last_writer_ = writer;
+  last_time_ = now;
+}
+
+}  // namespace handsel::sim

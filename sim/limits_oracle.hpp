@@ -1,0 +1,56 @@
+// Judges the stream of set-points against the guard limits, exactly, knowing nothing of how it was made (ours).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "common/messages/robot.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel::sim {
+
+/// Between two set-points n periods h apart, with t = n h and |jerk| <= J:
+/// |a1 - a0| <= J t, |v1 - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower <= p <= upper at
+/// each. The period is measured from the first 100 set-points (arrival span / sequence span, snapped to a usual rate); the continuity of
+/// those is judged too, once it is known. A stream that starts anew (other writer, sequence not growing, silence beyond the watch) must
+/// continue from the posture the robot is in.
+class LimitsOracle {
+ public:
+  LimitsOracle(const RobotModel&, double restart_after, double period = 0);
+
+  void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual);
+
+  double share_velocity() const { return shares_[0]; }  ///< largest |.| / guard limit so far
+  double share_acceleration() const { return shares_[1]; }
+  double share_jerk() const { return shares_[2]; }
+  std::uint64_t violations() const { return violations_; }  ///< set-points that broke a bound by more than 1e-6 of it
+  const std::string& last_violation() const { return last_; }
+  std::uint64_t count() const { return count_; }
+  std::uint64_t writers() const { return writers_.size(); }
+  double longest_gap() const { return longest_gap_; }  ///< since the first [s]
+  double period() const { return period_; }            ///< 0 while not known
+
+ private:
+  struct Held {
+    JointCommand command;
+    bool starts{};
+  };
+  void judge_step(const JointCommand& from, const JointCommand& to);
+  void judge_bounds(const JointCommand&);
+  void violated(const char* what, Eigen::Index axis, double value, double bound);
+
+  const RobotModel& model_;
+  KinematicLimits limits_;
+  double restart_after_, period_, longest_gap_{0}, first_time_{0}, last_time_{0};
+  std::array<double, 3> shares_{};
+  std::uint64_t violations_{0}, count_{0}, last_writer_{0}, first_sequence_{0};
+  bool bad_{false};
+  std::set<std::uint64_t> writers_;
+  std::vector<Held> waiting_;
+  JointCommand previous_;
+  std::string last_;
+};
+
+}  // namespace handsel::sim

@@ -1,0 +1,107 @@
+// An emulated person: a kinematic body moved by what it sees. Pure: time comes in steps, chance from a seed (behaviours: ours).
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+
+#include "common/messages/world.hpp"
+#include "common/model/human_body.hpp"
+#include "common/model/object_model.hpp"
+#include "sim/grip.hpp"
+#include "sim/recording.hpp"
+
+namespace handsel::sim {
+
+enum class PersonKind { taker, still, walker, recording, giver };
+
+struct PersonSettings {
+  std::string id;
+  Vector3 feet{Vector3::Zero()};  ///< world [m]
+  double yaw{};                   ///< facing, 0 = +x [rad]
+  double stature{1.75};           ///< [m]
+  PersonKind kind{PersonKind::taker};
+  double reaction{0.4};    ///< from offer to reach [s]
+  double approach_from{};  ///< walks in from this far behind its place [m]
+  double pull{8.0};        ///< when taking [N]
+  bool left_handed{};
+  std::shared_ptr<const Recording> recording;
+  double max_warp{0.10};  ///< a recorded hand is moved by no more than this [m]
+  double warp_time{0.5};  ///< over the last part before contact [s]
+};
+
+/// What the person sees and feels.
+struct PersonView {
+  Vector3 robot_hand{Vector3::Zero()};  ///< world [m]
+  const ObjectModel* object{nullptr};   ///< the one the exchange is about; nullptr: none
+  Pose T_world_object{Pose::Identity()};
+  Vector3 object_velocity{Vector3::Zero()};
+  bool held_by_robot{};
+  bool grip_broke{};                    ///< it slipped out of this person's hand
+  Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
+};
+
+enum class PersonPhase { arriving, watching, reaching, closing, pulling, withdrawing, keeping, retracting, offering, darting, leaving };
+const char* name(PersonPhase);
+
+class PersonModel {
+ public:
+  explicit PersonModel(const PersonSettings&);
+
+  void step(double dt, const PersonView&);
+  void freeze(bool on) { frozen_ = on; }
+  void dart(double speed);  ///< the hand shoots toward the robot's hand [m/s]
+  void leave();
+  void refuse() { refusing_ = true; }
+
+  const std::string& id() const { return settings_.id; }
+  PersonPhase phase() const { return phase_; }
+  const Person& body() const { return body_; }  ///< the truth, velocities included
+  Side side() const { return side_; }           ///< of the exchanging hand
+  bool wants_grip() const { return wants_grip_; }
+  bool exchanging() const;                               ///< from the reach until the object is withdrawn
+  const BodyState& hand() const { return hand_state_; }  ///< of the exchanging hand; axes turn with the body
+  double reach() const { return reach_; }                ///< shoulder to middle of the hand [m]
+  static constexpr double kPalm = 0.03;                  ///< middle of the hand to what it holds [m]
+
+ private:
+  void place_base();
+  void bend_arm(int side, const Vector3& target);
+  void look_at(const Vector3& target, double dt);
+  void enter(PersonPhase);
+  void act(double dt, const PersonView&);
+  void watch(double dt, const PersonView&);
+  void reach_out(double dt, const PersonView&);
+  void play(double dt, const PersonView&);
+  void pull(double dt, const PersonView&);
+  void withdraw(double dt, const PersonView&);
+  void retract(double dt);
+  void dart_on(double dt, const PersonView&);
+  void give_up();
+  bool offered(const PersonView&) const;
+  Vector3 grasp_point(const PersonView&) const;
+  Vector3 shoulder(int side) const;
+  Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
+  Vector3 left() const { return {-std::sin(yaw_), std::cos(yaw_), 0}; }
+  Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
+  double gap(const PersonView&) const;
+  Vector3 keep_point() const;
+  double since() const { return clock_ - phase_since_; }
+  int index() const { return side_ == Side::left ? 0 : 1; }
+
+  PersonSettings settings_;
+  BodyPoints template_{}, points_{}, before_{};
+  double reach_{}, clock_{0}, phase_since_{0}, offer_time_{0}, lost_time_{0}, sore_time_{0}, cooldown_{0}, playback_{0}, progress_{0};
+  PersonPhase phase_{PersonPhase::watching};
+  Side side_{Side::right};
+  bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true};
+  Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()};
+  double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, walk_direction_{1};
+  Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
+      warp_{Vector3::Zero()};
+  Vector3 gaze_{Vector3::UnitX()};
+  Person body_;
+  BodyState hand_state_;
+};
+
+}  // namespace handsel::sim

@@ -1,0 +1,177 @@
+#include "sim/scene_setup.hpp"
+
+#include <algorithm>
+
+#include "common/base/errors.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+constexpr const char* kActions[] = {
+    "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
+    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore"};
+
+Vector3 vec(const config::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+PersonKind kind_of(config::PersonBehaviour behaviour) {
+  switch (behaviour) {
+    case config::STILL:
+      return PersonKind::still;
+    case config::WALKER:
+      return PersonKind::walker;
+    case config::RECORDING:
+      return PersonKind::recording;
+    case config::GIVER:
+      return PersonKind::giver;
+    default:
+      return PersonKind::taker;
+  }
+}
+
+class Reader {
+ public:
+  Reader(const config::Scenario& scenario, const RobotModel& robot, const ObjectLibrary& library, const std::filesystem::path& data_root,
+         std::uint64_t seed)
+      : scenario_(scenario), robot_(robot), library_(library), data_root_(data_root), random_(seed * 0x9e3779b97f4a7c15ULL + 0x5eed) {}
+
+  SceneSetup read(double coverage) {
+    out_.T_world_base = pose_of(scenario_.base());
+    read_start();
+    for (const auto& box : scenario_.boxes()) read_box(box);
+    for (const auto& object : scenario_.objects()) read_object(object);
+    for (const auto& person : scenario_.people()) read_person(person);
+    for (const auto& sensor : scenario_.human_sensors()) out_.human_sensors.push_back(sensor_of(sensor, coverage));
+    for (const auto& sensor : scenario_.object_sensors()) out_.object_sensors.push_back(sensor_of(sensor, coverage));
+    for (const auto& d : scenario_.disturbances())
+      out_.disturbances.push_back({d.at(), {0, sim_action(d.action()), d.subject(), d.value()}});
+    std::stable_sort(out_.disturbances.begin(), out_.disturbances.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    if (!out_.objects.empty()) out_.watched = out_.objects.front().id;
+    for (const auto& task : scenario_.tasks()) {
+      if (task.object().empty()) continue;
+      out_.watched = task.object();
+      break;
+    }
+    out_.never_releases = scenario_.robot_never_releases();
+    return std::move(out_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw ConfigError("scenario " + scenario_.name() + ": " + what); }
+  double jitter(double size) { return size * (2 * std::uniform_real_distribution<double>(0, 1)(random_) - 1); }
+
+  void read_start() {
+    out_.start = robot_.rest_posture();
+    if (out_.start.size() != robot_.dof()) out_.start = Vector::Zero(robot_.dof());
+    std::vector<std::string> names;
+    for (const auto& entry : scenario_.start()) names.push_back(entry.first);
+    std::sort(names.begin(), names.end());
+    for (const std::string& joint : names) {
+      const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(), [&](const Axis& a) { return a.name == joint; });
+      if (axis == robot_.axes().end()) fail("start names joint " + joint + ", which robot " + robot_.name() + " does not have");
+      const double value = scenario_.start().at(joint);
+      if (value < axis->lower || value > axis->upper) {
+        fail("start of " + joint + " is " + std::to_string(value) + ", must be between " + std::to_string(axis->lower) + " and " +
+             std::to_string(axis->upper));
+      }
+      out_.start[axis - robot_.axes().begin()] = value;
+    }
+  }
+
+  void read_box(const config::BoxDescription& box) {
+    if (vec(box.size()).minCoeff() <= 0) fail("box " + box.id() + " has a size that is not above 0");
+    out_.boxes.push_back({box.id(), pose_of(box.pose()), vec(box.size()), box.supports()});
+  }
+
+  void read_object(const config::ObjectPlacement& object) {
+    StartObject o{object.id(), object.model(), library_(object.model()), pose_of(object.pose())};
+    if (o.model == nullptr) fail("object " + object.id() + " is of model " + object.model() + ", which is not under objects/");
+    o.T_world_object.translation() += Vector3(jitter(object.jitter()), jitter(object.jitter()), 0);
+    if (!object.on().empty()) {
+      const auto box = std::find_if(out_.boxes.begin(), out_.boxes.end(), [&](const StartBox& b) { return b.id == object.on(); });
+      if (box == out_.boxes.end()) fail("object " + object.id() + " stands on " + object.on() + ", which is no box of the scenario");
+      if (object.pose().xyz().z() == 0) {
+        o.T_world_object.translation().z() = box->T_world_box.translation().z() + box->size.z() / 2 + o.model->height_above_support;
+      }
+    }
+    out_.objects.push_back(o);
+  }
+
+  void read_person(const config::PersonDescription& person) {
+    StartPerson p;
+    PersonSettings& s = p.settings;
+    s.id = person.id();
+    s.feet = Vector3(person.x() + jitter(person.jitter()), person.y() + jitter(person.jitter()), 0);
+    s.yaw = person.yaw();
+    if (person.stature() > 0) s.stature = person.stature();
+    if (s.stature < 1.2 || s.stature > 2.2)
+      fail("stature of " + s.id + " is " + std::to_string(s.stature) + ", must be between 1.2 and 2.2");
+    s.kind = kind_of(person.behaviour());
+    if (person.reaction() > 0) s.reaction = person.reaction();
+    s.reaction *= 1 + (person.jitter() > 0 ? jitter(std::min(0.5, person.jitter() * 5)) : 0);
+    s.approach_from = person.approach_from();
+    if (person.pull() > 0) s.pull = person.pull();
+    s.left_handed = person.left_handed();
+    if (s.kind == PersonKind::recording) {
+      std::filesystem::path folder = person.recording();
+      if (folder.empty()) fail("person " + s.id + " plays a recording but names none");
+      if (folder.is_relative()) {
+        if (data_root_.empty()) throw MissingError("recording " + folder.string() + " is relative and HANDSEL_DATA is not set");
+        folder = data_root_ / folder;
+      }
+      s.recording = std::make_shared<const Recording>(load_recording(folder));
+    }
+    if (s.kind == PersonKind::giver) {
+      p.holds = person.object();
+      if (std::none_of(out_.objects.begin(), out_.objects.end(), [&](const StartObject& o) { return o.id == p.holds; })) {
+        fail("person " + s.id + " holds " + p.holds + ", which is no object of the scenario");
+      }
+    }
+    out_.people.push_back(std::move(p));
+  }
+
+  SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage) const {
+    if (!(sensor.rate() > 0) || sensor.latency() < 0 || sensor.noise() < 0) {
+      fail("sensor " + sensor.source() + " needs a rate above 0, latency and noise not below 0");
+    }
+    SensorSettings s{sensor.source(), sensor.rate(), sensor.latency(), sensor.noise(), {}};
+    const Vector3 centre = out_.T_world_base.translation();
+    s.coverage.low = Vector3(centre.x() - coverage, centre.y() - coverage, -0.1);
+    s.coverage.high = Vector3(centre.x() + coverage, centre.y() + coverage, 2.5);
+    return s;
+  }
+
+  const config::Scenario& scenario_;
+  const RobotModel& robot_;
+  const ObjectLibrary& library_;
+  std::filesystem::path data_root_;
+  std::mt19937_64 random_;
+  SceneSetup out_;
+};
+
+}  // namespace
+
+Pose pose_of(const config::PoseRpy& p) {
+  Pose T = Pose::Identity();
+  T.translation() = vec(p.xyz());
+  T.linear() = (Eigen::AngleAxisd(p.rpy().z(), Vector3::UnitZ()) * Eigen::AngleAxisd(p.rpy().y(), Vector3::UnitY()) *
+                Eigen::AngleAxisd(p.rpy().x(), Vector3::UnitX()))
+                   .toRotationMatrix();
+  return T;
+}
+
+SimAction sim_action(const std::string& name) {
+  std::string all;
+  for (std::size_t i = 0; i < std::size(kActions); ++i) {
+    if (name == kActions[i]) return static_cast<SimAction>(i);
+    all += std::string(i > 0 ? ", " : "") + kActions[i];
+  }
+  throw ConfigError("disturbance " + name + " is unknown; there are " + all);
+}
+
+SceneSetup set_up(const config::Scenario& scenario, const RobotModel& robot, const ObjectLibrary& library, double coverage,
+                  const std::filesystem::path& data_root, std::uint64_t seed) {
+  return Reader(scenario, robot, library, data_root, seed).read(coverage);
+}
+
+}  // namespace handsel::sim

@@ -1,0 +1,60 @@
+// From a scenario file to what the world starts with: poses, people, sensors; the seed decides what is jittered.
+#pragma once
+
+#include <filesystem>
+#include <random>
+
+#include "common/bus/node_context.hpp"
+#include "common/config/scenario.pb.h"
+#include "common/messages/system.hpp"
+#include "common/model/robot_model.hpp"
+#include "sim/person.hpp"
+#include "sim/sensors.hpp"
+
+namespace handsel::sim {
+
+Pose pose_of(const config::PoseRpy&);
+
+struct StartObject {
+  std::string id, model_name;
+  const ObjectModel* model{};
+  Pose T_world_object{Pose::Identity()};
+};
+
+struct StartBox {
+  std::string id;
+  Pose T_world_box{Pose::Identity()};
+  Vector3 size{Vector3::Zero()};
+  bool supports{};
+};
+
+struct StartPerson {
+  PersonSettings settings;
+  std::string holds;  ///< object id, for a giver
+};
+
+struct TimedControl {
+  double at{};  ///< [s]
+  SimControl control;
+};
+
+struct SceneSetup {
+  Pose T_world_base{Pose::Identity()};
+  Vector start;  ///< all axes
+  std::vector<StartBox> boxes;
+  std::vector<StartObject> objects;
+  std::vector<StartPerson> people;
+  std::vector<SensorSettings> human_sensors, object_sensors;
+  std::vector<TimedControl> disturbances;  ///< in time order
+  std::string watched;                     ///< object of the first task, else the first object; may be empty
+  bool never_releases{};
+};
+
+/// Throws ConfigError or MissingError naming what in the scenario is wrong and what there is.
+SceneSetup set_up(const config::Scenario&, const RobotModel&, const ObjectLibrary&, double coverage, const std::filesystem::path& data_root,
+                  std::uint64_t seed);
+
+/// "person_dart" -> SimAction::person_dart. Throws ConfigError listing the names.
+SimAction sim_action(const std::string& name);
+
+}  // namespace handsel::sim

@@ -1,0 +1,42 @@
+#include "sim/settings.hpp"
+
+#include <cstdlib>
+
+#include "common/config/resources.hpp"
+#include "common/config/sim.pb.h"
+
+namespace handsel::sim {
+
+SimSettings load_settings(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "sim.txtpb";
+  config::SimSettings read;
+  load_text_proto(file, read);
+  const auto positive = [&](double value, const char* key) {
+    if (!(value > 0)) throw ConfigError(file.string() + ": " + key + " is " + std::to_string(value) + ", must be above 0");
+    return value;
+  };
+  SimSettings s;
+  s.step = positive(read.step(), "step");
+  if (s.step > 0.005) throw ConfigError(file.string() + ": step is " + std::to_string(s.step) + ", must be at most 0.005");
+  s.solver_iterations = static_cast<int>(positive(read.solver_iterations(), "solver_iterations"));
+  s.state_rate = positive(read.state_rate(), "state_rate");
+  s.truth_rate = positive(read.truth_rate(), "truth_rate");
+  s.servo.bandwidth = positive(read.servo_bandwidth(), "servo_bandwidth");
+  s.robot_side.max_gap = positive(read.max_setpoint_gap(), "max_setpoint_gap");
+  s.robot_grip.max_force = positive(read.grip_force(), "grip_force");
+  s.robot_grip.max_torque = positive(read.grip_torque(), "grip_torque");
+  s.person_grip.max_force = positive(read.person_grip_force(), "person_grip_force");
+  s.touch_force = positive(read.touch_force(), "touch_force");
+  s.grasp_time = positive(read.grasp_time(), "grasp_time");
+  s.lose_time = positive(read.lose_time(), "lose_time");
+  s.wrench_filter = positive(read.wrench_filter(), "wrench_filter");
+  s.force_noise = read.force_noise();
+  s.position_noise = read.position_noise();
+  s.coverage = positive(read.coverage(), "coverage");
+  s.ssm.reaction = positive(read.reaction(), "reaction");
+  s.setpoint_period = read.setpoint_period();
+  if (const char* data = std::getenv("HANDSEL_DATA")) s.data_root = data;
+  return s;
+}
+
+}  // namespace handsel::sim

@@ -1,0 +1,35 @@
+// Settings of the emulated world; values and meanings as in common/config/sim.proto.
+#pragma once
+
+#include <filesystem>
+
+#include "sim/grip.hpp"
+#include "sim/robot_body.hpp"
+#include "sim/robot_side.hpp"
+#include "sim/separation_oracle.hpp"
+
+namespace handsel::sim {
+
+struct SimSettings {
+  double step{0.001};  ///< [s]
+  int solver_iterations{10};
+  double state_rate{500}, truth_rate{50};  ///< [Hz]
+  ServoSettings servo;
+  RobotSideSettings robot_side;
+  GripSettings robot_grip, person_grip;
+  double touch_force{0.2};      ///< [N]
+  double grasp_time{0.02};      ///< [s]
+  double lose_time{0.05};       ///< [s]
+  double wrench_filter{25};     ///< [Hz]
+  double force_noise{0.1};      ///< [N]
+  double position_noise{1e-5};  ///< [rad]
+  double coverage{4};           ///< [m]
+  double setpoint_period{0};    ///< [s], 0: measured
+  SsmSettings ssm;
+  std::filesystem::path data_root;  ///< where relative recordings are found; empty: nowhere
+};
+
+/// Reads <folder>/sim.txtpb and the environment's HANDSEL_DATA. Throws ConfigError naming file and field.
+SimSettings load_settings(const std::filesystem::path& folder);
+
+}  // namespace handsel::sim
