@@ -1,0 +1,40 @@
+#include "components/attention/adaptive_clock.hpp"
+
+#include <algorithm>
+
+#include "common/base/errors.hpp"
+
+namespace handsel::attention {
+
+AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, const std::string& what)
+    : settings_(settings), slack_(slack), period_(settings.p_min) {
+  if (!(settings.p_min > 0)) throw ConfigError("attention: behaviour " + what + ": p_min must be above 0 s");
+  if (!(settings.p_max >= settings.p_min)) throw ConfigError("attention: behaviour " + what + ": p_max must not be below p_min");
+  if (!(settings.far > settings.near)) throw ConfigError("attention: behaviour " + what + ": far must be above near");
+  if (!(settings.weber_gain > 0)) throw ConfigError("attention: behaviour " + what + ": weber_gain must be above 0");
+}
+
+void AdaptiveClock::fire(double stimulus, TimePoint now) {
+  const double s = std::isfinite(stimulus) ? std::clamp(stimulus, 0.0, settings_.far) : settings_.far;
+  if (settings_.law == ClockLaw::linear) {
+    period_ = settings_.p_max * (0.1 + 0.9 * (s - settings_.near) / (settings_.far - settings_.near));
+  } else {
+    const double floor = 0.01 * settings_.far;
+    const double before = activations_ == 0 ? settings_.far : previous_;
+    if (activations_ == 0) period_ = settings_.p_max;
+    period_ *= std::max(0.0, 1.0 + settings_.weber_gain * (s - before) / std::max(before, floor));
+    if (s >= settings_.far) period_ = settings_.p_max;
+  }
+  period_ = std::clamp(period_, settings_.p_min, settings_.p_max);
+  previous_ = s;
+  if (!started_) first_ = now;
+  started_ = true;
+  next_ = now + from_seconds(period_);
+  ++activations_;
+}
+
+std::uint64_t AdaptiveClock::activations_at_fastest(TimePoint now) const {
+  return started_ ? 1 + static_cast<std::uint64_t>(std::max(0.0, to_seconds(now - first_)) / settings_.p_min) : 0;
+}
+
+}  // namespace handsel::attention

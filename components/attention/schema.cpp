@@ -1,0 +1,305 @@
+#include "components/attention/schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/model/body_motion.hpp"
+
+namespace handsel::attention {
+
+Body::Body(const RobotModel& robot, const Vector3& p_tool_grasp)
+    : robot_(robot), capsules_(robot_capsules(robot)), p_tool_grasp_(p_tool_grasp) {}
+
+Separation Body::separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const Exception& exception) const {
+  robot_.forward(q, links_);
+  return separation(capsules_, links_, T_world_base, people, exception);
+}
+
+Vector3 Body::grasp_point(const Vector& q, const Pose& T_world_base) const {
+  robot_.forward(q, links_);
+  const int tool = robot_.tool_link();
+  return T_world_base * (tool < 0 ? Vector3(0, 0, 0) : Vector3(links_[static_cast<std::size_t>(tool)] * p_tool_grasp_));
+}
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool robot_known(const World& w, const Body& body) { return w.active && w.active->position.size() == body.dof(); }
+bool doing(const World& w, ActionKind kind) { return w.action && w.action->state == ActionState::running && w.action->kind == kind; }
+
+/// The person who matters: the partner of the action if seen, else the one whose torso is nearest to `p`.
+const Person* person_of_interest(const World& w, const Vector3& p, double lost_after) {
+  if (!w.people) return nullptr;
+  const Person* best = nullptr;
+  double nearest = kInfinity;
+  for (const Person& person : w.people->people) {
+    if (person.joints.size() != kBodyJoints.size() || person.age > lost_after) continue;
+    if (w.action && !w.action->human.empty() && w.action->human == person.id) return &person;
+    const double d = (person.joints[2].position - p).norm();
+    if (d < nearest) {
+      nearest = d;
+      best = &person;
+    }
+  }
+  return best;
+}
+
+struct NearHand {
+  double distance{kInfinity};
+  Vector3 position{Vector3::Zero()}, velocity{Vector3::Zero()};
+};
+
+NearHand nearest_hand(const Person& person, const Vector3& p) {
+  NearHand near;
+  for (std::size_t j : {std::size_t{7}, std::size_t{11}}) {
+    const double d = (person.joints[j].position - p).norm();
+    if (d < near.distance) near = {d, person.joints[j].position, person.joints[j].velocity};
+  }
+  return near;
+}
+
+/// Distance, or the time to contact at reference speed 0.5 m/s when that is less: what urgency is judged by.
+double urgency(double distance, double closing) {
+  constexpr double kReference = 0.5;
+  return std::max(0.0, closing > kReference ? distance * kReference / closing : distance);
+}
+
+double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
+
+class Search : public Schema {
+ public:
+  Search(const Body& body, const MotorSettings& motor) : body_(body), motor_(motor) {}
+  Behaviour kind() const override { return Behaviour::search; }
+  double perceive(const World& w, TimePoint now) override {
+    const bool seen = person_of_interest(w, Vector3::Zero(), motor_.lost_after) != nullptr;
+    if (seen || !started_) last_seen_ = now;
+    started_ = true;
+    searching_ = !seen;
+    const double since = to_seconds(now - last_seen_);
+    if (w.active) {
+      const double angle = 0.9 * std::sin(0.6 * since);
+      target_ = body_.base_point(w.active->T_world_base, Vector3(2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.3));
+      aimed_ = true;
+    }
+    return since;
+  }
+  bool released(const World&) const override { return searching_; }
+  std::optional<Vector3> gaze() const override { return aimed_ ? std::optional(target_) : std::nullopt; }
+
+ private:
+  const Body& body_;
+  MotorSettings motor_;
+  bool started_{}, searching_{true}, aimed_{};
+  TimePoint last_seen_{};
+  Vector3 target_{Vector3::Zero()};
+};
+
+class Track : public Schema {
+ public:
+  Track(const MotorSettings& motor, const ZoneSettings& zones) : motor_(motor), zone_(zones) {}
+  Behaviour kind() const override { return Behaviour::track; }
+  double perceive(const World& w, TimePoint now) override {
+    constexpr double kAngle = 0.1;
+    const Vector3 base = w.active ? Vector3(w.active->T_world_base.translation()) : Vector3::Zero();
+    const Person* person = person_of_interest(w, base, motor_.lost_after);
+    tracked_ = false;
+    if (!person) return kInfinity;
+    const BodyJoint& head = person->joints[0];
+    const BodyJoint& torso = person->joints[2];
+    const Eigen::Vector2d away = (torso.position - base).head<2>();
+    const double distance = std::max(0.1, away.norm());
+    tracked_ = zone_.update(distance, now) <= Zone::social;
+    target_ = head.position;
+    const double speed = std::max(torso.velocity.norm(), head.velocity.norm());
+    return kAngle / std::max(1e-3, speed / distance);
+  }
+  bool released(const World&) const override { return tracked_; }
+  std::optional<Vector3> gaze() const override { return tracked_ ? std::optional(target_) : std::nullopt; }
+
+ private:
+  MotorSettings motor_;
+  ZoneTracker zone_;
+  bool tracked_{};
+  Vector3 target_{Vector3::Zero()};
+};
+
+class Avoid : public Schema {
+ public:
+  Avoid(const Body& body, const MotorSettings& motor, const ZoneSettings& zones) : body_(body), motor_(motor), zone_(zones) {}
+  Behaviour kind() const override { return Behaviour::avoid; }
+  double perceive(const World& w, TimePoint now) override {
+    factor_ = 1.0;
+    near_ = false;
+    if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
+    Exception exception;
+    if (w.action && w.action->exchange_engaged) {
+      exception.person = w.action->human;
+      if (exception.person.empty() && w.people->people.size() == 1) exception.person = w.people->people.front().id;
+    }
+    const ActiveTrajectory& active = *w.active;
+    const Separation s = body_.separation_at(active.position, active.T_world_base, *w.people, exception);
+    near_ = zone_.update(s.distance, now) <= Zone::interaction;
+    double closing = 0.0;
+    for (const Person& person : w.people->people)
+      if (person.id == s.person) closing = directed_speed(person, s.part, (s.on_robot - s.on_person).normalized());
+    if (!near_) return urgency(s.distance, closing);
+
+    factor_ = ramp(s.distance, motor_.avoid_stop, motor_.avoid_slow);
+    reason_ = "a person is near";
+    if (closing > motor_.recoil_speed && s.distance / closing < motor_.avoid_contact_time * factor_) {
+      factor_ = s.distance / closing / motor_.avoid_contact_time;
+      reason_ = "a person comes close";
+    }
+    if (active.trajectory != 0 && active.rest.size() > 0) {
+      constexpr double kLook = 0.15;
+      if (distance_along(active, *w.people, exception, kLook) > s.distance + 1e-3) {
+        factor_ = std::max(factor_, motor_.avoid_recede);
+      } else if (s.distance < motor_.avoid_stop && closing > motor_.recoil_speed &&
+                 distance_along(active, *w.people, exception, -kLook) > s.distance + 1e-3) {
+        factor_ = motor_.recoil_factor;
+        reason_ = "recoil: a person closes in";
+      }
+    }
+    return urgency(s.distance, closing);
+  }
+  bool released(const World&) const override { return near_; }
+  double speed_factor() const override { return factor_; }
+  const char* reason() const override { return reason_; }
+
+ private:
+  double distance_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, double ahead) {
+    sample_ = active.rest.at(active.time + ahead);
+    posture_ = active.position;
+    for (std::size_t i = 0; i < active.axes.size() && static_cast<int>(i) < active.rest.size(); ++i)
+      if (active.axes[i] < posture_.size()) posture_[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
+    return body_.separation_at(posture_, active.T_world_base, people, exception).distance;
+  }
+
+  const Body& body_;
+  MotorSettings motor_;
+  ZoneTracker zone_;
+  bool near_{};
+  double factor_{1.0};
+  const char* reason_{""};
+  MotionState3 sample_;
+  Vector posture_;
+};
+
+class Pick : public Schema {
+ public:
+  Pick(const Body& body, const MotorSettings& motor) : body_(body), motor_(motor) {}
+  Behaviour kind() const override { return Behaviour::pick; }
+  double perceive(const World& w, TimePoint) override {
+    distance_ = kInfinity;
+    if (!w.scene || !w.action || !robot_known(w, body_)) return kInfinity;
+    for (const SceneObject& object : w.scene->objects) {
+      if (object.id != w.action->object) continue;
+      target_ = object.T_world_object.translation();
+      distance_ = (target_ - body_.grasp_point(w.active->position, w.active->T_world_base)).norm();
+    }
+    return distance_;
+  }
+  bool released(const World& w) const override { return doing(w, ActionKind::pick) && !w.action->holding && std::isfinite(distance_); }
+  double speed_factor() const override { return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(distance_, 0.0, motor_.ease_distance); }
+  const char* reason() const override { return "easing onto the object"; }
+  std::optional<Vector3> gaze() const override { return std::isfinite(distance_) ? std::optional(target_) : std::nullopt; }
+
+ private:
+  const Body& body_;
+  MotorSettings motor_;
+  double distance_{kInfinity};
+  Vector3 target_{Vector3::Zero()};
+};
+
+class Place : public Schema {
+ public:
+  Place(const Body& body, const MotorSettings& motor) : body_(body), motor_(motor) {}
+  Behaviour kind() const override { return Behaviour::place; }
+  double perceive(const World& w, TimePoint) override {
+    height_ = kInfinity;
+    if (!w.scene || !w.action || !robot_known(w, body_)) return kInfinity;
+    const Vector3 p = body_.grasp_point(w.active->position, w.active->T_world_base);
+    for (const SceneBox& box : w.scene->boxes) {
+      if (!box.supports) continue;
+      const Vector3 local = box.T_world_box.inverse() * p;
+      if (std::abs(local.x()) > 0.5 * box.size.x() || std::abs(local.y()) > 0.5 * box.size.y()) continue;
+      const double height = local.z() - 0.5 * box.size.z();
+      if (height >= 0.0 && height < height_) {
+        height_ = height;
+        target_ = p - Vector3(0, 0, height);
+      }
+    }
+    return height_;
+  }
+  bool released(const World& w) const override { return doing(w, ActionKind::place) && w.action->holding && std::isfinite(height_); }
+  double speed_factor() const override { return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(height_, 0.0, motor_.ease_distance); }
+  const char* reason() const override { return "easing onto the support"; }
+  std::optional<Vector3> gaze() const override { return std::isfinite(height_) ? std::optional(target_) : std::nullopt; }
+
+ private:
+  const Body& body_;
+  MotorSettings motor_;
+  double height_{kInfinity};
+  Vector3 target_{Vector3::Zero()};
+};
+
+/// GIVE and RECEIVE watch the same thing, the person's hand at the exchange; they differ in who holds the object.
+class Exchange : public Schema {
+ public:
+  Exchange(Behaviour kind, const Body& body, const MotorSettings& motor) : kind_(kind), body_(body), motor_(motor) {}
+  Behaviour kind() const override { return kind_; }
+  double perceive(const World& w, TimePoint) override {
+    present_ = false;
+    shift_ = Vector3::Zero();
+    if (!w.action || !robot_known(w, body_)) return kInfinity;
+    const Vector3 p = body_.grasp_point(w.active->position, w.active->T_world_base);
+    const Person* person = person_of_interest(w, p, motor_.lost_after);
+    if (!person) return kInfinity;
+    present_ = true;
+    const NearHand hand = nearest_hand(*person, p);
+    distance_ = hand.distance;
+    const bool at_exchange = distance_ < motor_.hand_near;
+    gaze_ = at_exchange ? hand.position : person->joints[0].position;
+    if (kind_ == Behaviour::receive) {
+      shift_ = hand.position - w.action->exchange_point;
+      if (shift_.norm() > motor_.shift_limit) shift_ *= motor_.shift_limit / shift_.norm();
+    }
+    const double closing = distance_ > 1e-6 ? hand.velocity.dot((p - hand.position) / distance_) : 0.0;
+    return urgency(distance_, closing);
+  }
+  bool released(const World& w) const override {
+    const bool holds = kind_ == Behaviour::give;
+    return present_ && doing(w, holds ? ActionKind::give : ActionKind::receive) && w.action->holding == holds;
+  }
+  double speed_factor() const override { return motor_.hand_factor + (1.0 - motor_.hand_factor) * ramp(distance_, 0.5 * motor_.hand_near, motor_.hand_near); }
+  const char* reason() const override { return "the person's hand is at the exchange"; }
+  std::optional<Vector3> gaze() const override { return present_ ? std::optional(gaze_) : std::nullopt; }
+  std::optional<Vector3> target_shift() const override { return kind_ == Behaviour::receive && present_ ? std::optional(shift_) : std::nullopt; }
+
+ private:
+  Behaviour kind_;
+  const Body& body_;
+  MotorSettings motor_;
+  bool present_{};
+  double distance_{kInfinity};
+  Vector3 gaze_{Vector3::Zero()}, shift_{Vector3::Zero()};
+};
+
+}  // namespace
+
+std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones) {
+  switch (kind) {
+    case Behaviour::search: return std::make_unique<Search>(body, motor);
+    case Behaviour::track: return std::make_unique<Track>(motor, zones);
+    case Behaviour::avoid: return std::make_unique<Avoid>(body, motor, zones);
+    case Behaviour::pick: return std::make_unique<Pick>(body, motor);
+    case Behaviour::place: return std::make_unique<Place>(body, motor);
+    case Behaviour::give:
+    case Behaviour::receive: return std::make_unique<Exchange>(kind, body, motor);
+  }
+  return nullptr;
+}
+
+}  // namespace handsel::attention

@@ -1,0 +1,79 @@
+// A behaviour as a schema: perception on its own clock, a releaser, a motor part (speed, gaze). Chapter abstract and section 2.1; the
+// reconstruction is ours (formulas: section 4).
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/messages/attention.hpp"
+#include "common/messages/execution.hpp"
+#include "common/messages/task.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/robot_capsules.hpp"
+#include "components/attention/zones.hpp"
+
+namespace handsel::attention {
+
+/// The latest samples; null = never seen.
+struct World {
+  const HumanState* people{};
+  const Facts* facts{};
+  const ActionStatus* action{};
+  const ActiveTrajectory* active{};
+  const TrajectoryForecast* forecast{};
+  const Scene* scene{};
+};
+
+/// The robot's body in the world, for the schemata.
+class Body {
+ public:
+  /// `p_tool_grasp`: where the hand touches things, in the tool frame [m].
+  Body(const RobotModel& robot, const Vector3& p_tool_grasp);
+  /// Nearest approach in posture q (all axes); distance +inf when nobody is there.
+  Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const Exception& exception) const;
+  Vector3 grasp_point(const Vector& q, const Pose& T_world_base) const;  ///< world [m]
+  Vector3 base_point(const Pose& T_world_base, const Vector3& p_base) const { return T_world_base * p_base; }
+  int dof() const { return robot_.dof(); }
+
+ private:
+  const RobotModel& robot_;
+  std::vector<LinkCapsule> capsules_;
+  Vector3 p_tool_grasp_;
+  mutable std::vector<Pose> links_;
+};
+
+/// Numbers of the motor parts, all behaviours (units in the comments).
+struct MotorSettings {
+  double avoid_stop{0.06};        ///< nearest distance at which AVOID asks for 0 [m]
+  double avoid_slow{0.40};        ///< distance from which AVOID asks for less than 1 [m]
+  double avoid_contact_time{0.8}; ///< time to contact from which AVOID asks for less than 1 [s]
+  double avoid_recede{0.5};       ///< least factor while the running trajectory leads away from the person
+  double recoil_factor{-0.15};    ///< factor when nearer than avoid_stop and closing in
+  double recoil_speed{0.10};      ///< closing speed that counts as closing in [m/s]
+  double ease_distance{0.10};     ///< PICK and PLACE ease over this distance [m]
+  double ease_factor{0.4};        ///< to this factor
+  double hand_near{0.30};         ///< GIVE and RECEIVE slow when the person's hand is nearer than this [m]
+  double hand_factor{0.25};       ///< to this factor
+  double shift_limit{0.15};       ///< largest shift of the exchange point [m]
+  double lost_after{1.0};         ///< a person not seen for longer is not tracked [s]
+};
+
+/// One behaviour. perceive() runs when its clock fires; released() and the motor part use what it saw last.
+class Schema {
+ public:
+  virtual ~Schema() = default;
+  virtual Behaviour kind() const = 0;
+  /// Looks; returns the stimulus: >= 0, SI, smaller is more urgent.
+  virtual double perceive(const World& world, TimePoint now) = 0;
+  virtual bool released(const World& world) const = 0;
+  virtual double speed_factor() const { return 1.0; }
+  virtual const char* reason() const { return ""; }  ///< one phrase for a factor below 1
+  virtual std::optional<Vector3> gaze() const { return std::nullopt; }          ///< world [m]
+  virtual std::optional<Vector3> target_shift() const { return std::nullopt; }  ///< world [m]
+};
+
+std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones);
+
+}  // namespace handsel::attention
