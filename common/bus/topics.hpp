@@ -42,7 +42,7 @@ struct TopicRow {
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 65536, "sim", "spark")                                                   \
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 16384, "sim", "spark")                                                 \
   X(Scene, "scene", state, 10, 0.3, 65536, "spark",                                                                                  \
-    "costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner")                                  \
+    "costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner attention")                        \
   X(HumanState, "human_state", state, 30, 0.1, 131072, "spark",                                                                      \
     "costmap collision_checker path_planner grasp_planner trajectory_planner manipulation_planner attention trajectory_controller")  \
   X(Facts, "facts", state, 10, 0.3, 65536, "spark", "supervisor trajectory_planner attention")                                       \

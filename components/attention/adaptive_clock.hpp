@@ -33,7 +33,7 @@ class AdaptiveClock {
   /// The behaviour has looked: `stimulus` shrinks with urgency and is >= 0.
   void fire(double stimulus, TimePoint now);
 
-  double period() const { return period_; }                 ///< [s]
+  double period() const { return period_; }  ///< [s]
   std::uint64_t activations() const { return activations_; }
   /// How often it would have fired by now at p_min.
   std::uint64_t activations_at_fastest(TimePoint now) const;

@@ -14,7 +14,8 @@ Attention::Attention(const AttentionSettings& settings, const Body& body) : sett
   if (settings.behaviours.empty()) throw ConfigError("attention: no behaviour is described");
   std::set<Behaviour> seen;
   for (const BehaviourSettings& b : settings.behaviours) {
-    if (!seen.insert(b.behaviour).second) throw ConfigError(std::string("attention: behaviour ") + name(b.behaviour) + " is described twice");
+    if (!seen.insert(b.behaviour).second)
+      throw ConfigError(std::string("attention: behaviour ") + name(b.behaviour) + " is described twice");
     entries_.push_back({make_schema(b.behaviour, body, settings.motor, settings.zones),
                         AdaptiveClock(b.clock, from_seconds(0.5 * settings.tick), name(b.behaviour)), b.clock});
   }
@@ -84,8 +85,8 @@ AttentionState Attention::state() const {
   AttentionState state;
   for (const Entry& e : entries_) {
     const double stimulus = std::isfinite(e.stimulus) ? e.stimulus : e.settings.far;
-    state.behaviours.push_back({e.schema->kind(), e.clock.period(), e.clock.activations(), e.clock.activations_at_fastest(now_), e.released, stimulus,
-                                std::clamp(e.schema->speed_factor(), -1.0, 1.0)});
+    state.behaviours.push_back({e.schema->kind(), e.clock.period(), e.clock.activations(), e.clock.activations_at_fastest(now_), e.released,
+                                stimulus, std::clamp(e.schema->speed_factor(), -1.0, 1.0)});
   }
   return state;
 }

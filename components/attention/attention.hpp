@@ -16,13 +16,13 @@ struct BehaviourSettings {
 };
 
 struct AttentionSettings {
-  double tick{0.01};                         ///< how often step() is called [s]; clocks are rounded to it
-  double gaze_dwell{0.5};                    ///< gaze stays with a behaviour at least this long [s]
-  double gaze_advantage{0.8};                ///< another takes it only with a period below this share of the present one's
-  double near_cost_gain{2.0};                ///< gain on the human-aware costs when AVOID is at its most urgent, >= 1
+  double tick{0.01};           ///< how often step() is called [s]; clocks are rounded to it
+  double gaze_dwell{0.5};      ///< gaze stays with a behaviour at least this long [s]
+  double gaze_advantage{0.8};  ///< another takes it only with a period below this share of the present one's
+  double near_cost_gain{2.0};  ///< gain on the human-aware costs when AVOID is at its most urgent, >= 1
   ZoneSettings zones;
   MotorSettings motor;
-  std::vector<BehaviourSettings> behaviours; ///< at least one; each behaviour at most once
+  std::vector<BehaviourSettings> behaviours;  ///< at least one; each behaviour at most once
 };
 
 class Attention {
@@ -32,8 +32,8 @@ class Attention {
 
   /// Lets every behaviour look whose clock is due. Call every `tick`.
   void step(const World& world, TimePoint now);
-  AttentionAdvice advice() const;                    ///< as of the last step
-  AttentionState state() const;                      ///< as of the last step
+  AttentionAdvice advice() const;  ///< as of the last step
+  AttentionState state() const;    ///< as of the last step
 
  private:
   struct Entry {

@@ -202,7 +202,9 @@ class Pick : public Schema {
     return distance_;
   }
   bool released(const World& w) const override { return doing(w, ActionKind::pick) && !w.action->holding && std::isfinite(distance_); }
-  double speed_factor() const override { return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(distance_, 0.0, motor_.ease_distance); }
+  double speed_factor() const override {
+    return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(distance_, 0.0, motor_.ease_distance);
+  }
   const char* reason() const override { return "easing onto the object"; }
   std::optional<Vector3> gaze() const override { return std::isfinite(distance_) ? std::optional(target_) : std::nullopt; }
 
@@ -234,7 +236,9 @@ class Place : public Schema {
     return height_;
   }
   bool released(const World& w) const override { return doing(w, ActionKind::place) && w.action->holding && std::isfinite(height_); }
-  double speed_factor() const override { return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(height_, 0.0, motor_.ease_distance); }
+  double speed_factor() const override {
+    return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(height_, 0.0, motor_.ease_distance);
+  }
   const char* reason() const override { return "easing onto the support"; }
   std::optional<Vector3> gaze() const override { return std::isfinite(height_) ? std::optional(target_) : std::nullopt; }
 
@@ -273,10 +277,14 @@ class Exchange : public Schema {
     const bool holds = kind_ == Behaviour::give;
     return present_ && doing(w, holds ? ActionKind::give : ActionKind::receive) && w.action->holding == holds;
   }
-  double speed_factor() const override { return motor_.hand_factor + (1.0 - motor_.hand_factor) * ramp(distance_, 0.5 * motor_.hand_near, motor_.hand_near); }
+  double speed_factor() const override {
+    return motor_.hand_factor + (1.0 - motor_.hand_factor) * ramp(distance_, 0.5 * motor_.hand_near, motor_.hand_near);
+  }
   const char* reason() const override { return "the person's hand is at the exchange"; }
   std::optional<Vector3> gaze() const override { return present_ ? std::optional(gaze_) : std::nullopt; }
-  std::optional<Vector3> target_shift() const override { return kind_ == Behaviour::receive && present_ ? std::optional(shift_) : std::nullopt; }
+  std::optional<Vector3> target_shift() const override {
+    return kind_ == Behaviour::receive && present_ ? std::optional(shift_) : std::nullopt;
+  }
 
  private:
   Behaviour kind_;
@@ -291,13 +299,19 @@ class Exchange : public Schema {
 
 std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones) {
   switch (kind) {
-    case Behaviour::search: return std::make_unique<Search>(body, motor);
-    case Behaviour::track: return std::make_unique<Track>(motor, zones);
-    case Behaviour::avoid: return std::make_unique<Avoid>(body, motor, zones);
-    case Behaviour::pick: return std::make_unique<Pick>(body, motor);
-    case Behaviour::place: return std::make_unique<Place>(body, motor);
+    case Behaviour::search:
+      return std::make_unique<Search>(body, motor);
+    case Behaviour::track:
+      return std::make_unique<Track>(motor, zones);
+    case Behaviour::avoid:
+      return std::make_unique<Avoid>(body, motor, zones);
+    case Behaviour::pick:
+      return std::make_unique<Pick>(body, motor);
+    case Behaviour::place:
+      return std::make_unique<Place>(body, motor);
     case Behaviour::give:
-    case Behaviour::receive: return std::make_unique<Exchange>(kind, body, motor);
+    case Behaviour::receive:
+      return std::make_unique<Exchange>(kind, body, motor);
   }
   return nullptr;
 }

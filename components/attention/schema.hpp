@@ -46,18 +46,18 @@ class Body {
 
 /// Numbers of the motor parts, all behaviours (units in the comments).
 struct MotorSettings {
-  double avoid_stop{0.06};        ///< nearest distance at which AVOID asks for 0 [m]
-  double avoid_slow{0.40};        ///< distance from which AVOID asks for less than 1 [m]
-  double avoid_contact_time{0.8}; ///< time to contact from which AVOID asks for less than 1 [s]
-  double avoid_recede{0.5};       ///< least factor while the running trajectory leads away from the person
-  double recoil_factor{-0.15};    ///< factor when nearer than avoid_stop and closing in
-  double recoil_speed{0.10};      ///< closing speed that counts as closing in [m/s]
-  double ease_distance{0.10};     ///< PICK and PLACE ease over this distance [m]
-  double ease_factor{0.4};        ///< to this factor
-  double hand_near{0.30};         ///< GIVE and RECEIVE slow when the person's hand is nearer than this [m]
-  double hand_factor{0.25};       ///< to this factor
-  double shift_limit{0.15};       ///< largest shift of the exchange point [m]
-  double lost_after{1.0};         ///< a person not seen for longer is not tracked [s]
+  double avoid_stop{0.06};         ///< nearest distance at which AVOID asks for 0 [m]
+  double avoid_slow{0.40};         ///< distance from which AVOID asks for less than 1 [m]
+  double avoid_contact_time{0.8};  ///< time to contact from which AVOID asks for less than 1 [s]
+  double avoid_recede{0.5};        ///< least factor while the running trajectory leads away from the person
+  double recoil_factor{-0.15};     ///< factor when nearer than avoid_stop and closing in
+  double recoil_speed{0.10};       ///< closing speed that counts as closing in [m/s]
+  double ease_distance{0.10};      ///< PICK and PLACE ease over this distance [m]
+  double ease_factor{0.4};         ///< to this factor
+  double hand_near{0.30};          ///< GIVE and RECEIVE slow when the person's hand is nearer than this [m]
+  double hand_factor{0.25};        ///< to this factor
+  double shift_limit{0.15};        ///< largest shift of the exchange point [m]
+  double lost_after{1.0};          ///< a person not seen for longer is not tracked [s]
 };
 
 /// One behaviour. perceive() runs when its clock fires; released() and the motor part use what it saw last.
@@ -69,7 +69,7 @@ class Schema {
   virtual double perceive(const World& world, TimePoint now) = 0;
   virtual bool released(const World& world) const = 0;
   virtual double speed_factor() const { return 1.0; }
-  virtual const char* reason() const { return ""; }  ///< one phrase for a factor below 1
+  virtual const char* reason() const { return ""; }                             ///< one phrase for a factor below 1
   virtual std::optional<Vector3> gaze() const { return std::nullopt; }          ///< world [m]
   virtual std::optional<Vector3> target_shift() const { return std::nullopt; }  ///< world [m]
 };
