@@ -1,0 +1,31 @@
+// One axis from wherever it is to a target in minimum time, changeable and stoppable at any moment. No heap, noexcept.
+#pragma once
+
+#include "common/trajectory/min_time.hpp"
+
+namespace handsel::trajectory_controller {
+
+class AxisMover {
+ public:
+  /// At rest at `position`.
+  void reset(double position) noexcept;
+  /// Minimum-time motion from the present state to rest at `target`.
+  void go_to(double target, const AxisLimits& limits) noexcept;
+  /// Minimum-time stop from the present state.
+  void stop(const AxisLimits& limits) noexcept;
+  const AxisState& step(double dt) noexcept;  ///< state dt later
+
+  const AxisState& state() const noexcept { return state_; }
+  double target() const noexcept { return target_; }  ///< where it comes to rest
+  bool at_rest() const noexcept { return segment_ >= profile_.count; }
+
+ private:
+  void begin() noexcept;
+
+  AxisProfile profile_;
+  AxisState state_, segment_start_;
+  double target_{}, elapsed_{};
+  int segment_{};
+};
+
+}  // namespace handsel::trajectory_controller

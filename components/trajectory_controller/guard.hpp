@@ -1,0 +1,81 @@
+// The guard: decides last how fast the running trajectory may go on, from the robot's motion and the people around it. Pure functions.
+// Speed and separation after ISO/TS 15066 with the jerk-limited minimum-time stop (formulas: section 2; ours where it differs).
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/messages/world.hpp"
+#include "common/model/robot_capsules.hpp"
+#include "common/trajectory/trajectory.hpp"
+
+namespace handsel::trajectory_controller {
+
+struct GuardSettings {
+  double speed_floor{0.10};        ///< least v_h assumed of a tracked person [m/s]
+  double speed_uncertainty{0.05};  ///< added to the measured directed speed [m/s]
+  double speed_unknown{1.6};       ///< v_h of a person not seen just now [m/s]
+  double speed_max{2.2};           ///< largest v_h [m/s]
+  double unknown_after{0.25};      ///< a person not seen for longer moves at speed_unknown [s]
+  double reaction{0.06};           ///< T_r without the age of the data: cycle, transport, drive [s]
+  double intrusion{0.03};          ///< C [m]
+  double uncertainty_human{0.03};  ///< Z_d [m]
+  double uncertainty_robot{0.01};  ///< Z_r [m]
+  double uncovered_factor{0.3};    ///< speed factor while "nobody" is not a fact
+  double exchange_speed{0.25};     ///< largest speed toward an excepted forearm or hand [m/s]
+  double exchange_range{0.30};     ///< within this distance [m]
+  double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
+};
+
+/// One capsule of a person, ready for many comparisons.
+struct CrowdCapsule {
+  Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
+  double radius{};
+  std::array<Vector3, 8> velocities{};             ///< of the joints that carry it, world [m/s]
+  int joints{};
+  bool unknown{};                                  ///< lost: moves at speed_unknown
+  bool excepted{};                                 ///< exchanging forearm or hand
+};
+
+/// The people of one HumanState sample.
+struct Crowd {
+  std::vector<CrowdCapsule> capsules;
+  bool covered{};
+};
+/// Made once a sample; `exception` as in common/model.
+void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out);
+
+/// Largest number of robot axes the guard handles.
+inline constexpr int kMaxAxes = 64;
+
+/// Motion along the running trajectory at full speed: of each axis, and the links now and `look` seconds later.
+struct PathMotion {
+  const Eigen::VectorXd* velocity{};          ///< q' all axes [rad/s]
+  const Eigen::VectorXd* acceleration{};      ///< q'' all axes [rad/s^2]
+  const std::vector<Pose>* links{};           ///< T_root_link now
+  const std::vector<Pose>* links_ahead{};     ///< T_root_link at q + look * q'
+  double look{1e-3};                          ///< [s]
+};
+
+struct GuardVerdict {
+  double forward{1.0};    ///< largest allowed time-law factor, [0, 1]
+  double backward{-1.0};  ///< least allowed (running back), [-1, 0]
+  double distance{1e9};   ///< to the nearest person, excepted parts left out [m]
+  bool separation{};      ///< the separation rule made it less than 1
+  bool uncovered{};       ///< nobody seen, but nobody is not a fact
+  bool too_near{};        ///< nearer than the stop needs at the present factor, still closing in
+  bool exchange_clear{true};  ///< no excepted part within exchange_range
+};
+
+/// Time of the jerk-limited stop of one axis from velocity v (a = 0) [s]; the way is v times half of it.
+double stop_time(double v, double acceleration_limit, double jerk_limit) noexcept;
+
+/// `factor`: time-law factor in force. `age`: of the human data [s]. Allocates nothing.
+GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
+                   const KinematicLimits& stop_limits, const Crowd& crowd, double age, double factor) noexcept;
+
+/// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not the rule used [m/s].
+double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept;
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,158 @@
+#include "components/trajectory_controller/hand_executor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handsel::trajectory_controller {
+
+HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
+                           const KinematicLimits& comfort, const KinematicLimits& stop)
+    : settings_(settings),
+      axes_(std::move(axes)),
+      lower_(std::move(lower)),
+      upper_(std::move(upper)),
+      comfort_(comfort),
+      stop_(stop),
+      fingers_(axes_.size()),
+      release_to_(Vector::Zero(static_cast<Eigen::Index>(axes_.size()))),
+      pull_(settings.pull) {}
+
+AxisLimits HandExecutor::limits(std::size_t i, const KinematicLimits& of, double share) const {
+  AxisLimits l = limits_of(of, axes_[i]);
+  l.velocity *= share;
+  return l;
+}
+
+void HandExecutor::reset(const Vector& robot_position) noexcept {
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    fingers_[i] = {};
+    fingers_[i].target = fingers_[i].final = robot_position[axes_[i]];
+    fingers_[i].mover.reset(fingers_[i].target);
+  }
+  phase_ = Phase::hold;
+  paused_ = false;
+  pull_.disarm();
+}
+
+bool HandExecutor::at_rest() const {
+  return std::all_of(fingers_.begin(), fingers_.end(), [](const Finger& f) { return f.mover.at_rest(); });
+}
+
+std::string HandExecutor::accept(const HandCommand& command) {
+  if (command.position.size() != static_cast<Eigen::Index>(fingers_.size()))
+    return "hand command has " + std::to_string(command.position.size()) + " positions, the hand has " + std::to_string(fingers_.size()) + " axes";
+  constexpr double kBeyond = 0.02;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    const double p = command.position[static_cast<Eigen::Index>(i)];
+    if (!(p >= lower_[i] - kBeyond && p <= upper_[i] + kBeyond))
+      return "hand axis " + std::to_string(i) + " wanted at " + std::to_string(p) + ", outside [" + std::to_string(lower_[i]) + ", " +
+             std::to_string(upper_[i]) + "] rad";
+  }
+  if (command.action == HandAction::release_on_pull) {
+    if (!(command.pull_force > 0) || command.pull_force > 100) return "pull_force must be above 0 and at most 100 N";
+    release_to_ = command.position;
+    pull_.arm(command.pull_force);
+    return {};
+  }
+  pull_.disarm();
+  for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+  start(command.action == HandAction::grasp ? Phase::closing : command.action == HandAction::release ? Phase::releasing : Phase::moving);
+  return {};
+}
+
+void HandExecutor::retarget(std::size_t i, double target) {
+  Finger& f = fingers_[i];
+  f.target = std::clamp(target, lower_[i], upper_[i]);
+  const bool gently = phase_ == Phase::closing || phase_ == Phase::squeezing;
+  if (!paused_) f.mover.go_to(f.target, limits(i, comfort_, gently ? settings_.grasp_speed : 1.0));
+}
+
+void HandExecutor::start(Phase phase) {
+  phase_ = phase;
+  state_ = HandState::moving;
+  settled_for_ = lost_for_ = 0.0;
+  payload_felt_ = false;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    Finger& f = fingers_[i];
+    const double way = f.final - f.mover.state().position;
+    f.direction = phase == Phase::closing && std::abs(way) >= settings_.closing_least ? std::copysign(1.0, way) : 0.0;
+    f.contact = f.beyond = false;
+    f.pressed_for = 0.0;
+    retarget(i, f.final);
+  }
+}
+
+void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    Finger& f = fingers_[i];
+    if (f.direction == 0.0 || f.contact) continue;
+    const int axis = axes_[i];
+    const double lag = f.direction * (f.mover.state().position - robot.position[axis]);
+    const double effort = axis < robot.effort.size() ? std::abs(robot.effort[axis]) : 0.0;
+    const double speed = axis < robot.velocity.size() ? std::abs(robot.velocity[axis]) : 0.0;
+    const bool pressed = lag > settings_.contact_lag || (effort > settings_.contact_effort && lag > settings_.grasp_lag && speed < settings_.contact_speed);
+    f.pressed_for = pressed ? f.pressed_for + dt : 0.0;
+    if (f.pressed_for >= settings_.contact_time) {
+      f.contact = true;
+      retarget(i, robot.position[axis] + f.direction * settings_.squeeze);
+    } else if (f.mover.at_rest() && !f.beyond) {
+      f.beyond = true;
+      phase_ = Phase::squeezing;
+      retarget(i, f.final + f.direction * settings_.squeeze_travel);
+    }
+  }
+}
+
+void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
+  const bool closing = phase_ == Phase::closing || phase_ == Phase::squeezing;
+  if (phase_ == Phase::hold) {
+    if (state_ != HandState::grasped) return;
+    if (robot.payload > 2.0 * settings_.lost_payload) payload_felt_ = true;
+    lost_for_ = payload_felt_ && robot.payload < settings_.lost_payload ? lost_for_ + dt : 0.0;
+    if (lost_for_ >= settings_.lost_time) state_ = HandState::empty;
+    return;
+  }
+  bool settled = at_rest();
+  for (const Finger& f : fingers_) settled = settled && (f.direction == 0.0 || f.contact || f.beyond);
+  settled_for_ = settled ? settled_for_ + dt : 0.0;
+  if (!settled || (closing && settled_for_ < settings_.settle_time)) return;
+  if (closing) {
+    int contacts = 0;
+    for (std::size_t i = 0; i < fingers_.size(); ++i)
+      if (fingers_[i].direction != 0.0 &&
+          fingers_[i].direction * (fingers_[i].mover.state().position - robot.position[axes_[i]]) > settings_.grasp_lag)
+        ++contacts;
+    state_ = contacts >= settings_.least_contacts ? HandState::grasped : HandState::empty;
+  } else {
+    state_ = phase_ == Phase::releasing ? HandState::released : HandState::idle;
+  }
+  phase_ = Phase::hold;
+}
+
+void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
+  const RobotState& robot = *in.robot;
+  if (!in.may_move && !paused_) {
+    paused_ = true;
+    for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].mover.stop(limits(i, in.stop ? stop_ : comfort_, 1.0));
+  } else if (in.may_move && paused_) {
+    paused_ = false;
+    for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);
+  }
+  if (!paused_) {
+    if (phase_ == Phase::closing || phase_ == Phase::squeezing) watch_contacts(robot, dt);
+    if (pull_.armed() && in.new_state && pull_.update(in.force, in.toward, now) && in.person_distance <= settings_.person_range) {
+      pull_.disarm();
+      for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].final = std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+      start(Phase::releasing);
+    }
+    judge(robot, dt);
+  }
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    const AxisState& s = fingers_[i].mover.step(dt);
+    out.position[axes_[i]] = s.position;
+    out.velocity[axes_[i]] = s.velocity;
+    out.acceleration[axes_[i]] = s.acceleration;
+  }
+}
+
+}  // namespace handsel::trajectory_controller
