@@ -46,6 +46,13 @@ const Person* person_of_interest(const World& w, const Vector3& p, double lost_a
   return best;
 }
 
+/// Does the person attend to the robot? Yes as long as no facts say otherwise.
+bool attentive(const World& w, const std::string& person) {
+  if (!w.facts) return true;
+  return std::any_of(w.facts->facts.begin(), w.facts->facts.end(),
+                     [&](const Fact& f) { return f.kind == FactKind::attentive && f.subject == person; });
+}
+
 struct NearHand {
   double distance{kInfinity};
   Vector3 position{Vector3::Zero()}, velocity{Vector3::Zero()};
@@ -144,7 +151,10 @@ class Avoid : public Schema {
     double closing = 0.0;
     for (const Person& person : w.people->people)
       if (person.id == s.person) closing = directed_speed(person, s.part, (s.on_robot - s.on_person).normalized());
-    if (!near_) return urgency(s.distance, closing);
+    double stimulus = urgency(s.distance, closing);
+    if (w.forecast && w.forecast->trajectory != 0 && w.forecast->trajectory == active.trajectory)
+      stimulus = std::min(stimulus, std::max(0.0, w.forecast->clearance));
+    if (!near_) return stimulus;
 
     factor_ = ramp(s.distance, motor_.avoid_stop, motor_.avoid_slow);
     reason_ = "a person is near";
@@ -162,7 +172,7 @@ class Avoid : public Schema {
         reason_ = "recoil: a person closes in";
       }
     }
-    return urgency(s.distance, closing);
+    return stimulus;
   }
   bool released(const World&) const override { return near_; }
   double speed_factor() const override { return factor_; }
@@ -261,9 +271,9 @@ class Exchange : public Schema {
     const Vector3 p = body_.grasp_point(w.active->position, w.active->T_world_base);
     const Person* person = person_of_interest(w, p, motor_.lost_after);
     if (!person) return kInfinity;
-    present_ = true;
     const NearHand hand = nearest_hand(*person, p);
     distance_ = hand.distance;
+    present_ = distance_ < motor_.hand_near || attentive(w, person->id);
     const bool at_exchange = distance_ < motor_.hand_near;
     gaze_ = at_exchange ? hand.position : person->joints[0].position;
     if (kind_ == Behaviour::receive) {

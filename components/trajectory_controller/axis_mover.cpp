@@ -13,6 +13,11 @@ void AxisMover::reset(double position) noexcept {
   begin();
 }
 
+void AxisMover::take_over(const AxisState& state, const AxisLimits& limits) noexcept {
+  state_ = state;
+  stop(limits);
+}
+
 void AxisMover::begin() noexcept {
   segment_start_ = state_;
   elapsed_ = 0.0;
@@ -38,7 +43,8 @@ void AxisMover::stop(const AxisLimits& limits) noexcept {
   critical_movement(state_.velocity, state_.acceleration, 0.0, 0.0, limits.acceleration, limits.jerk, profile_);
   begin();
   AxisState end = state_;
-  for (int k = 0; k < profile_.count; ++k) end = advanced(end, profile_.segments[static_cast<std::size_t>(k)].duration, profile_.segments[static_cast<std::size_t>(k)].jerk);
+  for (int k = 0; k < profile_.count; ++k)
+    end = advanced(end, profile_.segments[static_cast<std::size_t>(k)].duration, profile_.segments[static_cast<std::size_t>(k)].jerk);
   target_ = end.position;
 }
 
@@ -49,7 +55,8 @@ const AxisState& AxisMover::step(double dt) noexcept {
     segment_start_ = advanced(segment_start_, s.duration, s.jerk);
     elapsed_ -= s.duration;
   }
-  state_ = at_rest() ? AxisState{target_, 0.0, 0.0} : advanced(segment_start_, elapsed_, profile_.segments[static_cast<std::size_t>(segment_)].jerk);
+  state_ = at_rest() ? AxisState{target_, 0.0, 0.0}
+                     : advanced(segment_start_, elapsed_, profile_.segments[static_cast<std::size_t>(segment_)].jerk);
   return state_;
 }
 

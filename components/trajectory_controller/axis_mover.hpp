@@ -9,6 +9,8 @@ class AxisMover {
  public:
   /// At rest at `position`.
   void reset(double position) noexcept;
+  /// In motion at `state`; comes to rest as fast as it can.
+  void take_over(const AxisState& state, const AxisLimits& limits) noexcept;
   /// Minimum-time motion from the present state to rest at `target`.
   void go_to(double target, const AxisLimits& limits) noexcept;
   /// Minimum-time stop from the present state.

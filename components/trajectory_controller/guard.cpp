@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/segments.hpp"
 #include "common/model/body_motion.hpp"
 
 namespace handsel::trajectory_controller {
@@ -10,36 +11,6 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr int kGrid = 16;
-
-struct NearPoints {
-  Vector3 on_robot, on_person;
-  double centre_distance;
-};
-
-NearPoints nearest(const Vector3& p1, const Vector3& q1, const Vector3& p2, const Vector3& q2) noexcept {
-  const Vector3 d1 = q1 - p1, d2 = q2 - p2, r = p1 - p2;
-  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r);
-  constexpr double kTiny = 1e-12;
-  double s = 0.0, t = 0.0;
-  if (a > kTiny && e > kTiny) {
-    const double b = d1.dot(d2), c = d1.dot(r), denominator = a * e - b * b;
-    s = denominator > kTiny ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
-    t = (b * s + f) / e;
-    if (t < 0.0) {
-      t = 0.0;
-      s = std::clamp(-c / a, 0.0, 1.0);
-    } else if (t > 1.0) {
-      t = 1.0;
-      s = std::clamp((b - c) / a, 0.0, 1.0);
-    }
-  } else if (a > kTiny) {
-    s = std::clamp(-d1.dot(r) / a, 0.0, 1.0);
-  } else if (e > kTiny) {
-    t = std::clamp(f / e, 0.0, 1.0);
-  }
-  const Vector3 on1 = p1 + s * d1, on2 = p2 + t * d2;
-  return {on1, on2, (on1 - on2).norm()};
-}
 
 /// Stop of the axes that move along the path, for factors on a grid of [0, 1].
 struct StopTable {
@@ -100,7 +71,8 @@ void prepare(const HumanState& people, const Exception& exception, double unknow
       c.radius = body.radius;
       c.unknown = person.age > unknown_after || person.joints.size() != kBodyJoints.size();
       if (!c.unknown)
-        for (int j : joints_of(body.part)) c.velocities[static_cast<std::size_t>(c.joints++)] = person.joints[static_cast<std::size_t>(j)].velocity;
+        for (int j : joints_of(body.part))
+          c.velocities[static_cast<std::size_t>(c.joints++)] = person.joints[static_cast<std::size_t>(j)].velocity;
       const bool left = body.part == BodyPart::forearm_left || body.part == BodyPart::hand_left;
       const bool right = body.part == BodyPart::forearm_right || body.part == BodyPart::hand_right;
       c.excepted = exchanging && ((left && (exception.both_sides || exception.side == Side::left)) ||
@@ -150,11 +122,11 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
     const Vector3 va = (T_world_base * (T_ahead * link.a) - a) / motion.look, vb = (T_world_base * (T_ahead * link.b) - b) / motion.look;
     const double length2 = (b - a).squaredNorm();
     for (const CrowdCapsule& part : crowd.capsules) {
-      const NearPoints near = nearest(a, b, part.a, part.b);
-      const double distance = near.centre_distance - link.radius - part.radius;
-      const Vector3 toward =
-          near.centre_distance > 1e-9 ? Vector3((near.on_person - near.on_robot) / near.centre_distance) : Vector3(Vector3::UnitZ());
-      const double share = length2 > 1e-12 ? std::clamp((near.on_robot - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
+      Vector3 on_robot, on_person;
+      const double axes_apart = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));
+      const double distance = axes_apart - link.radius - part.radius;
+      const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart) : Vector3(Vector3::UnitZ());
+      const double share = length2 > 1e-12 ? std::clamp((on_robot - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
       const double closing = (va + share * (vb - va)).dot(toward);  // at factor 1; backwards it is the negative
       if (part.excepted) {
         if (distance < settings.exchange_range) {

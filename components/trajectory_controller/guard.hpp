@@ -32,10 +32,10 @@ struct GuardSettings {
 struct CrowdCapsule {
   Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
   double radius{};
-  std::array<Vector3, 8> velocities{};             ///< of the joints that carry it, world [m/s]
+  std::array<Vector3, 8> velocities{};  ///< of the joints that carry it, world [m/s]
   int joints{};
-  bool unknown{};                                  ///< lost: moves at speed_unknown
-  bool excepted{};                                 ///< exchanging forearm or hand
+  bool unknown{};   ///< lost: moves at speed_unknown
+  bool excepted{};  ///< exchanging forearm or hand
 };
 
 /// The people of one HumanState sample.
@@ -46,25 +46,22 @@ struct Crowd {
 /// Made once a sample; `exception` as in common/model.
 void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out);
 
-/// Largest number of robot axes the guard handles.
-inline constexpr int kMaxAxes = 64;
-
 /// Motion along the running trajectory at full speed: of each axis, and the links now and `look` seconds later.
 struct PathMotion {
-  const Eigen::VectorXd* velocity{};          ///< q' all axes [rad/s]
-  const Eigen::VectorXd* acceleration{};      ///< q'' all axes [rad/s^2]
-  const std::vector<Pose>* links{};           ///< T_root_link now
-  const std::vector<Pose>* links_ahead{};     ///< T_root_link at q + look * q'
-  double look{1e-3};                          ///< [s]
+  const Eigen::VectorXd* velocity{};       ///< q' all axes [rad/s]
+  const Eigen::VectorXd* acceleration{};   ///< q'' all axes [rad/s^2]
+  const std::vector<Pose>* links{};        ///< T_root_link now
+  const std::vector<Pose>* links_ahead{};  ///< T_root_link at q + look * q'
+  double look{1e-3};                       ///< [s]
 };
 
 struct GuardVerdict {
-  double forward{1.0};    ///< largest allowed time-law factor, [0, 1]
-  double backward{-1.0};  ///< least allowed (running back), [-1, 0]
-  double distance{1e9};   ///< to the nearest person, excepted parts left out [m]
-  bool separation{};      ///< the separation rule made it less than 1
-  bool uncovered{};       ///< nobody seen, but nobody is not a fact
-  bool too_near{};        ///< nearer than the stop needs at the present factor, still closing in
+  double forward{1.0};        ///< largest allowed time-law factor, [0, 1]
+  double backward{-1.0};      ///< least allowed (running back), [-1, 0]
+  double distance{1e9};       ///< to the nearest person, excepted parts left out [m]
+  bool separation{};          ///< the separation rule made it less than 1
+  bool uncovered{};           ///< nobody seen, but nobody is not a fact
+  bool too_near{};            ///< nearer than the stop needs at the present factor, still closing in
   bool exchange_clear{true};  ///< no excepted part within exchange_range
 };
 

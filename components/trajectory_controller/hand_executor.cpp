@@ -38,9 +38,28 @@ bool HandExecutor::at_rest() const {
   return std::all_of(fingers_.begin(), fingers_.end(), [](const Finger& f) { return f.mover.at_rest(); });
 }
 
+void HandExecutor::stop_from(const MotionState3& from) noexcept {
+  paused_ = true;
+  for (std::size_t i = 0; i < fingers_.size(); ++i)
+    fingers_[i].mover.take_over({from.position[axes_[i]], from.velocity[axes_[i]], from.acceleration[axes_[i]]}, limits(i, stop_, 1.0));
+}
+
+void HandExecutor::follow(const Vector& robot_position) noexcept {
+  if (!at_rest()) return;
+  constexpr double kDeadBand = 0.002;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    Finger& f = fingers_[i];
+    f.target = f.final = robot_position[axes_[i]];
+    if (std::abs(f.target - f.mover.state().position) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0));
+  }
+  phase_ = Phase::hold;
+  pull_.disarm();
+}
+
 std::string HandExecutor::accept(const HandCommand& command) {
   if (command.position.size() != static_cast<Eigen::Index>(fingers_.size()))
-    return "hand command has " + std::to_string(command.position.size()) + " positions, the hand has " + std::to_string(fingers_.size()) + " axes";
+    return "hand command has " + std::to_string(command.position.size()) + " positions, the hand has " + std::to_string(fingers_.size()) +
+           " axes";
   constexpr double kBeyond = 0.02;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const double p = command.position[static_cast<Eigen::Index>(i)];
@@ -55,7 +74,8 @@ std::string HandExecutor::accept(const HandCommand& command) {
     return {};
   }
   pull_.disarm();
-  for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+  for (std::size_t i = 0; i < fingers_.size(); ++i)
+    fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
   start(command.action == HandAction::grasp ? Phase::closing : command.action == HandAction::release ? Phase::releasing : Phase::moving);
   return {};
 }
@@ -90,7 +110,8 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
     const double lag = f.direction * (f.mover.state().position - robot.position[axis]);
     const double effort = axis < robot.effort.size() ? std::abs(robot.effort[axis]) : 0.0;
     const double speed = axis < robot.velocity.size() ? std::abs(robot.velocity[axis]) : 0.0;
-    const bool pressed = lag > settings_.contact_lag || (effort > settings_.contact_effort && lag > settings_.grasp_lag && speed < settings_.contact_speed);
+    const bool pressed =
+        lag > settings_.contact_lag || (effort > settings_.contact_effort && lag > settings_.grasp_lag && speed < settings_.contact_speed);
     f.pressed_for = pressed ? f.pressed_for + dt : 0.0;
     if (f.pressed_for >= settings_.contact_time) {
       f.contact = true;
@@ -142,7 +163,8 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
     if (phase_ == Phase::closing || phase_ == Phase::squeezing) watch_contacts(robot, dt);
     if (pull_.armed() && in.new_state && pull_.update(in.force, in.toward, now) && in.person_distance <= settings_.person_range) {
       pull_.disarm();
-      for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].final = std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+      for (std::size_t i = 0; i < fingers_.size(); ++i)
+        fingers_[i].final = std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
       start(Phase::releasing);
     }
     judge(robot, dt);

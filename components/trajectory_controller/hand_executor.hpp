@@ -12,32 +12,32 @@
 namespace handsel::trajectory_controller {
 
 struct HandSettings {
-  double grasp_speed{0.5};       ///< share of the comfort velocity while closing onto an object
-  double closing_least{0.05};    ///< an axis closes when its way is at least this [rad]
-  double contact_lag{0.10};      ///< set-point ahead of the measured position: contact [rad]
-  double contact_effort{0.5};    ///< or effort beyond this while it hardly moves [Nm]
-  double contact_speed{0.05};    ///< "hardly moves" [rad/s]
-  double contact_time{0.02};     ///< for this long [s]
-  double squeeze{0.15};          ///< set-point beyond the measured position once in contact [rad]
-  double squeeze_travel{0.35};   ///< how far beyond the commanded position contact is sought [rad]
-  double settle_time{0.15};      ///< at rest for this long before the outcome is told [s]
-  int least_contacts{2};         ///< axes in contact that make a grasp
-  double grasp_lag{0.03};        ///< an axis this far from its set-point presses on something [rad]
-  double lost_payload{0.02};     ///< payload once felt, now below this: lost [kg]
-  double lost_time{0.3};         ///< for this long [s]
-  double person_range{0.45};     ///< a pull counts only with a person's hand this near [m]
+  double grasp_speed{0.5};      ///< share of the comfort velocity while closing onto an object
+  double closing_least{0.05};   ///< an axis closes when its way is at least this [rad]
+  double contact_lag{0.10};     ///< set-point ahead of the measured position: contact [rad]
+  double contact_effort{0.5};   ///< or effort beyond this while it hardly moves [Nm]
+  double contact_speed{0.05};   ///< "hardly moves" [rad/s]
+  double contact_time{0.02};    ///< for this long [s]
+  double squeeze{0.15};         ///< set-point beyond the measured position once in contact [rad]
+  double squeeze_travel{0.35};  ///< how far beyond the commanded position contact is sought [rad]
+  double settle_time{0.15};     ///< at rest for this long before the outcome is told [s]
+  int least_contacts{2};        ///< axes in contact that make a grasp
+  double grasp_lag{0.03};       ///< an axis this far from its set-point presses on something [rad]
+  double lost_payload{0.02};    ///< payload once felt, now below this: lost [kg]
+  double lost_time{0.3};        ///< for this long [s]
+  double person_range{0.45};    ///< a pull counts only with a person's hand this near [m]
   PullSettings pull;
 };
 
 /// What it needs to know of the moment.
 struct HandInputs {
-  const RobotState* robot{};  ///< latest, never null
-  bool new_state{};           ///< robot has come since the last step
+  const RobotState* robot{};        ///< latest, never null
+  bool new_state{};                 ///< robot has come since the last step
   Vector3 force{Vector3::Zero()};   ///< on the hand, world axes [N]
   Vector3 toward{Vector3::Zero()};  ///< unit vector from the hand to the exchanging person, zero if unknown
-  double person_distance{};   ///< from the hand to the nearest hand of a person [m]; +inf if nobody
-  bool may_move{};            ///< mode below Hold
-  bool stop{};                ///< mode Stop or Fault: use the stop limits
+  double person_distance{};         ///< from the hand to the nearest hand of a person [m]; +inf if nobody
+  bool may_move{};                  ///< mode below Hold
+  bool stop{};                      ///< mode Stop or Fault: use the stop limits
 };
 
 class HandExecutor {
@@ -56,14 +56,18 @@ class HandExecutor {
   HandState state() const { return state_; }
   double pull() const { return pull_.armed() ? pull_.pull() : 0.0; }
   bool at_rest() const;
+  /// The set-points before the last step were `from`: every axis stops from there as fast as it can.
+  void stop_from(const MotionState3& from) noexcept;
+  /// At rest: moves the set-points to the measured positions.
+  void follow(const Vector& robot_position) noexcept;
 
  private:
   enum class Phase { hold, moving, closing, squeezing, releasing };
   struct Finger {  // one axis of the hand
     AxisMover mover;
-    double target{};      // wanted now
-    double final{};       // of the command, clamped to the bounds
-    double direction{};   // of closing: -1, 0, +1
+    double target{};       // wanted now
+    double final{};        // of the command, clamped to the bounds
+    double direction{};    // of closing: -1, 0, +1
     double pressed_for{};  // [s]
     bool contact{}, beyond{};
   };

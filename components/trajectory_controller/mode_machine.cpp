@@ -42,8 +42,10 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
     if (fault || latched_ != Mode::fault) epoch_ = in.go_epoch;
   }
   if (latched_ == Mode::fault && !fault && in.go_acknowledge && in.go_epoch > epoch_) latched_ = Mode::stop;
-  if (latched_ == Mode::stop && !stop && in.at_rest) latched_ = Mode::hold;
-  else if (latched_ == Mode::hold && !hold && !waiting && in.go_allowed && in.go_epoch > epoch_) latched_ = Mode::normal;
+  if (latched_ == Mode::stop && !stop && in.at_rest)
+    latched_ = Mode::hold;
+  else if (latched_ == Mode::hold && !hold && !waiting && in.go_allowed && in.go_epoch > epoch_)
+    latched_ = Mode::normal;
 
   ModeVerdict verdict;
   verdict.causes = fault | stop | hold | waiting | slow;

@@ -20,9 +20,9 @@ struct TimeoutSettings {
 /// What the machine judges in one cycle. Ages in s; negative = never seen.
 struct ModeInputs {
   double robot_age{-1}, human_age{-1}, forecast_age{-1}, attention_age{-1}, go_age{-1};
-  double running_for{};          ///< since the running trajectory started [s]
-  bool running{};                ///< a trajectory is not finished
-  bool at_rest{};                ///< no axis moves
+  double running_for{};  ///< since the running trajectory started [s]
+  bool running{};        ///< a trajectory is not finished
+  bool at_rest{};        ///< no axis moves
   bool drive_enabled{};
   bool tracking_error{}, limit_violation{}, cycle_late{};
   bool forecast_collision_hold{}, forecast_collision_slow{};
@@ -45,8 +45,8 @@ class ModeMachine {
 
  private:
   TimeoutSettings timeouts_;
-  Mode latched_{Mode::hold};   // normal when nothing is latched
-  std::uint64_t epoch_{};      // a Go must be newer than this to resume
+  Mode latched_{Mode::hold};  // normal when nothing is latched
+  std::uint64_t epoch_{};     // a Go must be newer than this to resume
 };
 
 /// The most severe of the causes: what people are told.

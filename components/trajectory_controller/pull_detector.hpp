@@ -7,11 +7,11 @@
 namespace handsel::trajectory_controller {
 
 struct PullSettings {
-  double baseline_time{0.25};   ///< the load's own force is averaged for this long after arming [s]
-  double filter_time{0.03};     ///< time constant of the force filter [s]
-  double hold_time{0.10};       ///< beyond the threshold for this long [s]
-  double direction_cosine{0.7}; ///< of the force with its mean direction since the threshold was passed
-  double away_cosine{-0.2};     ///< a force pointing away from the person by more does not count
+  double baseline_time{0.25};    ///< the load's own force is averaged for this long after arming [s]
+  double filter_time{0.03};      ///< time constant of the force filter [s]
+  double hold_time{0.10};        ///< beyond the threshold for this long [s]
+  double direction_cosine{0.7};  ///< of the force with its mean direction since the threshold was passed
+  double away_cosine{-0.2};      ///< a force pointing away from the person by more does not count
 };
 
 class PullDetector {

@@ -1,0 +1,159 @@
+// Executes soft trajectories, hand commands and gaze; slows, holds and stops by the guard. Every set-point obeys the guard limits.
+// Chapter section 2 (react at the right level), architecture section 6. Pure: no clock, no I/O; step() uses no heap and never throws.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/messages/attention.hpp"
+#include "common/messages/execution.hpp"
+#include "common/messages/robot.hpp"
+#include "common/messages/task.hpp"
+#include "components/trajectory_controller/axis_mover.hpp"
+#include "components/trajectory_controller/guard.hpp"
+#include "components/trajectory_controller/hand_executor.hpp"
+#include "components/trajectory_controller/mode_machine.hpp"
+#include "components/trajectory_controller/path_runner.hpp"
+#include "components/trajectory_controller/setpoint_check.hpp"
+
+namespace handsel::trajectory_controller {
+
+struct ControllerSettings {
+  double period{0.001};               ///< control period [s]
+  double attention_lost_factor{0.2};  ///< speed factor while attention is silent
+  double recoil_limit{0.2};           ///< fastest running back along the path, [0, 1]
+  double max_command_age{0.5};        ///< older commands are refused [s]
+  double start_tolerance{0.05};       ///< a trajectory may start this far from the set-point; a short motion bridges it [rad]
+  double tracking_tolerance{0.3};     ///< measured beyond this from the set-point (hand left out): Fault [rad]
+  double tracking_time{0.1};          ///< for this long [s]
+  double forecast_hold{0.6};          ///< collision forecast within this time: Hold [s]
+  double forecast_slow{2.0};          ///< within this time: slower in proportion [s]
+  double head_dead_band{0.03};        ///< the head turns only for more than this [rad]
+  double look_ahead{0.15};            ///< the guard also judges the path this much later [s]
+  int late_limit{5};                  ///< late cycles in a row: Hold
+  TimeoutSettings timeouts;
+  GuardSettings guard;
+  HandSettings hand;
+};
+
+class Controller {
+ public:
+  /// Throws ConfigError naming the field. Robot groups "hand" and "head" may be missing; all other axes are moved by trajectories.
+  Controller(const ControllerSettings& settings, std::shared_ptr<const RobotModel> robot);
+
+  /// Empty when accepted (or already known), else why not, one sentence. A command without axes stops the running trajectory softly.
+  /// `age`: of the command at arrival.
+  std::string accept(const TrajectoryCommand& command, Duration age, TimePoint now);
+  std::string accept(const HandCommand& command, Duration age, TimePoint now);
+
+  // Samples: `sampled` is the arrival minus the age at arrival.
+  void on(const RobotState& state, TimePoint sampled);
+  void on(const HumanState& people, TimePoint sampled);
+  void on(const Go& go, TimePoint sampled);
+  void on(const TrajectoryForecast& forecast, TimePoint sampled);
+  void on(const AttentionAdvice& advice, TimePoint sampled);
+  void on(const ActionStatus& action, TimePoint sampled);
+
+  /// Advances by one period, whatever time has passed. `late`: the cycle began more than a period after it was due.
+  /// False until the robot's posture is known: nothing may be sent.
+  bool step(TimePoint now, bool late) noexcept;
+
+  const MotionState3& set_point() const { return set_point_; }  ///< all axes
+  Mode mode() const { return verdict_.mode; }
+  const GuardVerdict& guard_verdict() const { return guard_verdict_; }
+  double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
+  ExecutionStatus status() const;   ///< stamp left to the publisher
+  ActiveTrajectory active() const;  ///< stamp left to the publisher
+
+ private:
+  enum class Arm { standing, running, stopping };
+  struct Seen {
+    TimePoint at{};
+    bool ever{};
+    void mark(TimePoint t) {
+      at = ever ? std::max(at, t) : t;
+      ever = true;
+    }
+    double age(TimePoint now) const { return ever ? std::max(0.0, to_seconds(now - at)) : -1.0; }
+  };
+  struct PersonPoints {
+    std::string id;
+    Vector3 torso, left_hand, right_hand;  // world
+  };
+
+  std::string why_not(const TrajectoryCommand& command, Duration age) const;
+  std::string why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const;
+  KinematicLimits of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const;
+  void stop_arm() noexcept;
+  void stand_arm() noexcept;
+  void run_guard(TimePoint now) noexcept;
+  double wanted_factor(TimePoint now) const noexcept;
+  ModeInputs mode_inputs(TimePoint now, bool late) noexcept;
+  void step_arm(TimePoint now) noexcept;
+  void step_hand(TimePoint now) noexcept;
+  void step_head() noexcept;
+  void check_last() noexcept;
+  void resync(TimePoint now) noexcept;
+  void refresh_crowd();
+  Exception exception() const;
+
+  ControllerSettings settings_;
+  std::shared_ptr<const RobotModel> robot_;
+  std::vector<LinkCapsule> capsules_;
+  std::vector<int> arm_axes_, head_axes_;
+  std::vector<char> is_arm_;
+
+  // Latest samples.
+  RobotState state_;
+  HumanState people_;
+  Go go_;
+  TrajectoryForecast forecast_;
+  AttentionAdvice advice_;
+  ActionStatus action_;
+  Seen robot_seen_, human_seen_, go_seen_, forecast_seen_, advice_seen_;
+  bool new_state_{};
+  Crowd crowd_;
+  std::vector<PersonPoints> points_;
+  std::string exchanging_;  // person whose forearms and hands are excepted, until clear
+  Vector3 gaze_aimed_{Vector3::Constant(1e9)};
+
+  // What is sent.
+  bool ready_{};
+  MotionState3 set_point_, next_;
+  LimitShares shares_;
+
+  // Arm.
+  Arm arm_{Arm::standing};
+  PathRunner runner_;
+  TrajectoryCommand command_;
+  bool cancelled_{};
+  TimePoint started_{};
+  std::vector<AxisMover> movers_;  // one a robot axis; those of the hand unused
+  std::uint64_t last_trajectory_{}, accepted_trajectory_{};
+  MotionState motion_{MotionState::idle};
+
+  // Hand and head.
+  HandExecutor hand_;
+  std::uint64_t last_hand_{}, accepted_hand_{};
+  bool hand_refused_{};
+  std::vector<double> head_target_;
+  bool head_wanted_{}, head_paused_{};
+
+  // Judging.
+  ModeMachine modes_;
+  ModeVerdict verdict_;
+  GuardVerdict guard_verdict_, verdict_now_, verdict_ahead_;
+  MotionState3 path_;
+  Vector full_velocity_, full_acceleration_, posture_, posture_ahead_;
+  std::vector<Pose> links_, links_ahead_;
+  double too_near_for_{}, tracking_for_{};
+  bool limit_violation_{}, guard_ahead_{};
+  int late_in_a_row_{};
+  std::uint64_t cycles_{}, late_cycles_{};
+  std::string refusal_;
+  Cause latched_cause_{Cause::none};
+};
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,22 @@
+// The last look at a set-point before it leaves: finite, inside the guard limits, continuous with the one before, and still stoppable
+// inside the limits (ours). Pure, no heap.
+#pragma once
+
+#include "common/trajectory/trajectory.hpp"
+
+namespace handsel::trajectory_controller {
+
+/// Relative tolerance on every limit.
+inline constexpr double kLimitTolerance = 1e-6;
+
+/// Largest |v|/V, |a|/A, |j|/J sent so far.
+struct LimitShares {
+  double velocity{}, acceleration{}, jerk{};
+};
+
+/// Whether axis `i` may go from `previous` to `next` within `dt` [s].
+bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::Index i, const KinematicLimits& guard, double dt) noexcept;
+
+void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt, LimitShares& shares) noexcept;
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,312 @@
+#include "components/attention/attention.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/errors.hpp"
+#include "tests/support/small_robot.hpp"
+
+namespace handsel::attention {
+namespace {
+
+using testing::HasSubstr;
+
+TimePoint at(double seconds) { return TimePoint(from_seconds(100.0 + seconds)); }
+
+Person standing(double x, double y, const std::string& id = "anna") {
+  Person p;
+  p.id = id;
+  p.joints = standing_body(Vector3(x, y, 0), M_PI, 1.75);
+  return p;
+}
+
+void move(Person& p, const Vector3& by, const Vector3& velocity) {
+  for (BodyJoint& j : p.joints) {
+    j.position += by;
+    j.velocity = velocity;
+  }
+}
+
+AttentionSettings settings(ClockLaw law = ClockLaw::linear) {
+  AttentionSettings s;
+  const auto add = [&](Behaviour b, double p_min, double p_max, double near, double far) {
+    s.behaviours.push_back({b, {law, p_min, p_max, near, far, 1.0}});
+  };
+  add(Behaviour::search, 0.1, 1.0, 0.0, 10.0);
+  add(Behaviour::track, 0.04, 0.5, 0.1, 2.0);
+  add(Behaviour::avoid, 0.04, 0.2, 0.1, 1.2);
+  add(Behaviour::pick, 0.1, 0.3, 0.02, 0.8);
+  add(Behaviour::place, 0.1, 0.3, 0.02, 0.5);
+  add(Behaviour::give, 0.04, 0.3, 0.05, 1.0);
+  add(Behaviour::receive, 0.04, 0.3, 0.05, 1.0);
+  return s;
+}
+
+class AttentionTest : public testing::Test {
+ protected:
+  AttentionTest() : robot_(test::small_robot()), body_(*robot_, Vector3(0.4, 0, 0)) {
+    active_.position = Vector::Zero(robot_->dof());
+    active_.velocity = active_.acceleration = active_.position;
+  }
+  World world() const { return {&people_, facts_known_ ? &facts_ : nullptr, &action_, &active_, nullptr, &scene_}; }
+  void run(Attention& attention, double from, double to) {
+    for (int k = static_cast<int>(from * 100); k < static_cast<int>(to * 100); ++k) attention.step(world(), at(0.01 * k));
+  }
+  const BehaviourState& of(const AttentionState& state, Behaviour b) const {
+    for (const BehaviourState& s : state.behaviours)
+      if (s.behaviour == b) return s;
+    throw std::logic_error("no such behaviour");
+  }
+  void point_arm_at_person_with_trajectory(double speed) {
+    active_.trajectory = 1;
+    active_.axes = {2};
+    AxisTrajectory axis;
+    axis.start = {0.0, speed, 0.0};
+    axis.segments = {{2.0, 0.0}};
+    active_.rest.axes = {axis};
+    active_.time = 0.0;
+  }
+
+  std::shared_ptr<const RobotModel> robot_;
+  Body body_;
+  HumanState people_;
+  Facts facts_;
+  bool facts_known_{};
+  ActionStatus action_;
+  ActiveTrajectory active_;
+  Scene scene_;
+};
+
+TEST(AdaptiveClock, linear_law_meets_its_ends_and_the_shortest_period) {
+  AdaptiveClock clock({ClockLaw::linear, 0.03, 0.3, 0.1, 1.1, 1.0}, Duration(0), "avoid");
+  EXPECT_TRUE(clock.due(at(0)));
+  clock.fire(1.1, at(0));
+  EXPECT_NEAR(clock.period(), 0.3, 1e-12);
+  clock.fire(0.6, at(1));
+  EXPECT_NEAR(clock.period(), 0.3 * 0.55, 1e-12);
+  clock.fire(0.1, at(2));
+  EXPECT_NEAR(clock.period(), 0.03, 1e-12);
+  clock.fire(1e30, at(3));
+  EXPECT_NEAR(clock.period(), 0.3, 1e-12);
+  EXPECT_FALSE(clock.due(at(3.29)));
+  EXPECT_TRUE(clock.due(at(3.31)));
+  EXPECT_EQ(clock.activations(), 4u);
+  EXPECT_EQ(clock.activations_at_fastest(at(3)), 101u);
+}
+
+TEST(AdaptiveClock, weber_law_changes_the_period_in_proportion_to_the_relative_change) {
+  AdaptiveClock clock({ClockLaw::weber, 0.01, 0.4, 0.1, 2.0, 1.0}, Duration(0), "avoid");
+  clock.fire(1.0, at(0));
+  EXPECT_NEAR(clock.period(), 0.2, 1e-12);
+  clock.fire(0.5, at(1));
+  EXPECT_NEAR(clock.period(), 0.1, 1e-12);
+  clock.fire(0.5, at(2));
+  EXPECT_NEAR(clock.period(), 0.1, 1e-12);
+  clock.fire(0.6, at(3));
+  EXPECT_NEAR(clock.period(), 0.12, 1e-12);
+}
+
+TEST(AdaptiveClock, refuses_settings_that_cannot_work) {
+  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.3, 0.1, 0.1, 1.0, 1.0}, Duration(0), "give"), ConfigError);
+  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.0, 0.1, 0.1, 1.0, 1.0}, Duration(0), "give"), ConfigError);
+  EXPECT_THROW(AdaptiveClock({ClockLaw::linear, 0.1, 0.2, 1.0, 1.0, 1.0}, Duration(0), "give"), ConfigError);
+}
+
+TEST(Zones, nearing_counts_at_once_and_leaving_needs_margin_and_time) {
+  ZoneTracker zones({});
+  EXPECT_EQ(zones.update(5.0, at(0)), Zone::far);
+  EXPECT_EQ(zones.update(1.0, at(0.1)), Zone::interaction);
+  EXPECT_EQ(zones.update(1.22, at(0.2)), Zone::interaction);
+  EXPECT_EQ(zones.update(1.22, at(2.0)), Zone::interaction);
+  EXPECT_EQ(zones.update(1.30, at(2.1)), Zone::interaction);
+  EXPECT_EQ(zones.update(1.30, at(2.3)), Zone::interaction);
+  EXPECT_EQ(zones.update(1.30, at(2.41)), Zone::social);
+  EXPECT_EQ(zones.update(0.05, at(2.42)), Zone::contact);
+}
+
+TEST_F(AttentionTest, nobody_there_searches_and_does_not_slow) {
+  Attention attention(settings(), body_);
+  run(attention, 0, 3);
+  const AttentionAdvice advice = attention.advice();
+  EXPECT_EQ(advice.speed_factor, 1.0);
+  EXPECT_TRUE(advice.has_gaze_target);
+  EXPECT_TRUE(of(attention.state(), Behaviour::search).released);
+}
+
+TEST_F(AttentionTest, a_person_standing_still_at_arms_length_slows_nothing_and_is_looked_at) {
+  Attention attention(settings(), body_);
+  people_.people = {standing(2.1, 0)};
+  run(attention, 0, 3);
+  const AttentionAdvice advice = attention.advice();
+  EXPECT_EQ(advice.speed_factor, 1.0);
+  EXPECT_TRUE(advice.has_gaze_target);
+  EXPECT_NEAR(advice.gaze_target.x(), people_.people[0].joints[0].position.x(), 1e-9);
+  EXPECT_FALSE(of(attention.state(), Behaviour::search).released);
+  EXPECT_TRUE(of(attention.state(), Behaviour::track).released);
+}
+
+TEST_F(AttentionTest, the_nearer_the_person_the_slower_the_arm_and_the_faster_the_clock) {
+  double last_factor = 2.0, last_period = 1e9;
+  for (double x : {2.0, 1.6, 1.3, 1.2, 1.1}) {
+    Attention attention(settings(), body_);
+    people_.people = {standing(x, 0)};
+    run(attention, 0, 1);
+    const AttentionState state = attention.state();
+    EXPECT_LE(attention.advice().speed_factor, last_factor) << x;
+    EXPECT_LE(of(state, Behaviour::avoid).period, last_period) << x;
+    last_factor = attention.advice().speed_factor;
+    last_period = of(state, Behaviour::avoid).period;
+  }
+  EXPECT_LT(last_factor, 0.5);
+  EXPECT_NEAR(last_period, 0.04, 0.02);
+}
+
+TEST_F(AttentionTest, a_person_who_comes_fast_is_answered_sooner_than_one_who_stands) {
+  Attention attention(settings(), body_);
+  people_.people = {standing(1.5, 0)};
+  run(attention, 0, 1);
+  const double still = attention.advice().speed_factor, period = of(attention.state(), Behaviour::avoid).period;
+  move(people_.people[0], Vector3::Zero(), Vector3(-1.5, 0, 0));
+  run(attention, 1, 2);
+  EXPECT_LT(attention.advice().speed_factor, still);
+  EXPECT_LT(of(attention.state(), Behaviour::avoid).period, period);
+}
+
+TEST_F(AttentionTest, recoils_only_when_running_back_leads_away) {
+  Attention attention(settings(), body_);
+  people_.people = {standing(0.6, 0.36)};
+  move(people_.people[0], Vector3::Zero(), Vector3(-0.5, -0.5, 0));
+  ASSERT_LT(body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance, 0.06);
+  point_arm_at_person_with_trajectory(0.0);
+  run(attention, 0, 0.5);
+  EXPECT_GE(attention.advice().speed_factor, 0.0);
+  EXPECT_LT(attention.advice().speed_factor, 0.1);
+
+  active_.axes = {0};
+  active_.rest.axes[0].start = {-0.3, 0.5, 0.0};
+  active_.time = 0.6;
+  run(attention, 0.5, 1.0);
+  EXPECT_LT(attention.advice().speed_factor, 0.0);
+  EXPECT_EQ(attention.advice().limiting, Behaviour::avoid);
+}
+
+TEST_F(AttentionTest, an_arm_that_leads_away_keeps_moving) {
+  Attention attention(settings(), body_);
+  people_.people = {standing(0.8, 0.3)};
+  active_.trajectory = 1;
+  active_.axes = {0};
+  AxisTrajectory axis;
+  axis.start = {0.0, -0.5, 0.0};
+  axis.segments = {{2.0, 0.0}};
+  active_.rest.axes = {axis};
+  run(attention, 0, 0.5);
+  EXPECT_GE(attention.advice().speed_factor, 0.5);
+}
+
+TEST_F(AttentionTest, the_exchanging_hand_does_not_stop_the_robot_once_engaged) {
+  people_.people = {standing(1.45, 0)};
+  for (std::size_t j : {std::size_t{9}, std::size_t{10}, std::size_t{11}})
+    people_.people[0].joints[j].position = Vector3(0.95 - 0.0 * static_cast<double>(j), 0, 1.0);
+  people_.people[0].joints[9].position.x() = 1.2;
+  action_.kind = ActionKind::give;
+  action_.state = ActionState::running;
+  action_.holding = true;
+  action_.human = "anna";
+  Attention before(settings(), body_);
+  run(before, 0, 1);
+  action_.exchange_engaged = true;
+  Attention engaged(settings(), body_);
+  run(engaged, 0, 1);
+  EXPECT_LT(of(before.state(), Behaviour::avoid).speed_factor, 0.35);
+  EXPECT_GT(of(engaged.state(), Behaviour::avoid).speed_factor, of(before.state(), Behaviour::avoid).speed_factor);
+  EXPECT_TRUE(of(engaged.state(), Behaviour::give).released);
+  EXPECT_GT(engaged.advice().speed_factor, 0.0);
+  EXPECT_FALSE(engaged.advice().has_target_shift);
+}
+
+TEST_F(AttentionTest, give_waits_for_an_attentive_person) {
+  people_.people = {standing(1.8, 0)};
+  action_.kind = ActionKind::give;
+  action_.state = ActionState::running;
+  action_.holding = true;
+  facts_known_ = true;
+  Attention attention(settings(), body_);
+  run(attention, 0, 1);
+  EXPECT_FALSE(of(attention.state(), Behaviour::give).released);
+  facts_.facts = {{FactKind::attentive, "anna", "", 1.0, 0.5}};
+  run(attention, 1, 2);
+  EXPECT_TRUE(of(attention.state(), Behaviour::give).released);
+}
+
+TEST_F(AttentionTest, picking_eases_over_the_last_ten_centimetres) {
+  action_.kind = ActionKind::pick;
+  action_.state = ActionState::running;
+  action_.object = "mug";
+  SceneObject mug;
+  mug.id = "mug";
+  mug.T_world_object.translation() = Vector3(1.4, 0, 1.0);
+  scene_.objects = {mug};
+  Attention far(settings(), body_);
+  run(far, 0, 0.5);
+  EXPECT_EQ(far.advice().speed_factor, 1.0);
+  scene_.objects[0].T_world_object.translation() = Vector3(0.85, 0, 1.0);
+  Attention near(settings(), body_);
+  run(near, 0, 0.5);
+  EXPECT_NEAR(near.advice().speed_factor, 0.4 + 0.6 * 0.5, 1e-6);
+  EXPECT_EQ(near.advice().limiting, Behaviour::pick);
+  action_.holding = true;
+  run(near, 0.5, 0.6);
+  EXPECT_EQ(near.advice().speed_factor, 1.0);
+}
+
+TEST_F(AttentionTest, clocks_save_work_when_nothing_is_near_and_not_when_it_matters) {
+  Attention calm(settings(), body_);
+  people_.people = {standing(4.0, 0)};
+  run(calm, 0, 10);
+  const BehaviourState relaxed = of(calm.state(), Behaviour::avoid);
+  EXPECT_LT(static_cast<double>(relaxed.activations), 0.3 * static_cast<double>(relaxed.activations_at_fastest));
+  EXPECT_GT(relaxed.activations, 40u);
+  Attention close(settings(), body_);
+  people_.people = {standing(1.05, 0)};
+  run(close, 0, 10);
+  const BehaviourState alert = of(close.state(), Behaviour::avoid);
+  EXPECT_GT(static_cast<double>(alert.activations), 0.8 * static_cast<double>(alert.activations_at_fastest));
+}
+
+TEST_F(AttentionTest, both_laws_run_every_behaviour) {
+  for (ClockLaw law : {ClockLaw::linear, ClockLaw::weber}) {
+    Attention attention(settings(law), body_);
+    people_.people = {standing(3.0, 0)};
+    for (int k = 0; k < 300; ++k) {
+      move(people_.people[0], Vector3(-0.006, 0, 0), Vector3(-0.6, 0, 0));
+      attention.step(world(), at(0.01 * k));
+    }
+    for (const BehaviourState& b : attention.state().behaviours) {
+      EXPECT_GT(b.activations, 0u) << name(b.behaviour);
+      EXPECT_LE(b.activations, b.activations_at_fastest) << name(b.behaviour);
+    }
+    EXPECT_LT(of(attention.state(), Behaviour::avoid).period, 0.15);
+  }
+}
+
+TEST_F(AttentionTest, settings_that_contradict_themselves_are_refused_by_name) {
+  AttentionSettings twice = settings();
+  twice.behaviours.push_back(twice.behaviours.front());
+  try {
+    Attention attention(twice, body_);
+    FAIL() << "accepted";
+  } catch (const ConfigError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("search"));
+  }
+  EXPECT_THROW(Attention({}, body_), ConfigError);
+}
+
+TEST_F(AttentionTest, missing_samples_hurt_nothing) {
+  Attention attention(settings(), body_);
+  for (int k = 0; k < 200; ++k) attention.step({}, at(0.01 * k));
+  EXPECT_EQ(attention.advice().speed_factor, 1.0);
+  EXPECT_FALSE(attention.advice().has_gaze_target);
+}
+
+}  // namespace
+}  // namespace handsel::attention
