@@ -1,0 +1,35 @@
+// Hierarchy of axis-aligned boxes over points, split along the longer side down to single points (chapter section 3.2.4).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "common/geometry/pose.hpp"
+
+namespace handsel::grasp_planner {
+
+class PointTree {
+ public:
+  PointTree() = default;
+  explicit PointTree(const std::vector<Vector3>& points);
+
+  /// Appends the indices of the points inside the ball (boundary included), in the order of the tree.
+  void inside_ball(const Vector3& centre, double radius, std::vector<std::uint32_t>& out) const;
+  const Eigen::AlignedBox3d& box() const { return box_; }
+  std::size_t size() const { return points_.size(); }
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::uint32_t left{}, right{};  // right == 0: leaf, left is the point
+  };
+  std::uint32_t build(std::vector<std::uint32_t>& order, std::size_t begin, std::size_t end);
+
+  std::vector<Vector3> points_;
+  std::vector<Node> nodes_;
+  Eigen::AlignedBox3d box_;
+};
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,44 @@
+// Exact touch tests of capsules with a triangle mesh: a tree of boxes over the triangles. Closed forms, no solver.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/shape.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Squared distance of two segments [m^2].
+double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1);
+
+class TriangleTree {
+ public:
+  TriangleTree() = default;
+  explicit TriangleTree(const TriangleMesh& mesh);
+
+  /// Whether some triangle is nearer than `radius` to the segment.
+  bool nearer_than(const Vector3& a, const Vector3& b, double radius) const;
+  /// Distance of the segment to the surface [m]; `limit` when it is farther than that.
+  double distance(const Vector3& a, const Vector3& b, double limit) const;
+  /// Inside a closed mesh: most of three rays cross it an odd number of times.
+  bool contains(const Vector3& p) const;
+  const Eigen::AlignedBox3d& box() const { return box_; }
+
+ private:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::uint32_t left{}, right{};  // count > 0: leaf with triangles [left, left + count)
+    std::uint32_t count{};
+  };
+  struct Triangle {
+    Vector3 a, b, c;
+  };
+  std::uint32_t build(std::size_t begin, std::size_t end);
+  double search(const Vector3& a, const Vector3& b, double limit, bool first_hit) const;
+
+  std::vector<Triangle> triangles_;
+  std::vector<Node> nodes_;
+  Eigen::AlignedBox3d box_;
+};
+
+}  // namespace handsel::grasp_planner
