@@ -59,7 +59,7 @@ TEST(GraspStability, agrees_with_an_independent_hull_on_random_contacts) {
   const std::uint64_t seed = 20260101;
   std::mt19937_64 random(seed);
   int closed = 0, compared = 0;
-  for (int trial = 0; trial < 10000; ++trial) {
+  for (int trial = 0; trial < 1500; ++trial) {
     const int count = 2 + trial % 4;
     const WrenchMatrix w = contact_wrenches(random_contacts(random, count, false), 8, Vector3::Zero(), 1.0);
     const double oracle = hull_oracle(w);
@@ -69,19 +69,21 @@ TEST(GraspStability, agrees_with_an_independent_hull_on_random_contacts) {
     ASSERT_EQ(force_closure(w), oracle > 0) << "trial " << trial << " seed " << seed << " oracle " << oracle;
     ASSERT_NEAR(epsilon(w), std::max(0.0, oracle), 1e-9) << "trial " << trial << " seed " << seed;
   }
-  EXPECT_GT(closed, 500);
-  EXPECT_GT(compared, 9000);
+  EXPECT_GT(closed, 100);
+  EXPECT_GT(compared, 1300);
 }
 
 TEST(GraspStability, survives_contacts_on_a_coarse_grid) {
   const std::uint64_t seed = 7;
   std::mt19937_64 random(seed);
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 400; ++trial) {
     const WrenchMatrix w = contact_wrenches(random_contacts(random, 2 + trial % 4, true), 8, Vector3::Zero(), 1.0);
     const double e = epsilon(w);
     ASSERT_EQ(force_closure(w), e > 0) << "trial " << trial << " seed " << seed << " epsilon " << e;
     const double oracle = hull_oracle(w);
-    if (oracle > 1e-7) ASSERT_NEAR(e, oracle, 1e-9) << "trial " << trial << " seed " << seed;
+    if (oracle > 1e-7) {
+      ASSERT_NEAR(e, oracle, 1e-9) << "trial " << trial << " seed " << seed;
+    }
   }
 }
 
