@@ -5,8 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/segments.hpp"
+
 namespace handsel::grasp_planner {
 namespace {
+
+double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1) {
+  Vector3 on_a, on_b;
+  return nearest_points(a0, a1, b0, b1, on_a, on_b);
+}
 
 double point_triangle_squared(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 ab = b - a, ac = c - a, ap = p - a;
@@ -57,33 +64,6 @@ double box_bound(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& segm
 }
 
 }  // namespace
-
-double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1) {
-  const Vector3 d1 = a1 - a0, d2 = b1 - b0, r = a0 - b0;
-  const double a = d1.squaredNorm(), e = d2.squaredNorm(), f = d2.dot(r);
-  double s = 0, t = 0;
-  if (a <= 1e-18 && e <= 1e-18) return r.squaredNorm();
-  if (a <= 1e-18) {
-    t = std::clamp(f / e, 0.0, 1.0);
-  } else {
-    const double c = d1.dot(r);
-    if (e <= 1e-18) {
-      s = std::clamp(-c / a, 0.0, 1.0);
-    } else {
-      const double b = d1.dot(d2), denominator = a * e - b * b;
-      s = denominator > 1e-12 * a * e ? std::clamp((b * f - c * e) / denominator, 0.0, 1.0) : 0.0;
-      t = (b * s + f) / e;
-      if (t < 0) {
-        t = 0;
-        s = std::clamp(-c / a, 0.0, 1.0);
-      } else if (t > 1) {
-        t = 1;
-        s = std::clamp((b - c) / a, 0.0, 1.0);
-      }
-    }
-  }
-  return (r + s * d1 - t * d2).squaredNorm();
-}
 
 TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   triangles_.reserve(mesh.triangles.size());

@@ -8,9 +8,6 @@
 
 namespace handsel::grasp_planner {
 
-/// Squared distance of two segments [m^2].
-double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1);
-
 class TriangleTree {
  public:
   TriangleTree() = default;

@@ -1,0 +1,296 @@
+#include "components/grasp_planner/grasp_list.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/grasp_planner/epsilon.hpp"
+#include "components/grasp_planner/frame_search.hpp"
+#include "components/grasp_planner/so3_grid.hpp"
+
+namespace handsel::grasp_planner {
+namespace {
+
+constexpr std::size_t kLeastContacts = 3;
+constexpr std::size_t kScoredCombinations = 8;
+
+/// Which contact each finger uses; -1: none, the finger rests.
+using Combination = std::vector<int>;
+
+}  // namespace
+
+const char* reason_text(FrameReason reason) {
+  switch (reason) {
+    case FrameReason::grasped:
+      return "grasp found";
+    case FrameReason::thumb_out_of_reach:
+      return "no surface in the workspace of the thumb";
+    case FrameReason::fingers_out_of_reach:
+      return "surface in the workspaces of fewer than two fingers besides the thumb";
+    case FrameReason::palm_in_object:
+      return "the palm collides with the object";
+    case FrameReason::thumb_without_contact:
+      return "the thumb finds no contact it can reach, push into and open from without collision";
+    case FrameReason::fingers_without_contact:
+      return "fewer than two fingers besides the thumb find such a contact";
+    case FrameReason::fingers_collide:
+      return "fingers collide with each other or, at rest, with the object";
+    case FrameReason::not_closed:
+      return "no combination of contacts is force-closed";
+    case FrameReason::count:
+      break;
+  }
+  return "unknown";
+}
+
+Refusals GraspList::refusals() const {
+  Refusals out;
+  for (std::size_t r = 1; r < reasons.size(); ++r) {
+    if (reasons[r] > 0) out.push_back({std::to_string(reasons[r]) + " frames", reason_text(static_cast<FrameReason>(r))});
+  }
+  return out;
+}
+
+std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count) {
+  const Vector3 size = box.sizes().cwiseMax(1e-6);
+  const double step = std::cbrt(size.prod() / std::max(1U, count));
+  const Eigen::Vector3i n = (size / step).array().round().max(1.0).cast<int>();
+  std::vector<Vector3> out;
+  for (int z = 0; z < n.z(); ++z) {
+    for (int y = 0; y < n.y(); ++y) {
+      for (int x = 0; x < n.x(); ++x) out.push_back(box.min() + size.cwiseProduct(Vector3((x + 0.5) / n.x(), (y + 0.5) / n.y(), (z + 0.5) / n.z())));
+    }
+  }
+  return out;
+}
+
+struct GraspLister::Impl {
+  Impl(std::shared_ptr<const HandKit> k, std::shared_ptr<const Graspable> o, const GraspListSettings& s)
+      : kit(std::move(k)), object(std::move(o)), settings(s), search(*kit, *object, settings) {
+    positions = uniform_positions(object->box(), settings.positions);
+    orientations = so3_sequence(settings.orientations);
+    out.hand = kit->hand.name();
+    out.object = object->name();
+    kit->forward(kit->hand.rest(), T_rest);
+    kit->forward(kit->hand.pregrasp(), T_pregrasp);
+  }
+
+  FrameReason frame(std::uint64_t id) {
+    const Pose T_object_grasp = make_pose(positions[id % positions.size()], orientations[id / positions.size()]);
+    const Pose T_object_hand = T_object_grasp * kit->hand.T_hand_grasp().inverse();
+    const std::size_t fingers = kit->chains.size();
+    points.resize(fingers);
+    search.candidates(0, T_object_hand, points[0]);
+    if (points[0].empty()) return FrameReason::thumb_out_of_reach;
+    std::size_t reached = 0;
+    for (std::size_t f = 1; f < fingers; ++f) {
+      search.candidates(static_cast<int>(f), T_object_hand, points[f]);
+      reached += !points[f].empty();
+    }
+    if (reached + 1 < kLeastContacts) return FrameReason::fingers_out_of_reach;
+    ++out.touch_tests;
+    if (kit->shape.palm_touches(*object, T_object_hand)) return FrameReason::palm_in_object;
+    contacts.assign(fingers, {});
+    contacts[0] = search.contacts(0, T_object_hand, points[0], out);
+    if (contacts[0].empty()) return FrameReason::thumb_without_contact;
+    std::size_t touching = 0;
+    for (std::size_t f = 1; f < fingers; ++f) {
+      if (touching + (fingers - f) + 1 < kLeastContacts) return FrameReason::fingers_without_contact;
+      contacts[f] = search.contacts(static_cast<int>(f), T_object_hand, points[f], out);
+      touching += !contacts[f].empty();
+    }
+    if (touching + 1 < kLeastContacts) return FrameReason::fingers_without_contact;
+    return combine(id, T_object_hand);
+  }
+
+  /// Posture of a finger without contact: rest, else pre-grasp; -1 when both collide with the object.
+  int idle_posture(std::size_t f, const Pose& T_object_hand) {
+    ++out.touch_tests;
+    if (!kit->shape.finger_touches(static_cast<int>(f), T_rest[f], *object, T_object_hand, 0.002)) return 0;
+    if (!kit->shape.finger_touches(static_cast<int>(f), T_pregrasp[f], *object, T_object_hand, 0.002)) return 1;
+    return -1;
+  }
+
+  const std::vector<Pose>& poses(std::size_t f, int choice) const {
+    if (choice >= 0) return contacts[f][static_cast<std::size_t>(choice)].T_hand_step;
+    return idle[f] == 1 ? T_pregrasp[f] : T_rest[f];
+  }
+
+  // Walks all combinations depth first; a pair of postures that collides cuts its whole branch.
+  void enumerate(std::size_t f, Combination& chosen, std::size_t used, std::vector<Combination>& found) {
+    const std::size_t fingers = contacts.size();
+    if (f == fingers) {
+      if (used >= kLeastContacts) found.push_back(chosen);
+      return;
+    }
+    for (int choice = static_cast<int>(contacts[f].size()) - 1; choice >= -1; --choice) {
+      if (choice < 0 && (f == 0 || idle[f] < 0 || used + (fingers - f - 1) < kLeastContacts)) continue;
+      bool free = true;
+      for (std::size_t g = 0; g < f && free; ++g) free = !clash(g, chosen[g], f, choice);
+      if (!free) continue;
+      chosen[f] = choice;
+      enumerate(f + 1, chosen, used + (choice >= 0), found);
+    }
+  }
+
+  bool clash(std::size_t g, int a, std::size_t f, int b) {
+    const std::size_t width = settings.contacts_per_finger + 1;
+    signed char& known = clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width + static_cast<std::size_t>(b + 1)];
+    if (known < 0) known = kit->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
+    return known != 0;
+  }
+
+  std::vector<PointContact> point_contacts(const Combination& c) const {
+    std::vector<PointContact> out_contacts;
+    for (std::size_t f = 0; f < c.size(); ++f) {
+      if (c[f] < 0) continue;
+      const SurfacePoint& p = object->points()[contacts[f][static_cast<std::size_t>(c[f])].point];
+      out_contacts.push_back({p.position, -p.normal, friction()});
+    }
+    return out_contacts;
+  }
+
+  double friction() const { return settings.friction > 0 ? settings.friction : object->friction(); }
+
+  // The three parts of the quality that cost nothing.
+  GraspScores cheap_scores(const Combination& c) const {
+    GraspScores s;
+    Vector3 mean = Vector3::Zero();
+    double n = 0;
+    for (std::size_t f = 0; f < c.size(); ++f) {
+      if (c[f] < 0) continue;
+      const FingerContact& contact = contacts[f][static_cast<std::size_t>(c[f])];
+      mean += object->points()[contact.point].position;
+      s.force += contact.force;
+      s.curvature += 1 - object->points()[contact.point].curvature;
+      n += 1;
+    }
+    s.force /= n;
+    s.curvature /= n;
+    s.centre = std::clamp(1 - (mean / n - object->com()).norm() / object->radius(), 0.0, 1.0);
+    return s;
+  }
+
+  double quality(const GraspScores& s) const {
+    const QualityWeights& w = settings.weights;
+    const double sum = w.stability + w.centre + w.force + w.curvature;
+    return (w.stability * s.stability + w.centre * s.centre + w.force * s.force + w.curvature * s.curvature) / sum;
+  }
+
+  FrameReason combine(std::uint64_t id, const Pose& T_object_hand) {
+    idle.assign(contacts.size(), 0);
+    for (std::size_t f = 1; f < contacts.size(); ++f) idle[f] = idle_posture(f, T_object_hand);
+    const std::size_t width = settings.contacts_per_finger + 1;
+    clashes.assign(contacts.size() * contacts.size() * width * width, -1);
+    std::vector<Combination> found;
+    Combination chosen(contacts.size(), -1);
+    enumerate(0, chosen, 0, found);
+    if (found.empty()) return FrameReason::fingers_collide;
+
+    struct Rated {
+      double rank;
+      std::size_t index;
+      GraspScores scores;
+    };
+    std::vector<Rated> rated;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const GraspScores s = cheap_scores(found[i]);
+      const auto used = static_cast<double>(std::count_if(found[i].begin(), found[i].end(), [](int k) { return k >= 0; }));
+      rated.push_back({quality(s) + 0.05 * used, i, s});
+    }
+    std::stable_sort(rated.begin(), rated.end(), [](const Rated& a, const Rated& b) { return a.rank > b.rank; });
+    const double scale = 1 / object->radius();
+    double best = -1;
+    Rated winner{};
+    double winner_epsilon = 0;
+    std::size_t closed = 0;
+    for (Rated& r : rated) {
+      if (closed >= kScoredCombinations) break;
+      const WrenchMatrix w = contact_wrenches(point_contacts(found[r.index]), settings.cone_edges, object->com(), scale);
+      ++out.closure_tests;
+      if (!force_closure(w)) continue;
+      const double e = epsilon(w);
+      if (!(e > 0)) continue;
+      ++closed;
+      r.scores.stability = std::clamp(e / settings.full_epsilon, 0.0, 1.0);
+      const double q = quality(r.scores);
+      if (q <= best) continue;
+      best = q;
+      winner = r;
+      winner_epsilon = e;
+    }
+    if (best < 0) return FrameReason::not_closed;
+    out.grasps.push_back({make_grasp(id, T_object_hand, found[winner.index], winner_epsilon, best), winner.scores});
+    return FrameReason::grasped;
+  }
+
+  Grasp make_grasp(std::uint64_t id, const Pose& T_object_hand, const Combination& c, double grasp_epsilon, double grasp_quality) const {
+    Grasp g;
+    g.id = id;
+    g.T_object_hand = T_object_hand;
+    g.hand_joints = kit->hand.rest();
+    g.pregrasp_joints = kit->hand.rest();
+    g.epsilon = grasp_epsilon;
+    g.quality = grasp_quality;
+    for (std::size_t f = 0; f < c.size(); ++f) {
+      const FingerContact* contact = c[f] >= 0 ? &contacts[f][static_cast<std::size_t>(c[f])] : nullptr;
+      const Vector& idle_q = idle[f] == 1 ? kit->hand.pregrasp() : kit->hand.rest();
+      for (const int a : kit->hand.fingers()[f].axes) {
+        g.hand_joints[a] = contact != nullptr ? contact->q[a] : idle_q[a];
+        g.pregrasp_joints[a] = contact != nullptr ? contact->q_open[a] : idle_q[a];
+      }
+      if (contact == nullptr) continue;
+      const SurfacePoint& p = object->points()[contact->point];
+      g.contacts.push_back({static_cast<std::uint32_t>(f), p.position, p.normal, p.triangle, p.barycentric, friction(), p.curvature});
+    }
+    return g;
+  }
+
+  std::shared_ptr<const HandKit> kit;
+  std::shared_ptr<const Graspable> object;
+  GraspListSettings settings;
+  FrameSearch search;
+  std::vector<Vector3> positions;
+  std::vector<Eigen::Quaterniond> orientations;
+  std::vector<std::vector<Pose>> T_rest, T_pregrasp;
+  std::vector<std::vector<std::uint32_t>> points;
+  std::vector<std::vector<FingerContact>> contacts;
+  std::vector<int> idle;
+  std::vector<signed char> clashes;
+  GraspList out;
+};
+
+GraspLister::GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const Graspable> object, const GraspListSettings& settings)
+    : impl_(std::make_unique<Impl>(std::move(kit), std::move(object), settings)) {}
+GraspLister::~GraspLister() = default;
+GraspLister::GraspLister(GraspLister&&) noexcept = default;
+
+std::uint64_t GraspLister::frames() const { return impl_->positions.size() * impl_->orientations.size(); }
+
+bool GraspLister::advance(std::uint64_t count) {
+  const std::uint64_t end = std::min(frames(), impl_->out.frames + count);
+  while (impl_->out.frames < end) {
+    const FrameReason reason = impl_->frame(impl_->out.frames);
+    ++impl_->out.reasons[static_cast<std::size_t>(reason)];
+    ++impl_->out.frames;
+  }
+  return impl_->out.frames < frames();
+}
+
+GraspList GraspLister::list() const {
+  GraspList sorted = impl_->out;
+  std::stable_sort(sorted.grasps.begin(), sorted.grasps.end(), [](const ListedGrasp& a, const ListedGrasp& b) {
+    return a.grasp.quality != b.grasp.quality ? a.grasp.quality > b.grasp.quality : a.grasp.id < b.grasp.id;
+  });
+  return sorted;
+}
+
+GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
+                      const std::function<bool()>& cancelled) {
+  GraspLister lister(std::move(kit), std::move(object), settings);
+  while (lister.advance(64)) {
+    if (cancelled && cancelled()) break;
+  }
+  return lister.list();
+}
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,36 @@
+#include "components/grasp_planner/hand_kit.hpp"
+
+#include <algorithm>
+
+namespace handsel::grasp_planner {
+namespace {
+
+std::vector<FingerChain> make_chains(const HandModel& hand) {
+  std::vector<FingerChain> chains;
+  for (int f = 0; f < static_cast<int>(hand.fingers().size()); ++f) chains.emplace_back(hand, f);
+  return chains;
+}
+
+std::vector<FingerWorkspace> make_workspaces(const HandModel& hand, const std::vector<FingerChain>& chains, const WorkspaceSettings& settings) {
+  std::vector<FingerWorkspace> workspaces;
+  for (const FingerChain& c : chains) workspaces.emplace_back(hand, c, settings);
+  return workspaces;
+}
+
+}  // namespace
+
+HandKit::HandKit(const HandModel& hand_model, const WorkspaceSettings& settings)
+    : hand(hand_model), chains(make_chains(hand)), workspaces(make_workspaces(hand, chains, settings)), shape(hand, chains) {}
+
+void HandKit::forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const {
+  T_hand_step.resize(chains.size());
+  for (std::size_t f = 0; f < chains.size(); ++f) chains[f].forward(q, T_hand_step[f]);
+}
+
+double HandKit::tip_radius() const {
+  double radius = 0;
+  for (const FingerChain& c : chains) radius = std::max(radius, c.tip_radius());
+  return radius;
+}
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,169 @@
+#include "components/grasp_planner/hand_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/segments.hpp"
+
+namespace handsel::grasp_planner {
+namespace {
+
+constexpr double kShrink = 0.001;  // [m] a mesh link in contact may be this deep
+
+const Pose& step_pose(const std::vector<Pose>& T, int step) {
+  static const Pose identity = Pose::Identity();
+  return step < 0 ? identity : T[static_cast<std::size_t>(step)];
+}
+
+MeshPtr shrink(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& v : mesh.vertices) box.extend(v);
+  const Vector3 half = (0.5 * box.sizes()).cwiseMax(1e-6);
+  auto out = std::make_shared<TriangleMesh>(mesh);
+  for (Vector3& v : out->vertices) {
+    const Vector3 share = (half.array() - kShrink).max(0.0) / half.array();
+    v = box.center() + share.cwiseProduct(v - box.center());
+  }
+  return out;
+}
+
+}  // namespace
+
+HandShape::Solid HandShape::make_solid(int link, int step, const Pose& T_step_link, const PlacedShape& placed) {
+  Solid s;
+  s.link = link;
+  s.step = step;
+  s.T_step_shape = T_step_link * placed.T_parent_shape;
+  const auto capsule = [&s](double radius, double length) {
+    s.capsule = true;
+    s.radius = radius;
+    s.a = s.T_step_shape * Vector3(0, 0, -0.5 * length);
+    s.b = s.T_step_shape * Vector3(0, 0, 0.5 * length);
+  };
+  if (const auto* sphere = std::get_if<Sphere>(&placed.shape)) capsule(sphere->radius, 0.0);
+  if (const auto* round = std::get_if<Capsule>(&placed.shape)) capsule(round->radius, round->length);
+  const auto* cylinder = std::get_if<Cylinder>(&placed.shape);
+  if (cylinder != nullptr && cylinder->length >= 2 * cylinder->radius) capsule(cylinder->radius, cylinder->length);
+  s.shape = CollisionShape::make(placed.shape);
+  s.shrunk = s.shape;
+  if (const auto* mesh = std::get_if<MeshPtr>(&placed.shape)) s.shrunk = CollisionShape::make(shrink(**mesh));
+  return s;
+}
+
+HandShape::HandShape(const HandModel& hand, const std::vector<FingerChain>& chains) : fingers_(chains.size()) {
+  const RobotModel& model = hand.model();
+  links_ = static_cast<int>(model.links().size());
+  std::vector<bool> carried(model.links().size(), false);
+  for (std::size_t f = 0; f < chains.size(); ++f) {
+    for (const FingerChain::Carried& c : chains[f].carried()) {
+      if (carried[static_cast<std::size_t>(c.link)]) continue;
+      carried[static_cast<std::size_t>(c.link)] = true;
+      for (const PlacedShape& p : model.links()[static_cast<std::size_t>(c.link)].collision) {
+        fingers_[f].push_back(make_solid(c.link, c.step, c.T_step_link, p));
+      }
+    }
+  }
+  std::vector<Pose> T_hand_link;
+  model.forward(hand.rest(), T_hand_link);
+  for (int l = 0; l < links_; ++l) {
+    if (carried[static_cast<std::size_t>(l)]) continue;
+    for (const PlacedShape& p : model.links()[static_cast<std::size_t>(l)].collision) {
+      palm_.push_back(make_solid(l, -1, T_hand_link[static_cast<std::size_t>(l)], p));
+    }
+  }
+  disabled_.assign(static_cast<std::size_t>(links_ * links_), false);
+  const auto disable = [this](int a, int b) {
+    disabled_[static_cast<std::size_t>(a * links_ + b)] = disabled_[static_cast<std::size_t>(b * links_ + a)] = true;
+  };
+  for (int a = 0; a < links_; ++a) {
+    for (int b = 0; b < links_; ++b) {
+      if (a == b || model.pair_disabled(a, b)) disable(a, b);
+    }
+  }
+  const Vector middle = 0.5 * (hand.rest() + hand.pregrasp());
+  for (const Vector& q : {hand.rest(), middle, hand.pregrasp()}) {
+    std::vector<std::vector<Pose>> T(chains.size());
+    for (std::size_t f = 0; f < chains.size(); ++f) chains[f].forward(q, T[f]);
+    const auto mark = [&](const std::vector<Solid>& x, const std::vector<Pose>& Tx, const std::vector<Solid>& y, const std::vector<Pose>& Ty) {
+      for (const Solid& s : x) {
+        for (const Solid& t : y) {
+          if (!disabled(s.link, t.link) && solids_touch(s, step_pose(Tx, s.step), t, step_pose(Ty, t.step))) disable(s.link, t.link);
+        }
+      }
+    };
+    for (std::size_t f = 0; f < fingers_.size(); ++f) {
+      mark(fingers_[f], T[f], palm_, {});
+      for (std::size_t g = 0; g < f; ++g) mark(fingers_[f], T[f], fingers_[g], T[g]);
+    }
+  }
+}
+
+bool HandShape::solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object, const Pose& T_object_hand, double clearance) const {
+  const Pose T_object_step = T_object_hand * T_hand_step;
+  if (s.capsule) return object.triangles().nearer_than(T_object_step * s.a, T_object_step * s.b, std::max(1e-6, s.radius + clearance));
+  const CollisionShape& shape = clearance < 0 ? *s.shrunk : *s.shape;
+  return touch(shape, T_object_step * s.T_step_shape, *object.shape(), Pose::Identity());
+}
+
+bool HandShape::palm_touches(const Graspable& object, const Pose& T_object_hand, double clearance) const {
+  for (const Solid& s : palm_) {
+    if (solid_touches(s, Pose::Identity(), object, T_object_hand, clearance)) return true;
+    const Vector3 middle = s.capsule ? Vector3(0.5 * (s.a + s.b)) : Vector3(s.T_step_shape * s.shape->box_center());
+    if (object.triangles().contains(T_object_hand * middle)) return true;
+  }
+  return false;
+}
+
+bool HandShape::finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+                               double clearance) const {
+  for (const Solid& s : fingers_[static_cast<std::size_t>(finger)]) {
+    if (solid_touches(s, step_pose(T_hand_step, s.step), object, T_object_hand, clearance)) return true;
+  }
+  return false;
+}
+
+bool HandShape::solids_touch(const Solid& s, const Pose& T_hand_s, const Solid& t, const Pose& T_hand_t) {
+  if (s.capsule && t.capsule) {
+    const double reach = s.radius + t.radius;
+    Vector3 p, q;
+    return nearest_points(T_hand_s * s.a, T_hand_s * s.b, T_hand_t * t.a, T_hand_t * t.b, p, q) < reach * reach;
+  }
+  return touch(*s.shape, T_hand_s * s.T_step_shape, *t.shape, T_hand_t * t.T_step_shape);
+}
+
+bool HandShape::groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a, const std::vector<Solid>& b,
+                             const std::vector<Pose>& T_b) const {
+  for (const Solid& s : a) {
+    for (const Solid& t : b) {
+      if (!disabled(s.link, t.link) && solids_touch(s, step_pose(T_a, s.step), t, step_pose(T_b, t.step))) return true;
+    }
+  }
+  return false;
+}
+
+bool HandShape::finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const {
+  return groups_touch(fingers_[static_cast<std::size_t>(finger)], T_hand_step, palm_, {});
+}
+
+bool HandShape::fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const {
+  return groups_touch(fingers_[static_cast<std::size_t>(a)], T_hand_step_a, fingers_[static_cast<std::size_t>(b)], T_hand_step_b);
+}
+
+std::vector<HandShape::Round> HandShape::rounds(const std::vector<std::vector<Pose>>& T_hand_step) const {
+  std::vector<Round> out;
+  const auto add = [&out](const Solid& s, const Pose& T) {
+    if (s.capsule) {
+      out.push_back({T * s.a, T * s.b, s.radius});
+    } else {
+      const Vector3 centre = T * (s.T_step_shape * s.shape->sphere_center());
+      out.push_back({centre, centre, s.shape->sphere_radius()});
+    }
+  };
+  for (const Solid& s : palm_) add(s, Pose::Identity());
+  for (std::size_t f = 0; f < fingers_.size(); ++f) {
+    for (const Solid& s : fingers_[f]) add(s, step_pose(T_hand_step[f], s.step));
+  }
+  return out;
+}
+
+}  // namespace handsel::grasp_planner
