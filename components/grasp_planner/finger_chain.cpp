@@ -44,6 +44,8 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
     const bool used = std::any_of(tip_path_.begin(), tip_path_.end(), [&](int s) { return steps_[static_cast<std::size_t>(s)].dof == axis; });
     if (used) axes_.push_back(axis);
   }
+  const int outermost = axes_.back();
+  closing_sign_ = 0.5 * (hand.lower_contact()[outermost] + hand.upper_contact()[outermost]) >= hand.rest()[outermost] ? 1.0 : -1.0;
 }
 
 void FingerChain::forward(const Vector& q, std::vector<Pose>& T) const {
@@ -84,6 +86,12 @@ Vector3 FingerChain::tip_direction(const std::vector<Pose>& T) const {
   const Vector3 d = tip(T) - T[static_cast<std::size_t>(tip_step_)].translation();
   const double length = d.norm();
   return length > 1e-9 ? Vector3(d / length) : Vector3::UnitZ();
+}
+
+Vector3 FingerChain::closing_direction(const std::vector<Pose>& T) const {
+  const Vector3 d = closing_sign_ * jacobian(T).rightCols<1>();
+  const double length = d.norm();
+  return length > 1e-9 ? Vector3(d / length) : Vector3::UnitX();
 }
 
 bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance, int iterations) const {

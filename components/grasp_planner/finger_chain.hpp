@@ -30,6 +30,9 @@ class FingerChain {
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const;
   /// From the last joint to the tip's centre, hand frame, unit.
   Vector3 tip_direction(const std::vector<Pose>& T) const;
+  /// Where the tip goes when the finger's outermost axis closes (moves from the rest posture into its range), hand frame, unit: the way its pad
+  /// faces.
+  Vector3 closing_direction(const std::vector<Pose>& T) const;
 
   /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of `p_hand_tip`, inside [lower, upper] (all hand
   /// axes), starting from q. Damped least squares. False when it does not get there; q is then the nearest found.
@@ -51,6 +54,7 @@ class FingerChain {
   int tip_step_{};
   Vector3 p_step_tip_{Vector3::Zero()};
   double tip_radius_{};
+  double closing_sign_{1};        // of the outermost axis
 };
 
 }  // namespace handsel::grasp_planner

@@ -83,7 +83,7 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
       worse = worse || (differ <= kDistinct && s.centrality >= centrality);
     }
     if (worse || (!near && seeds.size() >= kSeedsPerCell && seeds.back().centrality >= centrality)) continue;
-    Seed seed{Vector(static_cast<Eigen::Index>(n)), centrality, chain.tip_direction(T)};
+    Seed seed{Vector(static_cast<Eigen::Index>(n)), centrality, chain.tip_direction(T), chain.closing_direction(T)};
     for (std::size_t k = 0; k < n; ++k) seed.q[static_cast<Eigen::Index>(k)] = q[chain.axes()[k]];
     std::erase_if(seeds, [&](const Seed& s) { return (s.q - seed.q).cwiseAbs().maxCoeff() <= kDistinct; });
     seeds.insert(std::upper_bound(seeds.begin(), seeds.end(), seed, [](const Seed& a, const Seed& b) { return a.centrality > b.centrality; }), seed);

@@ -34,7 +34,7 @@ class FingerWorkspace {
   struct Seed {
     Vector q;
     double centrality{};         ///< least distance to a bound / half range, [0, 1]
-    Vector3 tip_direction{Vector3::UnitZ()};
+    Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};  ///< hand frame, unit
   };
   const std::vector<Seed>& seeds(const Vector3& p_hand) const;
   Eigen::AlignedBox3d box() const { return box_; }

@@ -9,12 +9,17 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr double kFromBehind = 0.6;   // cosine: a fingertip pointing out along the normal would come through the object
-constexpr double kLeastPush = 0.2;    // cosine between closing from the pre-grasp posture and into the surface
+constexpr double kLeastPush = 0.25;   // cosine between the way the pad faces and into the surface: no contact on the back of a finger
 constexpr double kLeastBackOff = 0.4; // share of the opening below which a finger counts as unable to open
 
 double force_alignment(const Eigen::Matrix3Xd& J, const Vector3& normal) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(Eigen::Matrix3d(J * J.transpose()));
   return std::abs(normal.dot(axes.eigenvectors().col(0)));
+}
+
+// Does the fingertip come from outside, its pad toward the surface?
+bool plausible(const FingerWorkspace::Seed& seed, const Vector3& normal) {
+  return normal.dot(seed.tip_direction) <= kFromBehind && -normal.dot(seed.closing_direction) >= kLeastPush;
 }
 
 }  // namespace
@@ -43,19 +48,13 @@ bool FrameSearch::judge(int finger, const Pose& T_object_hand, std::uint32_t poi
   const Vector3 p_hand_tip = T_hand_object * object_.tip_centre(point);
   const Vector3 normal = T_hand_object.linear() * object_.points()[point].normal;
   for (const FingerWorkspace::Seed& seed : kit_.workspaces[static_cast<std::size_t>(finger)].seeds(p_hand_tip)) {
-    if (normal.dot(seed.tip_direction) > kFromBehind) continue;
+    if (!plausible(seed, normal)) continue;
     out.q = hand.pregrasp();
     for (std::size_t k = 0; k < chain.axes().size(); ++k) out.q[chain.axes()[k]] = seed.q[static_cast<Eigen::Index>(k)];
     ++counters.finger_solutions;
     if (!chain.inverse(p_hand_tip, hand.lower_contact(), hand.upper_contact(), out.q)) continue;
     chain.forward(out.q, out.T_hand_step);
     const Eigen::Matrix3Xd J = chain.jacobian(out.T_hand_step);
-    Vector closing(J.cols());
-    for (std::size_t k = 0; k < chain.axes().size(); ++k) {
-      closing[static_cast<Eigen::Index>(k)] = out.q[chain.axes()[k]] - hand.pregrasp()[chain.axes()[k]];
-    }
-    const Vector3 motion = J * closing;
-    if (-normal.dot(motion) < kLeastPush * motion.norm()) continue;
     ++counters.touch_tests;
     if (kit_.shape.finger_touches(finger, out.T_hand_step, object_, T_object_hand, -settings_.depth)) continue;
     if (kit_.shape.finger_touches_palm(finger, out.T_hand_step)) continue;
@@ -84,6 +83,7 @@ std::vector<FingerContact> FrameSearch::contacts(int finger, const Pose& T_objec
                                                  GraspList& counters) {
   std::vector<FingerContact> found;
   std::uint32_t tries = 0;
+  const Pose T_hand_object = T_object_hand.inverse();
   const double apart = 1.2 * kit_.tip_radius();
   FingerContact contact;
   for (const std::uint32_t i : points) {
@@ -94,6 +94,9 @@ std::vector<FingerContact> FrameSearch::contacts(int finger, const Pose& T_objec
       return (o.position - p.position).squaredNorm() < apart * apart && o.normal.dot(p.normal) > 0.8;
     });
     if (known) continue;
+    const auto& seeds = kit_.workspaces[static_cast<std::size_t>(finger)].seeds(T_hand_object * object_.tip_centre(i));
+    const Vector3 normal = T_hand_object.linear() * p.normal;
+    if (std::none_of(seeds.begin(), seeds.end(), [&](const auto& seed) { return plausible(seed, normal); })) continue;
     ++tries;
     if (judge(finger, T_object_hand, i, counters, contact)) found.push_back(contact);
   }

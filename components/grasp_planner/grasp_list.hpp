@@ -15,9 +15,9 @@
 namespace handsel::grasp_planner {
 
 struct QualityWeights {
-  double stability{0.4};        ///< epsilon
+  double stability{0.45};       ///< epsilon
   double centre{0.2};           ///< distance of the contacts' mean to the mass centre
-  double force{0.2};            ///< contact normals along the main axes of the force ellipsoids
+  double force{0.15};           ///< contact normals along the main axes of the force ellipsoids
   double curvature{0.2};        ///< 1 - normalised mean curvature at the contacts
 };
 

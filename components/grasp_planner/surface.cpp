@@ -131,8 +131,11 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
     if (users.size() >= 2) {
       const Vector3 n0 = area_vector(corners(mesh, users[0].first)), n1 = area_vector(corners(mesh, users[1].first));
       angle = std::atan2(n0.cross(n1).norm(), n0.dot(n1));
+      // Convex when the second triangle lies below the plane of the first.
+      const Corners k0 = corners(mesh, users[0].first), k1 = corners(mesh, users[1].first);
+      if (n0.dot((k1.a + k1.b + k1.c) - (k0.a + k0.b + k0.c)) > 0) angle = -angle;
     }
-    if (angle > 1e-6) bends.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle});
+    if (std::abs(angle) > 1e-6) bends.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle});
   }
   // Each bend is entered in every cell that its box, grown by the radius, meets; at most 64 cells along an axis by cutting it.
   const double cell = 2 * radius;
@@ -158,7 +161,7 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
     if (const auto found = grid.find(cell_key(cell_of(p, cell))); found != grid.end()) {
       for (const std::uint32_t i : found->second) sum += pieces[i].angle * length_in_ball(pieces[i].a, pieces[i].b, p, radius);
     }
-    out.push_back(sum / (2 * std::numbers::pi * radius * radius));
+    out.push_back(std::abs(sum) / (2 * std::numbers::pi * radius * radius));
   }
   return out;
 }

@@ -26,7 +26,7 @@ struct SurfaceSettings {
 /// Uniform over the area, deterministic for a seed. Degenerate triangles carry no points.
 std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const SurfaceSettings& settings);
 
-/// Mean curvature |H| [1/m] averaged over a ball at each point, from the dihedral angles of the mesh's edges (normal cycle; ours in place of
+/// Mean curvature |H| [1/m] averaged over a ball at each point, from the signed dihedral angles of the mesh's edges (normal cycle; ours in place of
 /// values interpolated from vertices: independent of the triangulation). An open border counts as an edge that turns by 180 degrees.
 std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, double radius);
 
