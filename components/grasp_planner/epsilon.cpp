@@ -32,7 +32,8 @@ class Hull {
     for (std::size_t i = 0; i < points_.size(); ++i) key_.push_back(mix(i));
   }
 
-  // Signed distance of the nearest hull facet; 0 when flat, not positive when the origin is not inside; NaN when rounding broke the topology.
+  // Signed distance of the nearest hull facet; 0 when flat, not positive when the origin is not inside; NaN when rounding broke the
+  // topology.
   double nearest() {
     if (!start()) return 0.0;
     while (true) {
@@ -304,7 +305,8 @@ double dispatch(const WrenchMatrix& w, double scale) {
 
 double epsilon(const WrenchMatrix& wrenches) {
   if (wrenches.rows() < 1 || wrenches.rows() > kMaxWrenchDimension) {
-    throw ConfigError("wrenches have dimension " + std::to_string(wrenches.rows()) + "; it must be 1 to " + std::to_string(kMaxWrenchDimension));
+    throw ConfigError("wrenches have dimension " + std::to_string(wrenches.rows()) + "; it must be 1 to " +
+                      std::to_string(kMaxWrenchDimension));
   }
   if (wrenches.cols() > 65535) throw ConfigError(std::to_string(wrenches.cols()) + " wrenches are too many; at most 65535");
   const double scale = wrenches.cols() == 0 ? 0.0 : wrenches.cwiseAbs().maxCoeff();

@@ -9,8 +9,8 @@ namespace handsel::grasp_planner {
 inline constexpr int kMaxWrenchDimension = 10;
 
 /// Distance of the origin to the boundary of the hull when it is strictly inside, else 0 (also when the set does not span the space).
-/// Exact: only the facet nearest to the origin is grown until it belongs to the hull. Dimension 1 to kMaxWrenchDimension, at most 65535 wrenches;
-/// outside of that ConfigError.
+/// Exact: only the facet nearest to the origin is grown until it belongs to the hull. Dimension 1 to kMaxWrenchDimension, at most 65535
+/// wrenches; outside of that ConfigError.
 double epsilon(const WrenchMatrix& wrenches);
 
 }  // namespace handsel::grasp_planner

@@ -13,7 +13,8 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
   const Finger& f = hand.fingers().at(static_cast<std::size_t>(finger));
   tip_radius_ = f.tip_radius;
   const int tip = model.link_index(f.tip_link);
-  if (tip < 0) throw ConfigError("hand " + hand.name() + ": finger " + f.name + " names tip link " + f.tip_link + ", which its URDF does not have");
+  if (tip < 0)
+    throw ConfigError("hand " + hand.name() + ": finger " + f.name + " names tip link " + f.tip_link + ", which its URDF does not have");
   // Every joint driven by this finger's axes is a step; fixed joints are folded into their neighbours.
   struct Frame {
     int step{-1};
@@ -41,7 +42,8 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
   for (int s = tip_step_; s >= 0; s = steps_[static_cast<std::size_t>(s)].parent) tip_path_.push_back(s);
   std::reverse(tip_path_.begin(), tip_path_.end());
   for (const int axis : f.axes) {
-    const bool used = std::any_of(tip_path_.begin(), tip_path_.end(), [&](int s) { return steps_[static_cast<std::size_t>(s)].dof == axis; });
+    const bool used =
+        std::any_of(tip_path_.begin(), tip_path_.end(), [&](int s) { return steps_[static_cast<std::size_t>(s)].dof == axis; });
     if (used) axes_.push_back(axis);
   }
   const int outermost = axes_.back();
@@ -94,7 +96,8 @@ Vector3 FingerChain::closing_direction(const std::vector<Pose>& T) const {
   return length > 1e-9 ? Vector3(d / length) : Vector3::UnitX();
 }
 
-bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance, int iterations) const {
+bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance,
+                          int iterations) const {
   thread_local std::vector<Pose> T;
   const auto n = static_cast<Eigen::Index>(axes_.size());
   for (const int a : axes_) q[a] = std::clamp(q[a], lower[a], upper[a]);

@@ -11,8 +11,8 @@ class FingerChain {
  public:
   FingerChain(const HandModel& hand, int finger);
 
-  const std::vector<int>& axes() const { return axes_; }        ///< hand axes that move the fingertip
-  double tip_radius() const { return tip_radius_; }             ///< [m]
+  const std::vector<int>& axes() const { return axes_; }  ///< hand axes that move the fingertip
+  double tip_radius() const { return tip_radius_; }       ///< [m]
   /// Links this finger's joints carry, and how each follows: T_hand_link = step pose * T_step_link.
   struct Carried {
     int link{};
@@ -24,37 +24,38 @@ class FingerChain {
 
   /// Poses of the moving joints' frames in the hand frame; `T` is resized to steps(). `q`: all axes of the hand.
   void forward(const Vector& q, std::vector<Pose>& T) const;
-  Vector3 tip(const Vector& q) const;                           ///< centre of the fingertip sphere, hand frame [m]
+  Vector3 tip(const Vector& q) const;  ///< centre of the fingertip sphere, hand frame [m]
   Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * p_step_tip_; }
   /// 3 x axes().size(): velocity of the tip's centre for each of the finger's axes.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const;
   /// From the last joint to the tip's centre, hand frame, unit.
   Vector3 tip_direction(const std::vector<Pose>& T) const;
-  /// Where the tip goes when the finger's outermost axis closes (moves from the rest posture into its range), hand frame, unit: the way its pad
-  /// faces.
+  /// Where the tip goes when the finger's outermost axis closes (moves from the rest posture into its range), hand frame, unit: the way its
+  /// pad faces.
   Vector3 closing_direction(const std::vector<Pose>& T) const;
 
-  /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of `p_hand_tip`, inside [lower, upper] (all hand
-  /// axes), starting from q. Damped least squares. False when it does not get there; q is then the nearest found.
-  bool inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance = 1e-4, int iterations = 30) const;
+  /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of `p_hand_tip`, inside [lower, upper] (all
+  /// hand axes), starting from q. Damped least squares. False when it does not get there; q is then the nearest found.
+  bool inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance = 1e-4,
+               int iterations = 30) const;
 
  private:
   struct Step {
-    int parent{-1};               // step, -1: the hand itself
+    int parent{-1};  // step, -1: the hand itself
     Pose T_parent_joint{Pose::Identity()};
     Vector3 axis{Vector3::UnitZ()};
     bool prismatic{};
-    int dof{};                    // hand axis
+    int dof{};  // hand axis
     double factor{1.0}, offset{};
   };
   std::vector<int> axes_;
   std::vector<Step> steps_;
   std::vector<Carried> carried_;
-  std::vector<int> tip_path_;     // steps from the hand to the tip
+  std::vector<int> tip_path_;  // steps from the hand to the tip
   int tip_step_{};
   Vector3 p_step_tip_{Vector3::Zero()};
   double tip_radius_{};
-  double closing_sign_{1};        // of the outermost axis
+  double closing_sign_{1};  // of the outermost axis
 };
 
 }  // namespace handsel::grasp_planner

@@ -31,7 +31,8 @@ std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chai
 
 }  // namespace
 
-FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings) : step_(settings.step) {
+FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings)
+    : step_(settings.step) {
   const Vector &lower = hand.lower_contact(), &upper = hand.upper_contact();
   double fine = 0.7 * settings.step;
   std::vector<int> counts = samples_per_axis(hand, chain, fine);
@@ -86,7 +87,8 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
     Seed seed{Vector(static_cast<Eigen::Index>(n)), centrality, chain.tip_direction(T), chain.closing_direction(T)};
     for (std::size_t k = 0; k < n; ++k) seed.q[static_cast<Eigen::Index>(k)] = q[chain.axes()[k]];
     std::erase_if(seeds, [&](const Seed& s) { return (s.q - seed.q).cwiseAbs().maxCoeff() <= kDistinct; });
-    seeds.insert(std::upper_bound(seeds.begin(), seeds.end(), seed, [](const Seed& a, const Seed& b) { return a.centrality > b.centrality; }), seed);
+    seeds.insert(
+        std::upper_bound(seeds.begin(), seeds.end(), seed, [](const Seed& a, const Seed& b) { return a.centrality > b.centrality; }), seed);
     if (seeds.size() > kSeedsPerCell) seeds.pop_back();
   }
 
@@ -101,8 +103,8 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
       for (int x = 0; x < cells_.x(); ++x) {
         if (!reached(x, y, z)) continue;
         const Vector3 c = centre((static_cast<std::int64_t>(z) * cells_.y() + y) * cells_.x() + x);
-        const bool inside = reached(x - 1, y, z) && reached(x + 1, y, z) && reached(x, y - 1, z) && reached(x, y + 1, z) && reached(x, y, z - 1) &&
-                            reached(x, y, z + 1);
+        const bool inside = reached(x - 1, y, z) && reached(x + 1, y, z) && reached(x, y - 1, z) && reached(x, y + 1, z) &&
+                            reached(x, y, z - 1) && reached(x, y, z + 1);
         (inside ? inner : boundary).push_back(c);
         all.push_back(c);
       }
@@ -113,7 +115,7 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
   for (std::size_t i = 0; i < inner.size(); ++i) {
     double least = 1e9;
     for (const Vector3& b : boundary) least = std::min(least, (inner[i] - b).squaredNorm());
-    room[i] = std::sqrt(least);
+    room[i] = std::sqrt(least) - 0.5 * step_;  // a boundary cell may be reached in part only
   }
   while (spheres_.size() < settings.max_spheres && !inner.empty()) {
     const auto best = static_cast<std::size_t>(std::max_element(room.begin(), room.end()) - room.begin());

@@ -10,8 +10,8 @@
 namespace handsel::grasp_planner {
 
 struct WorkspaceSettings {
-  double step{0.006};            ///< edge of a grid cell [m]
-  double least_radius{0.006};    ///< spheres smaller than this are not made [m]
+  double step{0.005};          ///< edge of a grid cell [m]
+  double least_radius{0.004};  ///< spheres smaller than this are not made [m]
   std::uint32_t max_spheres{60};
 };
 
@@ -25,15 +25,15 @@ class FingerWorkspace {
   /// Samples the finger's axes within the contact bounds of the hand. The other axes of the hand do not matter.
   FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings = {});
 
-  /// Largest first; strictly inside the workspace. A workspace without volume (fewer than three axes) is covered by balls of one cell instead:
-  /// there the inverse kinematics decides.
+  /// Largest first; strictly inside the workspace. A workspace without volume (fewer than three axes) is covered by balls of one cell
+  /// instead: there the inverse kinematics decides.
   const std::vector<WorkspaceSphere>& spheres() const { return spheres_; }
   bool has_volume() const { return has_volume_; }
   /// Joint values (the chain's axes) that put the tip into the cell of a point: up to three, clearly different, the farthest from the joint
   /// bounds first. Empty outside the workspace.
   struct Seed {
     Vector q;
-    double centrality{};         ///< least distance to a bound / half range, [0, 1]
+    double centrality{};                                                           ///< least distance to a bound / half range, [0, 1]
     Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};  ///< hand frame, unit
   };
   const std::vector<Seed>& seeds(const Vector3& p_hand) const;
@@ -47,7 +47,7 @@ class FingerWorkspace {
   double step_{};
   Eigen::AlignedBox3d box_;
   Eigen::Vector3i cells_{0, 0, 0};
-  std::vector<std::uint32_t> entry_;      // per cell: 0 = not reached, else index + 1 into seeds_
+  std::vector<std::uint32_t> entry_;  // per cell: 0 = not reached, else index + 1 into seeds_
   std::vector<std::vector<Seed>> seeds_;
   std::vector<WorkspaceSphere> spheres_;
   Vector3 centroid_{Vector3::Zero()};

@@ -44,8 +44,8 @@ int wrench_rank(const WrenchMatrix& wrenches) {
   return rank;
 }
 
-// With w the sum of all wrenches, weights mu >= 0 with W mu = -w give lambda = mu + 1 > 0, and back: one feasibility problem, phase one of the
-// simplex method on a tableau of dimension + 1 rows. Its right-hand side is not degenerate, unlike that of the form with t.
+// With w the sum of all wrenches, weights mu >= 0 with W mu = -w give lambda = mu + 1 > 0, and back: one feasibility problem, phase one of
+// the simplex method on a tableau of dimension + 1 rows. Its right-hand side is not degenerate, unlike that of the form with t.
 bool force_closure(const WrenchMatrix& wrenches) {
   const Eigen::Index d = wrenches.rows(), n = wrenches.cols();
   if (d == 0 || n <= d || wrench_rank(wrenches) < d) return false;

@@ -14,13 +14,13 @@ using WrenchMatrix = Eigen::MatrixXd;
 
 /// A hard-finger contact: where, and the unit normal pointing into the object.
 struct PointContact {
-  Vector3 position{Vector3::Zero()};       ///< [m]
+  Vector3 position{Vector3::Zero()};  ///< [m]
   Vector3 inward_normal{Vector3::UnitZ()};
-  double friction{0.5};                    ///< Coulomb coefficient
+  double friction{0.5};  ///< Coulomb coefficient
 };
 
-/// The edges of the linearised friction cones: n + mu (cos a t1 + sin a t2), t1 = n x ex (n x ey when |n.x| >= 0.9), normalised, t2 = n x t1;
-/// the torque is about `centre` times `torque_scale`.
+/// The edges of the linearised friction cones: n + mu (cos a t1 + sin a t2), t1 = n x ex (n x ey when |n.x| >= 0.9), normalised, t2 = n x
+/// t1; the torque is about `centre` times `torque_scale`.
 WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges, const Vector3& centre, double torque_scale);
 
 /// Strict: some combination of ALL wrenches with positive weights is zero, and they span the space. Exactly when the largest t with

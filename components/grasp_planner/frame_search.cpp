@@ -8,9 +8,9 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kFromBehind = 0.6;   // cosine: a fingertip pointing out along the normal would come through the object
-constexpr double kLeastPush = 0.25;   // cosine between the way the pad faces and into the surface: no contact on the back of a finger
-constexpr double kLeastBackOff = 0.4; // share of the opening below which a finger counts as unable to open
+constexpr double kFromBehind = 0.6;    // cosine: a fingertip pointing out along the normal would come through the object
+constexpr double kLeastPush = 0.25;    // cosine between the way the pad faces and into the surface: no contact on the back of a finger
+constexpr double kLeastBackOff = 0.4;  // share of the opening below which a finger counts as unable to open
 
 double force_alignment(const Eigen::Matrix3Xd& J, const Vector3& normal) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(Eigen::Matrix3d(J * J.transpose()));

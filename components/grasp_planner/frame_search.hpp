@@ -9,11 +9,11 @@ namespace handsel::grasp_planner {
 
 /// A way for one finger to touch.
 struct FingerContact {
-  std::uint32_t point{};              ///< index into Graspable::points()
-  Vector q;                           ///< all hand axes; only this finger's matter
-  Vector q_open;                      ///< the same finger backed off from the surface
-  std::vector<Pose> T_hand_step;      ///< at q
-  double force{};                     ///< |cosine| of the normal and the main axis of the force ellipsoid
+  std::uint32_t point{};          ///< index into Graspable::points()
+  Vector q;                       ///< all hand axes; only this finger's matter
+  Vector q_open;                  ///< the same finger backed off from the surface
+  std::vector<Pose> T_hand_step;  ///< at q
+  double force{};                 ///< |cosine| of the normal and the main axis of the force ellipsoid
 };
 
 class FrameSearch {
@@ -31,7 +31,7 @@ class FrameSearch {
   const HandKit& kit_;
   const Graspable& object_;
   const GraspListSettings& settings_;
-  std::vector<std::uint32_t> seen_;   // per point: the query that met it last
+  std::vector<std::uint32_t> seen_;  // per point: the query that met it last
   std::uint32_t query_{};
   std::vector<std::uint32_t> hits_;
   std::vector<Pose> T_;

@@ -57,7 +57,8 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
   std::vector<Vector3> out;
   for (int z = 0; z < n.z(); ++z) {
     for (int y = 0; y < n.y(); ++y) {
-      for (int x = 0; x < n.x(); ++x) out.push_back(box.min() + size.cwiseProduct(Vector3((x + 0.5) / n.x(), (y + 0.5) / n.y(), (z + 0.5) / n.z())));
+      for (int x = 0; x < n.x(); ++x)
+        out.push_back(box.min() + size.cwiseProduct(Vector3((x + 0.5) / n.x(), (y + 0.5) / n.y(), (z + 0.5) / n.z())));
     }
   }
   return out;
@@ -134,7 +135,8 @@ struct GraspLister::Impl {
 
   bool clash(std::size_t g, int a, std::size_t f, int b) {
     const std::size_t width = settings.contacts_per_finger + 1;
-    signed char& known = clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width + static_cast<std::size_t>(b + 1)];
+    signed char& known =
+        clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width + static_cast<std::size_t>(b + 1)];
     if (known < 0) known = kit->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
     return known != 0;
   }

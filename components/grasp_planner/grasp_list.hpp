@@ -15,38 +15,38 @@
 namespace handsel::grasp_planner {
 
 struct QualityWeights {
-  double stability{0.45};       ///< epsilon
-  double centre{0.2};           ///< distance of the contacts' mean to the mass centre
-  double force{0.15};           ///< contact normals along the main axes of the force ellipsoids
-  double curvature{0.2};        ///< 1 - normalised mean curvature at the contacts
+  double stability{0.45};  ///< epsilon
+  double centre{0.2};      ///< distance of the contacts' mean to the mass centre
+  double force{0.15};      ///< contact normals along the main axes of the force ellipsoids
+  double curvature{0.2};   ///< 1 - normalised mean curvature at the contacts
 };
 
 struct GraspListSettings {
-  std::uint32_t positions{60};        ///< of the grasp frame in the object's box, uniform
-  std::uint32_t orientations{144};    ///< of the incremental grid over all rotations
-  double step_share{0.6};             ///< distance of contact points / fingertip radius
-  double friction{0};                 ///< Coulomb coefficient; 0: the object's
-  int cone_edges{8};                  ///< of a linearised friction cone, >= 6
-  double full_epsilon{0.25};          ///< an epsilon from which on the stability counts as 1
+  std::uint32_t positions{60};      ///< of the grasp frame in the object's box, uniform
+  std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
+  double step_share{0.6};           ///< distance of contact points / fingertip radius
+  double friction{0};               ///< Coulomb coefficient; 0: the object's
+  int cone_edges{8};                ///< of a linearised friction cone, >= 6
+  double full_epsilon{0.25};        ///< an epsilon from which on the stability counts as 1
   QualityWeights weights;
-  std::uint32_t contacts_per_finger{4};   ///< alternatives kept for each finger of a frame
-  std::uint32_t tries_per_finger{24};     ///< candidates judged for them
-  double depth{0.0008};               ///< how deep the model of a touching finger may be in the object [m]
-  double opening{0.025};              ///< pre-grasp: fingertips this far off the surface along its normal [m]
-  double open_clearance{0.004};       ///< and the whole finger at least this far from the object [m]
+  std::uint32_t contacts_per_finger{4};  ///< alternatives kept for each finger of a frame
+  std::uint32_t tries_per_finger{24};    ///< candidates judged for them
+  double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
+  double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
   std::uint64_t seed{1};
 };
 
 /// Why frames were given up; each frame that gave no grasp counts once.
 enum class FrameReason : std::uint8_t {
   grasped,
-  thumb_out_of_reach,      ///< no contact point in the thumb's workspace
-  fingers_out_of_reach,    ///< in those of fewer than two other fingers
+  thumb_out_of_reach,    ///< no contact point in the thumb's workspace
+  fingers_out_of_reach,  ///< in those of fewer than two other fingers
   palm_in_object,
-  thumb_without_contact,   ///< inverse kinematics, direction of the push, collision or opening
+  thumb_without_contact,  ///< inverse kinematics, direction of the push, collision or opening
   fingers_without_contact,
   fingers_collide,
-  not_closed,              ///< no combination is force-closed
+  not_closed,  ///< no combination is force-closed
   count
 };
 const char* reason_text(FrameReason);
@@ -56,14 +56,14 @@ struct GraspScores {
 };
 
 struct ListedGrasp {
-  Grasp grasp;             ///< id = number of its frame; contacts in the order of the fingers
+  Grasp grasp;  ///< id = number of its frame; contacts in the order of the fingers
   GraspScores scores;
 };
 
 struct GraspList {
   std::string hand, object;
-  std::vector<ListedGrasp> grasps;          ///< best quality first; ties by id
-  std::uint64_t frames{};                   ///< tested
+  std::vector<ListedGrasp> grasps;  ///< best quality first; ties by id
+  std::uint64_t frames{};           ///< tested
   std::array<std::uint64_t, static_cast<std::size_t>(FrameReason::count)> reasons{};
   std::uint64_t finger_solutions{}, touch_tests{}, closure_tests{};  ///< work done
 
@@ -80,7 +80,7 @@ class GraspLister {
   ~GraspLister();
   GraspLister(GraspLister&&) noexcept;
 
-  std::uint64_t frames() const;             ///< in all
+  std::uint64_t frames() const;  ///< in all
   /// Tests at most `count` more frames; false when there are none left. Frames go through all positions of an orientation before the next,
   /// so that more orientations only extend the list.
   bool advance(std::uint64_t count);

@@ -1,11 +1,28 @@
 #include "components/grasp_planner/graspable.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "common/base/errors.hpp"
 
 namespace handsel::grasp_planner {
+namespace {
+
+constexpr double kDeepInPart = 0.004;  // [m]
+
+// Depth of a point inside a shape, negative outside; meshes are not judged.
+double depth(const Shape& shape, const Vector3& p) {
+  if (const auto* s = std::get_if<Sphere>(&shape)) return s->radius - p.norm();
+  if (const auto* b = std::get_if<Box>(&shape)) return (0.5 * b->size - p.cwiseAbs()).minCoeff();
+  if (const auto* c = std::get_if<Cylinder>(&shape)) return std::min(c->radius - p.head<2>().norm(), 0.5 * c->length - std::abs(p.z()));
+  if (const auto* c = std::get_if<Capsule>(&shape)) {
+    return c->radius - (p - Vector3(0, 0, std::clamp(p.z(), -0.5 * c->length, 0.5 * c->length))).norm();
+  }
+  return -1;
+}
+
+}  // namespace
 
 Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_share, std::uint64_t seed)
     : name_(object.name), com_(object.com), friction_(object.friction) {
@@ -25,7 +42,13 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_s
   settings.curvature_radius = tip_radius;
   settings.seed = seed;
   points_ = sample_surface(*mesh, settings);
-  if (points_.empty()) throw ConfigError("object " + name_ + ": its mesh has no area; all its triangles are degenerate");
+  std::erase_if(points_, [&object](const SurfacePoint& p) {
+    return std::any_of(object.parts.begin(), object.parts.end(), [&p](const PlacedShape& part) {
+      return depth(part.shape, part.T_parent_shape.inverse() * p.position) > kDeepInPart;
+    });
+  });
+  if (points_.empty())
+    throw ConfigError("object " + name_ + ": no place of its mesh can be touched; its triangles are degenerate or all inside its parts");
   for (const SurfacePoint& p : points_) centres_.push_back(p.position + tip_radius * p.normal);
   tip_centres_ = PointTree(centres_);
   mesh_ = mesh;

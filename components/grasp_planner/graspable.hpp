@@ -22,6 +22,7 @@ class Graspable {
   const std::string& name() const { return name_; }
   const TriangleMesh& mesh() const { return *mesh_; }
   const MeshFindings& findings() const { return findings_; }
+  /// Contact points. Those more than 4 mm deep in one of the object's convex parts are left out: there its physical form is solid.
   const std::vector<SurfacePoint>& points() const { return points_; }
   /// Over the places of a fingertip's centre when it touches: point + tip_radius * normal, same indices as points().
   const PointTree& tip_centres() const { return tip_centres_; }
@@ -30,7 +31,7 @@ class Graspable {
   const CollisionShapePtr& shape() const { return shape_; }
   const Eigen::AlignedBox3d& box() const { return triangles_.box(); }
   const Vector3& com() const { return com_; }
-  double radius() const { return radius_; }      ///< largest distance of the surface from the mass centre [m]
+  double radius() const { return radius_; }  ///< largest distance of the surface from the mass centre [m]
   double friction() const { return friction_; }
 
  private:

@@ -11,7 +11,8 @@ std::vector<FingerChain> make_chains(const HandModel& hand) {
   return chains;
 }
 
-std::vector<FingerWorkspace> make_workspaces(const HandModel& hand, const std::vector<FingerChain>& chains, const WorkspaceSettings& settings) {
+std::vector<FingerWorkspace> make_workspaces(const HandModel& hand, const std::vector<FingerChain>& chains,
+                                             const WorkspaceSettings& settings) {
   std::vector<FingerWorkspace> workspaces;
   for (const FingerChain& c : chains) workspaces.emplace_back(hand, c, settings);
   return workspaces;

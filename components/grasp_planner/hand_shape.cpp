@@ -84,7 +84,8 @@ HandShape::HandShape(const HandModel& hand, const std::vector<FingerChain>& chai
   for (const Vector& q : {hand.rest(), middle, hand.pregrasp()}) {
     std::vector<std::vector<Pose>> T(chains.size());
     for (std::size_t f = 0; f < chains.size(); ++f) chains[f].forward(q, T[f]);
-    const auto mark = [&](const std::vector<Solid>& x, const std::vector<Pose>& Tx, const std::vector<Solid>& y, const std::vector<Pose>& Ty) {
+    const auto mark = [&](const std::vector<Solid>& x, const std::vector<Pose>& Tx, const std::vector<Solid>& y,
+                          const std::vector<Pose>& Ty) {
       for (const Solid& s : x) {
         for (const Solid& t : y) {
           if (!disabled(s.link, t.link) && solids_touch(s, step_pose(Tx, s.step), t, step_pose(Ty, t.step))) disable(s.link, t.link);
@@ -98,7 +99,8 @@ HandShape::HandShape(const HandModel& hand, const std::vector<FingerChain>& chai
   }
 }
 
-bool HandShape::solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object, const Pose& T_object_hand, double clearance) const {
+bool HandShape::solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+                              double clearance) const {
   const Pose T_object_step = T_object_hand * T_hand_step;
   if (s.capsule) return object.triangles().nearer_than(T_object_step * s.a, T_object_step * s.b, std::max(1e-6, s.radius + clearance));
   const CollisionShape& shape = clearance < 0 ? *s.shrunk : *s.shape;

@@ -1,4 +1,5 @@
-// The hand's own solids for touch tests: slender cylinders, capsules and spheres as capsules (closed forms), the rest through common/collision.
+// The hand's own solids for touch tests: slender cylinders, capsules and spheres as capsules (closed forms), the rest through
+// common/collision.
 #pragma once
 
 #include <vector>
@@ -16,7 +17,8 @@ class HandShape {
   /// Links that no finger moves. `clearance` [m] is kept from the surface (capsules only).
   bool palm_touches(const Graspable& object, const Pose& T_object_hand, double clearance = 0.0) const;
   /// All links of a finger, its solids grown by `clearance` [m]; negative shrinks: a fingertip in contact must not count as a collision.
-  bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand, double clearance) const;
+  bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+                      double clearance) const;
   bool finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const;
   bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const;
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
@@ -29,7 +31,7 @@ class HandShape {
  private:
   struct Solid {
     int link{};
-    int step{-1};                    // -1: palm
+    int step{-1};  // -1: palm
     bool capsule{};
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};
     double radius{};
@@ -39,13 +41,14 @@ class HandShape {
   static Solid make_solid(int link, int step, const Pose& T_step_link, const PlacedShape& placed);
   bool solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object, const Pose& T_object_hand, double clearance) const;
   static bool solids_touch(const Solid& s, const Pose& T_hand_s, const Solid& t, const Pose& T_hand_t);
-  bool groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a, const std::vector<Solid>& b, const std::vector<Pose>& T_b) const;
+  bool groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a, const std::vector<Solid>& b,
+                    const std::vector<Pose>& T_b) const;
   bool disabled(int link_a, int link_b) const { return disabled_[static_cast<std::size_t>(link_a * links_ + link_b)]; }
 
   std::vector<Solid> palm_;
   std::vector<std::vector<Solid>> fingers_;
   int links_{};
-  std::vector<bool> disabled_;       // adjacent, excluded by the model, or touching in the hand's own rest and pre-grasp postures
+  std::vector<bool> disabled_;  // adjacent, excluded by the model, or touching in the hand's own rest and pre-grasp postures
 };
 
 }  // namespace handsel::grasp_planner

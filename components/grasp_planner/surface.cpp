@@ -16,7 +16,8 @@ struct Corners {
 
 Corners corners(const TriangleMesh& m, std::size_t t) {
   const auto& k = m.triangles[t];
-  return {m.vertices[static_cast<std::size_t>(k[0])], m.vertices[static_cast<std::size_t>(k[1])], m.vertices[static_cast<std::size_t>(k[2])]};
+  return {m.vertices[static_cast<std::size_t>(k[0])], m.vertices[static_cast<std::size_t>(k[1])],
+          m.vertices[static_cast<std::size_t>(k[2])]};
 }
 
 Vector3 area_vector(const Corners& t) { return 0.5 * (t.b - t.a).cross(t.c - t.a); }
@@ -135,7 +136,8 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
       const Corners k0 = corners(mesh, users[0].first), k1 = corners(mesh, users[1].first);
       if (n0.dot((k1.a + k1.b + k1.c) - (k0.a + k0.b + k0.c)) > 0) angle = -angle;
     }
-    if (std::abs(angle) > 1e-6) bends.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle});
+    if (std::abs(angle) > 1e-6)
+      bends.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle});
   }
   // Each bend is entered in every cell that its box, grown by the radius, meets; at most 64 cells along an axis by cutting it.
   const double cell = 2 * radius;
@@ -145,7 +147,8 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
     const int parts = std::max(1, static_cast<int>(std::ceil((b.b - b.a).norm() / (2 * cell))));
     for (int k = 0; k < parts; ++k) {
       const Bend piece{b.a + (b.b - b.a) * k / parts, b.a + (b.b - b.a) * (k + 1) / parts, b.angle};
-      const auto low = cell_of(piece.a.cwiseMin(piece.b).array() - radius, cell), high = cell_of(piece.a.cwiseMax(piece.b).array() + radius, cell);
+      const auto low = cell_of(piece.a.cwiseMin(piece.b).array() - radius, cell),
+                 high = cell_of(piece.a.cwiseMax(piece.b).array() + radius, cell);
       for (int x = low.x(); x <= high.x(); ++x) {
         for (int y = low.y(); y <= high.y(); ++y) {
           for (int z = low.z(); z <= high.z(); ++z) grid[cell_key({x, y, z})].push_back(static_cast<std::uint32_t>(pieces.size()));
@@ -218,7 +221,8 @@ MeshFindings orient(TriangleMesh& mesh) {
   findings.components = static_cast<std::uint32_t>(components.size());
   for (const Component& c : components) {
     bool inner = false;
-    for (const Component& other : components) inner = inner || (&other != &c && other.box.contains(c.box) && other.box.volume() > c.box.volume());
+    for (const Component& other : components)
+      inner = inner || (&other != &c && other.box.contains(c.box) && other.box.volume() > c.box.volume());
     // An inner shell keeps the orientation most of its triangles came with; all others face outward.
     const bool flip = inner ? 2 * c.as_given < c.triangles.size() : c.volume < 0;
     for (const std::uint32_t t : c.triangles) {

@@ -10,24 +10,25 @@ namespace handsel::grasp_planner {
 
 struct SurfacePoint {
   Vector3 position{Vector3::Zero()};
-  Vector3 normal{Vector3::UnitZ()};       ///< of its triangle, outward
+  Vector3 normal{Vector3::UnitZ()};  ///< of its triangle, outward
   std::uint32_t triangle{};
   Vector3 barycentric{Vector3::Zero()};
-  double curvature{};                     ///< normalised mean curvature, [0, 1]
+  double curvature{};  ///< normalised mean curvature, [0, 1]
 };
 
 struct SurfaceSettings {
-  double step{0.008};                     ///< least distance of two samples on the same side [m]
-  double curvature_radius{0.013};         ///< the curvature is averaged over a ball of this radius; the fingertip's [m]
-  std::uint32_t max_points{20000};        ///< the step grows when more would be needed
+  double step{0.008};               ///< least distance of two samples on the same side [m]
+  double curvature_radius{0.013};   ///< the curvature is averaged over a ball of this radius; the fingertip's [m]
+  std::uint32_t max_points{20000};  ///< the step grows when more would be needed
   std::uint64_t seed{1};
 };
 
 /// Uniform over the area, deterministic for a seed. Degenerate triangles carry no points.
 std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const SurfaceSettings& settings);
 
-/// Mean curvature |H| [1/m] averaged over a ball at each point, from the signed dihedral angles of the mesh's edges (normal cycle; ours in place of
-/// values interpolated from vertices: independent of the triangulation). An open border counts as an edge that turns by 180 degrees.
+/// Mean curvature |H| [1/m] averaged over a ball at each point, from the signed dihedral angles of the mesh's edges (normal cycle; ours in
+/// place of values interpolated from vertices: independent of the triangulation). An open border counts as an edge that turns by 180
+/// degrees.
 std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, double radius);
 
 /// 0 flat ... 1 at least as sharp as a right-angled edge under the ball: min(1, 2 |H| radius).
@@ -35,9 +36,9 @@ double normalised_curvature(double mean_curvature, double radius);
 
 struct MeshFindings {
   std::uint32_t components{};
-  std::uint32_t open_edges{};             ///< borders of holes
-  std::uint32_t crowded_edges{};          ///< shared by more than two triangles
-  std::uint32_t turned{};                 ///< triangles whose orientation was mended
+  std::uint32_t open_edges{};     ///< borders of holes
+  std::uint32_t crowded_edges{};  ///< shared by more than two triangles
+  std::uint32_t turned{};         ///< triangles whose orientation was mended
 };
 /// Makes the triangles' orientation consistent over each connected component, outward on the whole; inner shells of cavities stay inward.
 MeshFindings orient(TriangleMesh& mesh);

@@ -130,7 +130,8 @@ double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bo
       }
       if (best <= 0 || (first_hit && best < limit * limit)) return std::sqrt(best);
     } else {
-      const double l = box_bound(nodes_[node.left].box, segment, middle, half), r = box_bound(nodes_[node.right].box, segment, middle, half);
+      const double l = box_bound(nodes_[node.left].box, segment, middle, half),
+                   r = box_bound(nodes_[node.right].box, segment, middle, half);
       stack[depth++] = l < r ? node.right : node.left;
       stack[depth++] = l < r ? node.left : node.right;
     }
@@ -140,7 +141,8 @@ double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bo
 
 bool TriangleTree::contains(const Vector3& p) const {
   if (nodes_.empty() || !box_.contains(p)) return false;
-  static const std::array<Vector3, 3> directions = {Vector3(0.5773, 0.5211, 0.6286).normalized(), Vector3(-0.3141, 0.9021, -0.2947).normalized(),
+  static const std::array<Vector3, 3> directions = {Vector3(0.5773, 0.5211, 0.6286).normalized(),
+                                                    Vector3(-0.3141, 0.9021, -0.2947).normalized(),
                                                     Vector3(0.1129, -0.4423, -0.8897).normalized()};
   int votes = 0;
   for (const Vector3& d : directions) {

@@ -16,8 +16,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 double angle(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) { return 2 * std::acos(std::min(1.0, std::abs(a.dot(b)))); }
 
-// Largest rotation angle [deg] from any of 2000 random orientations to the nearest of the set, then (climb) from each of the first 150 uphill to
-// a local maximum: the least upper bound.
+// Largest rotation angle [deg] from any of 2000 random orientations to the nearest of the set, then (climb) from each of the first 150
+// uphill to a local maximum: the least upper bound.
 double dispersion(const std::vector<Eigen::Quaterniond>& set, std::uint64_t seed, bool climb) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -102,7 +102,8 @@ TEST(Surface, points_lie_on_their_triangles_and_cover_the_surface) {
   ASSERT_GT(points.size(), 200U);
   for (const SurfacePoint& p : points) {
     const auto& t = m.triangles[p.triangle];
-    const Vector3 on = p.barycentric[0] * m.vertices[static_cast<std::size_t>(t[0])] + p.barycentric[1] * m.vertices[static_cast<std::size_t>(t[1])] +
+    const Vector3 on = p.barycentric[0] * m.vertices[static_cast<std::size_t>(t[0])] +
+                       p.barycentric[1] * m.vertices[static_cast<std::size_t>(t[1])] +
                        p.barycentric[2] * m.vertices[static_cast<std::size_t>(t[2])];
     EXPECT_LT((on - p.position).norm(), 1e-12);
     EXPECT_GE(p.barycentric.minCoeff(), 0);
@@ -111,9 +112,11 @@ TEST(Surface, points_lie_on_their_triangles_and_cover_the_surface) {
   }
   std::mt19937_64 random(9);
   for (int i = 0; i < 500; ++i) {
-    const double a = 2 * std::numbers::pi * static_cast<double>(random() % 1000) / 1000, z = 0.1 * static_cast<double>(random() % 1000) / 1000;
+    const double a = 2 * std::numbers::pi * static_cast<double>(random() % 1000) / 1000,
+                 z = 0.1 * static_cast<double>(random() % 1000) / 1000;
     double nearest = 1;
-    for (const SurfacePoint& p : points) nearest = std::min(nearest, (p.position - Vector3(0.04 * std::cos(a), 0.04 * std::sin(a), z)).norm());
+    for (const SurfacePoint& p : points)
+      nearest = std::min(nearest, (p.position - Vector3(0.04 * std::cos(a), 0.04 * std::sin(a), z)).norm());
     EXPECT_LT(nearest, 1.3 * s.step);
   }
   const auto again = sample_surface(m, s);
