@@ -64,8 +64,8 @@ MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const Axi
   const double gap = a0 * a0 - C_;
   s_lo = -af;
   if (a0 > 0 && gap > 0) {
-    const double r = std::sqrt(gap);
-    if (af > 0 && af * af >= gap - tolerance) {
+    const double r = std::abs(gap - af * af) <= tolerance ? std::abs(af) : std::sqrt(gap);
+    if (af > 0 && af >= r) {
       island = true;
       island_lo = -af;
       island_hi = -std::min(r, af);
@@ -337,7 +337,7 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
 }
 
 double AxisProblem::slack(double least, double largest) const noexcept {
-  return 16 * kEps * (scale_ + std::abs(least) + std::abs(largest));
+  return 256 * kEps * (scale_ + std::abs(least) + std::abs(largest));
 }
 
 AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
@@ -349,7 +349,7 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
       const double s_up = T <= first ? up_.island_lo : up_.parameter_in_island(T);
       const double s_down = T <= first ? down_.island_lo : down_.parameter_in_island(T);
       const double largest = up_.displacement(s_up), least = -down_.displacement(s_down);
-      const double tolerance = 32 * slack(least, largest);
+      const double tolerance = 2 * slack(least, largest);
       if (D <= largest + tolerance && D >= least - tolerance) {
         return D - least > largest - D ? Choice{from, s_up, 0, false} : Choice{from, s_down, 0, true};
       }
@@ -418,7 +418,7 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
   const double largest = up_.displacement(s_up) + cruise_up * up_.cruise_velocity();
   const double least = -(down_.displacement(s_down) + cruise_down * down_.cruise_velocity());
   const double tolerance = slack(least, largest);
-  if (D > largest + 16 * tolerance || D < least - 16 * tolerance) return AxisOutcome::blocked;
+  if (D > largest + 2 * tolerance || D < least - 2 * tolerance) return AxisOutcome::blocked;
   const double width = largest - least;
   const double weight = width > 0 ? std::clamp((D - least) / width, 0.0, 1.0) : 0.5;
   AxisProfile high, low;

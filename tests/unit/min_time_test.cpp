@@ -139,6 +139,34 @@ TEST(MinTime, StartsOutsideTheLimitsComeBackInside) {
   }
 }
 
+TEST(MinTime, AStateOnTheWayNeedsTheRestOfTheTime) {
+  const std::uint64_t seed = 14;
+  Cases cases(seed);
+  for (int k = 0; k < 20000; ++k) {
+    Case c = cases.next();
+    AxisProfile p, rest;
+    ASSERT_EQ(solve_axis(c.from, c.to, c.limits, p), AxisOutcome::ok);
+    const double T = p.duration(), t = cases.uniform(0, 1) * T;
+    AxisState s = c.from;
+    double left = t;
+    for (int i = 0; i < p.count && left > 0; ++i) {
+      const double step = std::min(left, p.segments[i].duration);
+      s = advanced(s, step, p.segments[i].jerk);
+      left -= step;
+    }
+    // The state carries the rounding of the whole way, so the target may be moved by as much.
+    double nearest = INFINITY;
+    const double rounding = 1e-14 * (std::abs(c.from.position) + std::abs(c.to.position) + c.limits.velocity * T);
+    for (const double shift : {0.0, rounding, -rounding}) {
+      AxisState to = c.to;
+      to.position += shift;
+      ASSERT_EQ(solve_axis(s, to, c.limits, rest), AxisOutcome::ok) << c;
+      nearest = std::min(nearest, std::abs(rest.duration() - (T - t)));
+    }
+    ASSERT_LT(nearest, 2e-4 * (T + 1)) << "seed " << seed << " case " << k << ' ' << c << " t " << t;
+  }
+}
+
 TEST(MinTime, RestToRestClosedForm) {
   EXPECT_NEAR(rest_to_rest_time(1.0, {0.1, 0.3, 0.9}), 10.0 + 2.0 / 3.0, 1e-12);
   Cases cases(15);
