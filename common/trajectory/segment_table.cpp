@@ -1,0 +1,71 @@
+#include "common/trajectory/segment_table.hpp"
+
+#include <algorithm>
+
+#include "common/trajectory/edit.hpp"
+#include "common/trajectory/min_time.hpp"
+
+namespace handsel {
+
+SegmentTable::SegmentTable(const Trajectory& trajectory) : axes_(trajectory.size()) {
+  const Trajectory alike = split_alike(trajectory);
+  const std::size_t count = alike.axes.empty() ? 0 : alike.axes[0].segments.size();
+  knots_.assign(1, 0.0);
+  for (std::size_t k = 0; k < count; ++k) knots_.push_back(knots_.back() + alike.axes[0].segments[k].duration);
+  if (count == 0) knots_.push_back(0.0);
+  data_.assign(std::max<std::size_t>(count, 1) * 4 * axes_, 0.0);
+  for (int i = 0; i < axes_; ++i) {
+    AxisState s = alike.axes[i].start;
+    for (std::size_t k = 0; k < std::max<std::size_t>(count, 1); ++k) {
+      double* row = data_.data() + k * 4 * axes_;
+      row[i] = s.position;
+      row[axes_ + i] = s.velocity;
+      row[2 * axes_ + i] = s.acceleration;
+      if (count == 0) break;
+      const Segment& g = alike.axes[i].segments[k];
+      row[3 * axes_ + i] = g.jerk;
+      s = advanced(s, g.duration, g.jerk);
+    }
+  }
+}
+
+int SegmentTable::find(double t, int hint) const noexcept {
+  const int last = segments() - 1;
+  int k = std::clamp(hint, 0, last);
+  if (t >= knots_[k] && t < knots_[k + 1]) return k;
+  if (k < last && t >= knots_[k + 1] && t < knots_[k + 2]) return k + 1;
+  k = static_cast<int>(std::upper_bound(knots_.begin() + 1, knots_.end() - 1, t) - (knots_.begin() + 1));
+  return std::min(k, last);
+}
+
+void SegmentTable::evaluate(double t, int& cursor, MotionState3& out) const noexcept {
+  if (axes_ == 0) return;
+  t = std::clamp(t, 0.0, duration());
+  cursor = find(t, cursor);
+  const double* row = this->row(cursor);
+  const double s = t - knots_[cursor], s2 = s / 2, s3 = s / 3;
+  const int n = axes_;
+  double* x = out.position.data();
+  double* v = out.velocity.data();
+  double* a = out.acceleration.data();
+  for (int i = 0; i < n; ++i) {
+    const double x0 = row[i], v0 = row[n + i], a0 = row[2 * n + i], j = row[3 * n + i];
+    x[i] = x0 + s * (v0 + s2 * (a0 + s3 * j));
+    v[i] = v0 + s * (a0 + s2 * j);
+    a[i] = a0 + s * j;
+  }
+}
+
+void SegmentTable::rates(double t, int k, double* v, double* a, double* j) const noexcept {
+  const double* row = this->row(k);
+  const double s = t - knots_[k];
+  const int n = axes_;
+  for (int i = 0; i < n; ++i) {
+    const double a0 = row[2 * n + i], jerk = row[3 * n + i];
+    j[i] = jerk;
+    a[i] = a0 + s * jerk;
+    v[i] = row[n + i] + s * (a0 + s / 2 * jerk);
+  }
+}
+
+}  // namespace handsel

@@ -1,0 +1,29 @@
+// Smooths an input inside the limits, each tick (chapter section 4.3.4): toward a velocity and acceleration by the critical movement,
+// toward a moving target by the minimum-time motion ("track and catch an object held by the human"). One axis; no allocation.
+#pragma once
+
+#include "common/trajectory/min_time.hpp"
+
+namespace handsel {
+
+class SetpointFilter {
+ public:
+  SetpointFilter() = default;
+  SetpointFilter(const AxisState& state, const AxisLimits& limits) noexcept : state_(state), limits_(limits) {}
+
+  /// One tick toward a velocity and acceleration (clamped to the limits; not finite: 0).
+  const AxisState& toward_velocity(double velocity, double acceleration, double dt) noexcept;
+  /// One tick toward a target that goes on with its velocity: minimum time in the frame that moves with it (its acceleration is not used).
+  const AxisState& toward(const AxisState& target, double dt) noexcept;
+
+  const AxisState& state() const noexcept { return state_; }
+  double jerk() const noexcept { return jerk_; }  ///< largest magnitude in the last tick
+
+ private:
+  void follow(const AxisProfile& profile, double dt) noexcept;
+  AxisState state_;
+  AxisLimits limits_{1, 1, 1};
+  double jerk_{};
+};
+
+}  // namespace handsel
