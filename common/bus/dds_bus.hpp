@@ -39,6 +39,9 @@ class DdsBus : public Bus {
   /// ComponentHealth says stopping, at once.
   void set_stopping();
   std::uint64_t incarnation() const;
+  /// Runs for at most `wait`, looking for another living process of the same component. Of two that start together only the one with the
+  /// larger incarnation sees the other as its twin.
+  bool has_twin(Duration wait);
 
   std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;
   const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
@@ -52,8 +55,9 @@ class DdsBus : public Bus {
   void set_degraded(const std::string& reason) override;
   const std::string& component() const override;
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 

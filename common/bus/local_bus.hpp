@@ -11,8 +11,6 @@
 
 namespace handsel {
 
-class LocalBus;
-
 struct LocalNetworkSettings {
   std::uint64_t seed{1};
   double delay_min{0.0001};  ///< transport delay of a sample, uniform between these [s]; order per writer and reader is kept
@@ -49,9 +47,9 @@ class LocalNetwork {
   /// Cuts all its traffic both ways; it runs on.
   void isolate(const std::string& component, bool cut);
 
- private:
-  friend class LocalBus;
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 

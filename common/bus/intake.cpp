@@ -1,0 +1,87 @@
+#include "common/bus/intake.hpp"
+
+#include <algorithm>
+
+#include "common/messages/system.hpp"
+
+namespace handsel {
+namespace {
+constexpr double kClockDrift = 1e-3;
+constexpr std::size_t kMostWriters = 64;
+}  // namespace
+
+Duration AgeEstimator::update(Stamp stamp, TimePoint arrival) {
+  if (stamp == 0) return Duration::zero();
+  const std::int64_t offset = arrival.time_since_epoch().count() - stamp;
+  if (!seen_) {
+    least_ = offset;
+  } else if (stamp < last_stamp_) {
+    least_ = offset - last_age_.count();
+  } else {
+    const double drift = kClockDrift * static_cast<double>((arrival - last_arrival_).count());
+    least_ = std::min(offset, least_ + static_cast<std::int64_t>(drift));
+  }
+  seen_ = true;
+  last_stamp_ = stamp;
+  last_arrival_ = arrival;
+  last_age_ = Duration(offset - least_);
+  return last_age_;
+}
+
+Intake::Intake(const MessageType& message, Callback callback, Duration period, Log log)
+    : type_(message), callback_(std::move(callback)), log_(std::move(log)), message_(message.new_message()) {
+  if (type_.row().deadline > 0) deadline_ = from_seconds(type_.row().deadline) + period;
+}
+
+void Intake::deliver(const void* wire, std::uint64_t writer, TimePoint arrival) {
+  std::string why;
+  if (!type_.from_wire(wire, message_.get(), why)) {
+    ++status_.rejected;
+    status_.last_rejection = why;
+    if (logged_.size() < kMostWriters && logged_.insert(writer).second) log_("rejected a sample: " + why);
+    return;
+  }
+  if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ && arrival - status_.last_arrival > deadline_)
+    ++status_.deadline_misses;
+  silence_counted_ = false;
+  if (ages_.size() >= kMostWriters && !ages_.contains(writer)) ages_.clear();
+  Receipt receipt;
+  receipt.arrival = arrival;
+  receipt.age = ages_[writer].update(type_.stamp(wire), arrival);
+  receipt.writer = writer;
+  ++status_.received;
+  status_.last_arrival = arrival;
+  status_.last_age = receipt.age;
+  callback_(message_.get(), receipt);
+}
+
+void Intake::watch(TimePoint now) {
+  if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ && now - status_.last_arrival > deadline_) {
+    ++status_.deadline_misses;
+    silence_counted_ = true;
+  }
+  window_[window_next_] = status_.received;
+  window_times_[window_next_] = now;
+  window_next_ = (window_next_ + 1) % window_.size();
+  window_filled_ = std::min(window_filled_ + 1, window_.size());
+}
+
+void Intake::writer_gone(std::uint64_t writer) { ages_.erase(writer); }
+
+TopicHealth Intake::health(TimePoint now) const {
+  TopicHealth out;
+  out.topic = type_.row().topic;
+  out.received = status_.received;
+  out.age = status_.never_seen() ? -1.0 : std::clamp(to_seconds(status_.age(now)), 0.0, 1e9);
+  out.deadline_misses = status_.deadline_misses;
+  out.rejected = status_.rejected;
+  out.last_rejection = status_.last_rejection;
+  if (window_filled_ > 0) {
+    const std::size_t oldest = window_filled_ < window_.size() ? 0 : window_next_;
+    const double span = to_seconds(now - window_times_[oldest]);
+    if (span > 0) out.rate = std::min(1e6, static_cast<double>(status_.received - window_[oldest]) / span);
+  }
+  return out;
+}
+
+}  // namespace handsel

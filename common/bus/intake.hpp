@@ -1,0 +1,64 @@
+// One subscription's intake, the same on every bus: validation, ages, deadline watch, rate.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "common/bus/bus.hpp"
+
+namespace handsel {
+
+struct TopicHealth;
+
+/// Age of a writer's samples at arrival: stamp offset over the least offset seen. The least offset may drift by 1e-3, so that clocks that
+/// are slewed apart do not make samples look old; a writer's clock that steps back continues with the age it had.
+class AgeEstimator {
+ public:
+  Duration update(Stamp stamp, TimePoint arrival);
+
+ private:
+  bool seen_{false};
+  Stamp last_stamp_{};
+  TimePoint last_arrival_{};
+  std::int64_t least_{};
+  Duration last_age_{};
+};
+
+class Intake {
+ public:
+  using Callback = std::function<void(const void*, const Receipt&)>;
+  using Log = std::function<void(const std::string&)>;
+  Intake(const MessageType& type, Callback callback, Duration period, Log log);
+
+  /// Validates and hands over one IDL sample.
+  void deliver(const void* wire, std::uint64_t writer, TimePoint arrival);
+  /// Counts a silence that has become longer than the deadline; also moves the window of the rate. Called at the rate of health.
+  void watch(TimePoint now);
+  void writer_gone(std::uint64_t writer);
+  TopicHealth health(TimePoint now) const;
+
+  const MessageType& type() const { return type_; }
+  SubscriptionStatus& status() { return status_; }
+  const SubscriptionStatus& status() const { return status_; }
+
+ private:
+  const MessageType& type_;
+  Callback callback_;
+  Duration deadline_{};
+  Log log_;
+  SubscriptionStatus status_;
+  std::shared_ptr<void> message_;
+  std::map<std::uint64_t, AgeEstimator> ages_;
+  std::set<std::uint64_t> logged_;
+  bool silence_counted_{false};
+  std::array<std::uint64_t, 5> window_{};  ///< received at the last watches
+  std::array<TimePoint, 5> window_times_{};
+  std::size_t window_next_{0}, window_filled_{0};
+};
+
+}  // namespace handsel

@@ -1,0 +1,105 @@
+#include "common/bus/process.hpp"
+
+#include <pthread.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include <CLI/CLI.hpp>
+
+#include "common/base/errors.hpp"
+#include "common/bus/dds_bus.hpp"
+#include "common/messages/system.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr Duration kTwinWait = std::chrono::milliseconds(400);
+
+DdsBus* stopped_by_signal = nullptr;
+
+void on_signal(int) {
+  if (stopped_by_signal) stopped_by_signal->stop();
+}
+
+std::uint32_t default_domain() {
+  const char* text = std::getenv("HANDSEL_DOMAIN");
+  if (!text || !*text) return 0;
+  char* end = nullptr;
+  const unsigned long domain = std::strtoul(text, &end, 10);
+  if (*end != '\0' || domain > 230) throw ConfigError(std::string("HANDSEL_DOMAIN is \"") + text + "\", must be a number from 0 to 230");
+  return static_cast<std::uint32_t>(domain);
+}
+
+int complain(const char* component, const std::exception& error, int code) {
+  std::fprintf(stderr, "handsel_%s: %s\n", component, error.what());
+  return code;
+}
+
+int run(int argc, char** argv, const char* component, const NodeFactory& make_node) {
+  std::string robot = "jido", scenario, config;
+  std::uint64_t seed = 1;
+  bool standby = false;
+  DdsBusSettings settings;
+  settings.component = component;
+  settings.domain = default_domain();
+
+  CLI::App app{std::string("handsel component ") + component};
+  app.add_option("--robot", robot, "robot description: name or file")->capture_default_str();
+  app.add_option("--scenario", scenario, "scenario: name or file");
+  app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 230))->capture_default_str();
+  app.add_option("--config", config, "folder of the components' settings");
+  app.add_option("--seed", seed, "of every random choice")->capture_default_str();
+  app.add_flag("--realtime", settings.realtime, "SCHED_FIFO and locked memory where permitted");
+  app.add_option("--cpu-affinity", settings.cpu, "run the executor on this processor");
+  app.add_flag("--standby", standby, "start even when the domain has this component already");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : 2;
+  }
+
+  const NodeContext context = load_context(robot, scenario, config, seed);
+  DdsBus bus(settings);
+  stopped_by_signal = &bus;
+  if (!standby && bus.has_twin(kTwinWait))
+    throw ConfigError("domain " + std::to_string(settings.domain) + " already has a " + component + "; --standby starts one more");
+  {
+    const std::shared_ptr<void> node = make_node(bus, context);
+    bus.set_ready();
+    std::printf("handsel_%s ready: domain %u, pid %d%s%s\n", component, settings.domain, static_cast<int>(getpid()),
+                !settings.realtime            ? ""
+                : bus.realtime_note().empty() ? ", real time"
+                                              : ", not real time: ",
+                settings.realtime ? bus.realtime_note().c_str() : "");
+    std::fflush(stdout);
+    bus.run();
+    bus.set_stopping();
+  }
+  stopped_by_signal = nullptr;
+  return 0;
+}
+
+}  // namespace
+
+int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node) {
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGINT, &action, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  try {
+    return run(argc, argv, component, make_node);
+  } catch (const ConfigError& error) {
+    return complain(component, error, 2);
+  } catch (const MissingError& error) {
+    return complain(component, error, 3);
+  } catch (const std::exception& error) {
+    return complain(component, error, 1);
+  }
+}
+
+}  // namespace handsel

@@ -1,0 +1,22 @@
+// What each QoS profile of the table of topics means to Cyclone DDS. Nowhere else is a QoS set.
+#pragma once
+
+#include <memory>
+
+#include <dds/dds.h>
+
+#include "common/bus/topics.hpp"
+
+namespace handsel {
+
+using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
+
+/// A health lease shorter than this gives false alarms on a loaded machine.
+inline constexpr dds_duration_t kHealthLease = DDS_MSECS(300);
+
+Qos reader_qos(const TopicRow& row);
+/// `strength` is used on topics with exclusive ownership.
+Qos writer_qos(const TopicRow& row, int strength);
+Qos topic_qos(const TopicRow& row);
+
+}  // namespace handsel
