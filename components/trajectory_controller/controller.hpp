@@ -38,6 +38,15 @@ struct ControllerSettings {
   HandSettings hand;
 };
 
+/// What of the status must be told at once when it changes.
+struct StatusKey {
+  Mode mode{};
+  std::uint64_t epoch{}, trajectory{}, hand_command{};
+  MotionState motion{};
+  HandState hand{};
+  bool operator==(const StatusKey&) const = default;
+};
+
 class Controller {
  public:
   /// Throws ConfigError naming the field. Robot groups "hand" and "head" may be missing; all other axes are moved by trajectories.
@@ -64,10 +73,12 @@ class Controller {
   Mode mode() const { return verdict_.mode; }
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
+  StatusKey status_key() const;
   ExecutionStatus status() const;   ///< stamp left to the publisher
   ActiveTrajectory active() const;  ///< stamp left to the publisher
 
  private:
+  enum class Part : char { arm, hand, head };
   enum class Arm { standing, running, stopping };
   struct Seen {
     TimePoint at{};
@@ -95,6 +106,8 @@ class Controller {
   void step_hand(TimePoint now) noexcept;
   void step_head() noexcept;
   void check_last() noexcept;
+  AxisState sent(int axis) const noexcept;
+  void write(int axis, const AxisState& s) noexcept;
   void resync(TimePoint now) noexcept;
   void refresh_crowd();
   Exception exception() const;
@@ -103,7 +116,7 @@ class Controller {
   std::shared_ptr<const RobotModel> robot_;
   std::vector<LinkCapsule> capsules_;
   std::vector<int> arm_axes_, head_axes_;
-  std::vector<char> is_arm_;
+  std::vector<Part> part_;  // of each axis
 
   // Latest samples.
   RobotState state_;
@@ -128,7 +141,7 @@ class Controller {
   Arm arm_{Arm::standing};
   PathRunner runner_;
   TrajectoryCommand command_;
-  bool cancelled_{};
+  bool cancelled_{}, off_path_{};
   TimePoint started_{};
   std::vector<AxisMover> movers_;  // one a robot axis; those of the hand unused
   std::uint64_t last_trajectory_{}, accepted_trajectory_{};

@@ -169,6 +169,10 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
     }
     judge(robot, dt);
   }
+  advance(dt, out);
+}
+
+void HandExecutor::advance(double dt, MotionState3& out) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const AxisState& s = fingers_[i].mover.step(dt);
     out.position[axes_[i]] = s.position;

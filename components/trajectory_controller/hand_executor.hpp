@@ -53,6 +53,9 @@ class HandExecutor {
   /// Writes the hand axes of the set-point, one period later.
   void step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept;
 
+  /// Only moves on along what is under way.
+  void advance(double dt, MotionState3& out) noexcept;
+
   HandState state() const { return state_; }
   double pull() const { return pull_.armed() ? pull_.pull() : 0.0; }
   bool at_rest() const;

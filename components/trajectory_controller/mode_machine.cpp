@@ -48,8 +48,12 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
     latched_ = Mode::normal;
 
   ModeVerdict verdict;
-  verdict.causes = fault | stop | hold | waiting | slow;
-  if (latched_ == Mode::hold && !hold && !waiting) verdict.causes |= bit(Cause::no_go);
+  // While it holds only what forbids motion is told; when nothing is left but a newer Go, that is no_go.
+  verdict.causes = fault | stop | hold | waiting;
+  if (latched_ == Mode::normal)
+    verdict.causes |= slow;
+  else if (latched_ == Mode::hold && verdict.causes == 0)
+    verdict.causes = bit(Cause::no_go);
   // What only makes slow: everything of `slow` except a silent supervisor, which lets the running trajectory finish at full speed.
   const bool slower = (slow & ~bit(Cause::supervisor_silent)) != 0;
   verdict.mode = latched_ != Mode::normal ? latched_ : slower ? Mode::slow : Mode::normal;

@@ -75,8 +75,10 @@ bool PathRunner::step(double wanted) noexcept {
   }
   if (left > 0.0) alpha = {alpha.position + left * wanted, wanted, 0.0};
   const double second = (alpha.acceleration - rate_) / dt;
-  if (low <= high && (second < low || second > high)) alpha = advanced({0.0, factor_, rate_}, dt, std::clamp(second, low, high));
-  else if (low > high) alpha = advanced({0.0, factor_, rate_}, dt, 0.5 * (low + high));
+  if (low <= high && (second < low || second > high))
+    alpha = advanced({0.0, factor_, rate_}, dt, std::clamp(second, low, high));
+  else if (low > high)
+    alpha = advanced({0.0, factor_, rate_}, dt, 0.5 * (low + high));
 
   double time = time_ + alpha.position, factor = alpha.velocity, rate = alpha.acceleration;
   if (time <= 0.0 && alpha.position <= 0.0) time = factor = rate = 0.0;

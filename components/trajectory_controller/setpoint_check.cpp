@@ -19,7 +19,8 @@ bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::I
   return std::abs(v1 + a1 * std::abs(a1) / (2.0 * J)) <= V * room;
 }
 
-void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt, LimitShares& shares) noexcept {
+void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt,
+             LimitShares& shares) noexcept {
   for (Eigen::Index i = 0; i < next.position.size(); ++i) {
     shares.velocity = std::max(shares.velocity, std::abs(next.velocity[i]) / guard.velocity[i]);
     shares.acceleration = std::max(shares.acceleration, std::abs(next.acceleration[i]) / guard.acceleration[i]);

@@ -1,0 +1,570 @@
+#include "components/trajectory_controller/controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/errors.hpp"
+#include "common/trajectory/edit.hpp"
+#include "common/trajectory/limits_check.hpp"
+#include "common/trajectory/solve.hpp"
+#include "components/trajectory_controller/gaze.hpp"
+
+namespace handsel::trajectory_controller {
+
+namespace {
+
+constexpr double kAtRest = 1e-6;
+
+HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
+  std::vector<int> axes;
+  std::vector<double> lower, upper;
+  if (const Group* group = robot.group("hand"))
+    for (int axis : group->axes) {
+      axes.push_back(axis);
+      lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
+      upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
+    }
+  return {settings, axes, lower, upper, robot.comfort_limits(), robot.stop_limits()};
+}
+
+void require(bool good, const char* sentence) {
+  if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
+}
+
+}  // namespace
+
+Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const RobotModel> robot)
+    : settings_(settings),
+      robot_(std::move(robot)),
+      capsules_(robot_capsules(*robot_)),
+      part_(static_cast<std::size_t>(robot_->dof()), Part::arm),
+      runner_(settings.period),
+      movers_(static_cast<std::size_t>(robot_->dof())),
+      hand_(make_hand(settings.hand, *robot_)),
+      modes_(settings.timeouts) {
+  require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
+  require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
+  require(settings.forecast_slow > settings.forecast_hold, "forecast_slow must be above forecast_hold");
+  require(settings.late_limit > 0, "late_limit must be above 0");
+  const int n = robot_->dof();
+  const auto mark = [&](const char* group_name, Part part) {
+    if (const Group* group = robot_->group(group_name))
+      for (int axis : group->axes) part_[static_cast<std::size_t>(axis)] = part;
+  };
+  mark("hand", Part::hand);
+  mark("head", Part::head);
+  for (int i = 0; i < n; ++i)
+    if (part_[static_cast<std::size_t>(i)] == Part::arm) arm_axes_.push_back(i);
+  if (const Group* head = robot_->group("head")) head_axes_ = head->axes;
+  head_target_.assign(head_axes_.size(), 0.0);
+  set_point_ = rest_state(Vector::Zero(n));
+  next_ = set_point_;
+  full_velocity_ = full_acceleration_ = posture_ = posture_ahead_ = Vector::Zero(n);
+  robot_->forward(posture_, links_);
+  robot_->forward(posture_, links_ahead_);
+}
+
+KinematicLimits Controller::of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const {
+  KinematicLimits part;
+  const auto n = static_cast<Eigen::Index>(axes.size());
+  part.velocity.resize(n);
+  part.acceleration.resize(n);
+  part.jerk.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto axis = axes[static_cast<std::size_t>(i)];
+    part.velocity[i] = limits.velocity[axis];
+    part.acceleration[i] = limits.acceleration[axis];
+    part.jerk[i] = limits.jerk[axis];
+  }
+  return part;
+}
+
+std::string Controller::why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const {
+  if (robot != robot_->name()) return "it is for robot " + robot + ", this is " + robot_->name();
+  if (!ready_) return "the robot's posture is not known yet";
+  if (to_seconds(age) > settings_.max_command_age) return "it is " + std::to_string(to_seconds(age)) + " s old";
+  if (!go_seen_.ever || epoch != go_.epoch)
+    return "its epoch " + std::to_string(epoch) + " is not the one in force, " + std::to_string(go_.epoch);
+  if (verdict_.mode >= Mode::stop) return std::string("the controller is in mode ") + name(verdict_.mode) + ": " + name(latched_cause_);
+  return {};
+}
+
+std::string Controller::why_not(const TrajectoryCommand& command, Duration age) const {
+  if (std::string reason = why_not_now(command.robot, command.epoch, age); !reason.empty()) return reason;
+  if (command.axes.empty() && command.trajectory.size() == 0) return {};
+  if (command.trajectory.size() != static_cast<int>(command.axes.size()))
+    return "it has " + std::to_string(command.trajectory.size()) + " axes and names " + std::to_string(command.axes.size());
+  std::vector<char> used(part_.size(), 0);
+  for (std::uint32_t axis : command.axes) {
+    if (axis >= part_.size()) return "axis " + std::to_string(axis) + " does not exist";
+    if (part_[axis] != Part::arm) return "axis " + robot_->axes()[axis].name + " is not moved by trajectories";
+    if (used[axis]++) return "axis " + robot_->axes()[axis].name + " comes twice";
+  }
+  if (std::string reason = why_not_within(command.trajectory, of_axes(robot_->guard_limits(), command.axes), kLimitTolerance);
+      !reason.empty())
+    return reason;
+  if (arm_ == Arm::running && !runner_.standing()) return "trajectory " + std::to_string(command_.id) + " is running";
+  for (int axis : arm_axes_)
+    if (set_point_.velocity[axis] != 0.0 || set_point_.acceleration[axis] != 0.0) return "the arm is still in motion";
+  const MotionState3 first = command.trajectory.at(0.0), last = final_state(command.trajectory);
+  for (std::size_t i = 0; i < command.axes.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const Axis& axis = robot_->axes()[command.axes[i]];
+    if (std::abs(first.velocity[k]) > kAtRest || std::abs(first.acceleration[k]) > kAtRest)
+      return "axis " + axis.name + " does not start at rest";
+    if (std::abs(last.velocity[k]) > kAtRest || std::abs(last.acceleration[k]) > kAtRest)
+      return "axis " + axis.name + " does not end at rest";
+    const double off = std::abs(first.position[k] - set_point_.position[command.axes[i]]);
+    if (!(off <= settings_.start_tolerance)) return "axis " + axis.name + " starts " + std::to_string(off) + " rad from the set-point";
+    const AxisExtremes reach = extremes(command.trajectory.axes[i]);
+    if (reach.lowest < axis.lower - kAtRest || reach.highest > axis.upper + kAtRest)
+      return "axis " + axis.name + " would reach [" + std::to_string(reach.lowest) + ", " + std::to_string(reach.highest) +
+             "] rad, outside its bounds";
+  }
+  return {};
+}
+
+std::string Controller::accept(const TrajectoryCommand& command, Duration age, TimePoint now) {
+  if (command.id != 0 && command.id == accepted_trajectory_) return {};
+  last_trajectory_ = command.id;
+  const std::string reason = why_not(command, age);
+  if (!reason.empty()) {
+    refusal_ = "trajectory " + std::to_string(command.id) + ": " + reason;
+    motion_ = MotionState::refused;
+    return reason;
+  }
+  accepted_trajectory_ = command.id;
+  refusal_.clear();
+  if (command.axes.empty()) {
+    cancelled_ = arm_ == Arm::running;
+    motion_ = MotionState::stopped;
+    return {};
+  }
+  MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
+  for (std::size_t i = 0; i < command.axes.size(); ++i) here.position[static_cast<Eigen::Index>(i)] = set_point_.position[command.axes[i]];
+  const MotionState3 there = rest_state(command.trajectory.at(0.0).position);
+  Trajectory path = command.trajectory;
+  constexpr double kSame = 1e-6;
+  if ((here.position - there.position).cwiseAbs().maxCoeff() > kSame) {
+    Solution bridge = solve(here, there, of_axes(robot_->comfort_limits(), command.axes));
+    if (!bridge.ok()) {
+      motion_ = MotionState::refused;
+      refusal_ = "trajectory " + std::to_string(command.id) + ": no motion to its start: " + bridge.reason;
+      return bridge.reason;
+    }
+    path = std::move(bridge.trajectory);
+    append(path, command.trajectory);
+  } else {
+    for (std::size_t i = 0; i < path.axes.size(); ++i) path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
+  }
+  stand_arm();
+  command_ = command;
+  command_.trajectory = {};
+  runner_.start(path, of_axes(robot_->guard_limits(), command.axes));
+  arm_ = Arm::running;
+  motion_ = MotionState::running;
+  cancelled_ = off_path_ = false;
+  started_ = now;
+  too_near_for_ = 0.0;
+  verdict_now_ = verdict_ahead_ = {};
+  return {};
+}
+
+std::string Controller::accept(const HandCommand& command, Duration age, TimePoint) {
+  if (command.id != 0 && command.id == accepted_hand_) return {};
+  last_hand_ = command.id;
+  std::string reason = why_not_now(command.robot, command.epoch, age);
+  if (reason.empty()) reason = hand_.accept(command);
+  hand_refused_ = !reason.empty();
+  if (hand_refused_) {
+    refusal_ = "hand command " + std::to_string(command.id) + ": " + reason;
+  } else {
+    accepted_hand_ = command.id;
+    refusal_.clear();
+  }
+  return reason;
+}
+
+void Controller::on(const RobotState& state, TimePoint sampled) {
+  const auto n = static_cast<Eigen::Index>(robot_->dof());
+  if (state.robot != robot_->name() || state.position.size() != n || !state.position.allFinite()) return;
+  constexpr double kRestart = 0.5;
+  const bool restarted = robot_seen_.ever && state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart;
+  state_ = state;
+  robot_seen_.mark(sampled);
+  new_state_ = true;
+  if (ready_ && !restarted) return;
+  // The posture of a robot side that has just come up is the first set-point.
+  ready_ = true;
+  set_point_ = rest_state(state.position);
+  next_ = set_point_;
+  if (arm_ == Arm::running) motion_ = MotionState::stopped;
+  stand_arm();
+  hand_.reset(state.position);
+  for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(state.position[axis]);
+  head_wanted_ = false;
+}
+
+void Controller::on(const HumanState& people, TimePoint sampled) {
+  people_ = people;
+  human_seen_.mark(sampled);
+  points_.clear();
+  for (const Person& p : people.people)
+    if (p.joints.size() == kBodyJoints.size()) points_.push_back({p.id, p.joints[2].position, p.joints[7].position, p.joints[11].position});
+  refresh_crowd();
+}
+
+Exception Controller::exception() const {
+  Exception e;
+  e.person = exchanging_;
+  return e;
+}
+
+void Controller::refresh_crowd() { prepare(people_, exception(), settings_.guard.unknown_after, crowd_); }
+
+void Controller::on(const ActionStatus& action, TimePoint) {
+  action_ = action;
+  if (!action.exchange_engaged) return;
+  std::string person = action.human;
+  if (person.empty() && people_.people.size() == 1) person = people_.people.front().id;
+  if (person == exchanging_) return;
+  exchanging_ = person;
+  refresh_crowd();
+}
+
+void Controller::on(const Go& go, TimePoint sampled) {
+  if (go_seen_.ever && go.epoch < go_.epoch) return;
+  go_ = go;
+  go_.override_factor = std::clamp(std::isfinite(go.override_factor) ? go.override_factor : 0.0, 0.0, 1.0);
+  go_seen_.mark(sampled);
+}
+
+void Controller::on(const TrajectoryForecast& forecast, TimePoint sampled) {
+  forecast_ = forecast;
+  forecast_seen_.mark(sampled);
+}
+
+void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
+  advice_ = advice;
+  advice_seen_.mark(sampled);
+  constexpr double kMoved = 0.02;
+  if (!ready_ || head_axes_.empty() || !advice.has_gaze_target || (advice.gaze_target - gaze_aimed_).norm() < kMoved) return;
+  gaze_aimed_ = advice.gaze_target;
+  head_target_ = aim(*robot_, *robot_->group("head"), set_point_.position, state_.T_world_base.inverse() * advice.gaze_target);
+  head_wanted_ = true;
+}
+
+void Controller::stand_arm() noexcept {
+  for (int axis : arm_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
+  arm_ = Arm::standing;
+}
+
+void Controller::stop_arm() noexcept {
+  for (int axis : arm_axes_) movers_[static_cast<std::size_t>(axis)].take_over(sent(axis), limits_of(robot_->stop_limits(), axis));
+  arm_ = Arm::stopping;
+}
+
+void Controller::run_guard(TimePoint now) noexcept {
+  const double age = std::max(0.0, human_seen_.age(now));
+  if (arm_ != Arm::running || runner_.finished()) {
+    verdict_now_ = verdict_ahead_ = {};
+    verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
+    if (exchanging_.empty() || cycles_ % 50 != 0) {
+      guard_verdict_ = verdict_now_;
+      return;
+    }
+    full_velocity_.setZero();
+    full_acceleration_.setZero();
+  }
+  // Alternates between where the path is and where it will be a little later.
+  guard_ahead_ = !guard_ahead_ && arm_ == Arm::running;
+  const double later = guard_ahead_ ? settings_.look_ahead * std::max(runner_.factor(), 0.2) : 0.0;
+  posture_ = set_point_.position;
+  if (arm_ == Arm::running) {
+    full_velocity_.setZero();
+    full_acceleration_.setZero();
+    runner_.trajectory().sample(runner_.time() + later, path_);
+    for (std::size_t i = 0; i < command_.axes.size(); ++i) {
+      const auto axis = static_cast<Eigen::Index>(command_.axes[i]);
+      const auto k = static_cast<Eigen::Index>(i);
+      posture_[axis] = path_.position[k];
+      full_velocity_[axis] = path_.velocity[k];
+      full_acceleration_[axis] = path_.acceleration[k];
+    }
+  }
+  PathMotion motion{&full_velocity_, &full_acceleration_, &links_, &links_ahead_};
+  posture_ahead_ = posture_ + motion.look * full_velocity_;
+  robot_->forward(posture_, links_);
+  robot_->forward(posture_ahead_, links_ahead_);
+  GuardVerdict& verdict = guard_ahead_ ? verdict_ahead_ : verdict_now_;
+  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, robot_->stop_limits(), crowd_, age, speed_factor());
+  guard_verdict_ = verdict_now_;
+  guard_verdict_.forward = std::min(verdict_now_.forward, verdict_ahead_.forward);
+  guard_verdict_.backward = std::max(verdict_now_.backward, verdict_ahead_.backward);
+  guard_verdict_.separation = verdict_now_.separation || verdict_ahead_.separation;
+  if (!guard_ahead_ && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
+    exchanging_.clear();
+    for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
+  }
+}
+
+double Controller::wanted_factor(TimePoint now) const noexcept {
+  if (verdict_.mode >= Mode::hold || cancelled_) return 0.0;
+  const double attention_age = advice_seen_.age(now);
+  const bool silent = attention_age < 0 || attention_age > settings_.timeouts.attention;
+  double wanted = std::min({go_.override_factor, guard_verdict_.forward, silent ? settings_.attention_lost_factor : advice_.speed_factor});
+  if (forecast_.collides && forecast_.trajectory == command_.id) {
+    const double share = (forecast_.time_to_collision - settings_.forecast_hold) / (settings_.forecast_slow - settings_.forecast_hold);
+    wanted = std::min(wanted, exchanging_.empty() ? std::clamp(share, 0.0, 1.0) : 0.5);
+  }
+  return wanted >= 0.0 ? wanted : std::max({wanted, guard_verdict_.backward, -settings_.recoil_limit});
+}
+
+ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
+  ModeInputs in;
+  in.robot_age = robot_seen_.age(now);
+  in.human_age = human_seen_.age(now);
+  in.forecast_age = forecast_seen_.age(now);
+  in.attention_age = advice_seen_.age(now);
+  in.go_age = go_seen_.age(now);
+  in.running = arm_ == Arm::running;
+  in.running_for = in.running ? to_seconds(now - started_) : 0.0;
+  in.at_rest = set_point_.velocity.isZero(0.0) && set_point_.acceleration.isZero(0.0);
+  in.drive_enabled = state_.mode == DriveMode::enabled;
+
+  double off = 0.0;
+  for (int axis : arm_axes_) off = std::max(off, std::abs(state_.position[axis] - set_point_.position[axis]));
+  tracking_for_ = in.drive_enabled && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
+  in.tracking_error = tracking_for_ > settings_.tracking_time;
+  in.limit_violation = limit_violation_;
+  limit_violation_ = false;
+  late_in_a_row_ = late ? late_in_a_row_ + 1 : 0;
+  if (late) ++late_cycles_;
+  in.cycle_late = late_in_a_row_ >= settings_.late_limit;
+
+  if (in.running && forecast_.collides && forecast_.trajectory == command_.id) {
+    const bool soon = forecast_.time_to_collision < settings_.forecast_hold;
+    in.forecast_collision_hold = soon && exchanging_.empty();
+    in.forecast_collision_slow = !in.forecast_collision_hold && forecast_.time_to_collision < settings_.forecast_slow;
+  }
+  in.separation_slow = guard_verdict_.separation && guard_verdict_.forward < 0.999;
+  too_near_for_ = in.running && guard_verdict_.too_near ? too_near_for_ + settings_.period : 0.0;
+  in.separation_stop = too_near_for_ > settings_.guard.stop_persistence;
+  in.human_unknown = human_seen_.ever && !crowd_.covered;
+  in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
+  in.override_slow = go_.override_factor < 0.999;
+  in.go_epoch = go_.epoch;
+  in.go_allowed = go_.allowed;
+  in.go_acknowledge = go_.acknowledge;
+  return in;
+}
+
+void Controller::step_arm(TimePoint now) noexcept {
+  if (arm_ == Arm::running) {
+    if (verdict_.mode >= Mode::stop) {
+      motion_ = MotionState::stopped;
+      stop_arm();
+    } else if (!runner_.step(wanted_factor(now))) {
+      off_path_ = true;
+      motion_ = MotionState::stopped;
+      stop_arm();
+    } else {
+      for (std::size_t i = 0; i < command_.axes.size(); ++i) {
+        const auto axis = static_cast<Eigen::Index>(command_.axes[i]);
+        const auto k = static_cast<Eigen::Index>(i);
+        next_.position[axis] = runner_.state().position[k];
+        next_.velocity[axis] = runner_.finished() ? 0.0 : runner_.state().velocity[k];
+        next_.acceleration[axis] = runner_.finished() ? 0.0 : runner_.state().acceleration[k];
+        movers_[static_cast<std::size_t>(axis)].reset(next_.position[axis]);
+      }
+      if (runner_.finished()) {
+        arm_ = Arm::standing;
+        if (!cancelled_ && motion_ == MotionState::running) motion_ = MotionState::finished;
+      } else if (cancelled_ && runner_.standing()) {
+        arm_ = Arm::standing;
+      }
+    }
+  }
+  bool resting = true;
+  for (int axis : arm_axes_) {
+    AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
+    const bool on_path = arm_ == Arm::running &&
+                         std::find(command_.axes.begin(), command_.axes.end(), static_cast<std::uint32_t>(axis)) != command_.axes.end();
+    if (on_path || (arm_ == Arm::standing && mover.at_rest() && next_.velocity[axis] == 0.0 && next_.acceleration[axis] == 0.0)) continue;
+    write(axis, mover.step(settings_.period));
+    resting = resting && mover.at_rest();
+  }
+  if (arm_ == Arm::stopping && resting) arm_ = Arm::standing;
+}
+
+void Controller::step_hand(TimePoint now) noexcept {
+  if (hand_.size() == 0) return;
+  HandInputs in;
+  in.robot = &state_;
+  in.new_state = new_state_;
+  in.may_move = verdict_.mode < Mode::hold;
+  in.stop = verdict_.mode >= Mode::stop;
+  in.person_distance = std::numeric_limits<double>::infinity();
+  if (in.new_state && robot_->tool_link() >= 0) {
+    if (arm_ != Arm::running) robot_->forward(set_point_.position, links_);
+    const Pose T_world_tool = state_.T_world_base * links_[static_cast<std::size_t>(robot_->tool_link())];
+    in.force = T_world_tool.linear() * state_.wrist_wrench.force;
+    const Vector3 p = T_world_tool.translation();
+    double torso = std::numeric_limits<double>::infinity();
+    for (const PersonPoints& person : points_) {
+      in.person_distance = std::min({in.person_distance, (person.left_hand - p).norm(), (person.right_hand - p).norm()});
+      const Vector3 way = person.torso - p;
+      if ((exchanging_.empty() || person.id == exchanging_) && way.norm() < torso && way.norm() > 1e-6) {
+        torso = way.norm();
+        in.toward = way / torso;
+      }
+    }
+  }
+  new_state_ = false;
+  hand_.step(in, settings_.period, now, next_);
+}
+
+void Controller::step_head() noexcept {
+  const bool may_move = verdict_.mode < Mode::hold;
+  for (std::size_t i = 0; i < head_axes_.size(); ++i) {
+    const int axis = head_axes_[i];
+    AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
+    if (!may_move && !head_paused_) {
+      mover.stop(limits_of(robot_->stop_limits(), axis));
+    } else if (may_move && head_wanted_ && std::abs(head_target_[i] - mover.target()) > settings_.head_dead_band) {
+      mover.go_to(head_target_[i], limits_of(robot_->comfort_limits(), axis));
+    }
+    write(axis, mover.step(settings_.period));
+  }
+  head_paused_ = !may_move;
+}
+
+void Controller::resync(TimePoint now) noexcept {
+  const bool wanted = verdict_.mode == Mode::fault || state_.mode != DriveMode::enabled;
+  if (!wanted || arm_ != Arm::standing || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
+  constexpr double kDeadBand = 0.002;
+  for (int axis : arm_axes_) {
+    AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
+    if (mover.at_rest() && std::abs(state_.position[axis] - set_point_.position[axis]) > kDeadBand)
+      mover.go_to(state_.position[axis], limits_of(robot_->comfort_limits(), axis));
+  }
+  if (hand_.size() > 0) hand_.follow(state_.position);
+}
+
+void Controller::check_last() noexcept {
+  bool arm = false, hand = false, head = false;
+  for (Eigen::Index i = 0; i < next_.position.size(); ++i) {
+    if (acceptable(set_point_, next_, i, robot_->guard_limits(), settings_.period)) continue;
+    const Part part = part_[static_cast<std::size_t>(i)];
+    (part == Part::arm ? arm : part == Part::hand ? hand : head) = true;
+  }
+  if (!arm && !hand && !head) return;
+  limit_violation_ = true;
+  if (arm) {
+    if (arm_ == Arm::running) motion_ = MotionState::stopped;
+    stop_arm();
+    for (int axis : arm_axes_) write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
+  }
+  if (hand) {
+    hand_.stop_from(set_point_);
+    hand_.advance(settings_.period, next_);
+  }
+  if (head)
+    for (int axis : head_axes_) {
+      movers_[static_cast<std::size_t>(axis)].take_over(sent(axis), limits_of(robot_->stop_limits(), axis));
+      write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
+    }
+}
+
+AxisState Controller::sent(int axis) const noexcept {
+  return {set_point_.position[axis], set_point_.velocity[axis], set_point_.acceleration[axis]};
+}
+
+void Controller::write(int axis, const AxisState& s) noexcept {
+  next_.position[axis] = s.position;
+  next_.velocity[axis] = s.velocity;
+  next_.acceleration[axis] = s.acceleration;
+}
+
+bool Controller::step(TimePoint now, bool late) noexcept {
+  if (!ready_) return false;
+  ++cycles_;
+  run_guard(now);
+  verdict_ = modes_.update(mode_inputs(now, late));
+  if (verdict_.mode >= Mode::hold) {
+    const Cause cause = gravest(verdict_.causes & ~bit(Cause::no_go));
+    if (cause != Cause::none)
+      latched_cause_ = cause;
+    else if (latched_cause_ == Cause::none)
+      latched_cause_ = Cause::no_go;
+  } else {
+    latched_cause_ = Cause::none;
+  }
+  next_ = set_point_;
+  resync(now);
+  step_arm(now);
+  step_hand(now);
+  step_head();
+  check_last();
+  measure(set_point_, next_, robot_->guard_limits(), settings_.period, shares_);
+  set_point_ = next_;
+  return true;
+}
+
+StatusKey Controller::status_key() const {
+  return {verdict_.mode, go_.epoch, last_trajectory_, last_hand_, motion_, hand_refused_ ? HandState::refused : hand_.state()};
+}
+
+ExecutionStatus Controller::status() const {
+  ExecutionStatus s;
+  s.robot = robot_->name();
+  s.mode = verdict_.mode;
+  s.causes = verdict_.causes;
+  s.epoch = go_.epoch;
+  s.trajectory = last_trajectory_;
+  s.motion = motion_;
+  s.progress = motion_ == MotionState::finished                            ? 1.0
+               : runner_.duration() > 0 && last_trajectory_ == command_.id ? runner_.time() / runner_.duration()
+                                                                           : 0.0;
+  s.hand_command = last_hand_;
+  s.hand = hand_refused_ ? HandState::refused : hand_.state();
+  s.pull = hand_.pull();
+  if (!refusal_.empty()) {
+    s.reason = refusal_;
+  } else if (verdict_.mode >= Mode::hold) {
+    s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
+  } else if (motion_ == MotionState::stopped && off_path_) {
+    s.reason = "no speed along the path kept the limits; stopped beside it";
+  } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
+    s.reason = name(cause);
+    if (cause == Cause::attention_slow) s.reason += ": " + advice_.reason;
+    if (cause == Cause::forecast_collision) s.reason += ": " + forecast_.reason;
+  }
+  s.cycles = cycles_;
+  s.late_cycles = late_cycles_;
+  s.limit_share_velocity = shares_.velocity;
+  s.limit_share_acceleration = shares_.acceleration;
+  s.limit_share_jerk = shares_.jerk;
+  return s;
+}
+
+ActiveTrajectory Controller::active() const {
+  ActiveTrajectory a;
+  a.robot = robot_->name();
+  a.T_world_base = state_.T_world_base;
+  a.position = set_point_.position;
+  a.velocity = set_point_.velocity;
+  a.acceleration = set_point_.acceleration;
+  if (hand_.state() != HandState::released) a.attachment = command_.attachment;
+  if (arm_ != Arm::running) return a;
+  a.trajectory = command_.id;
+  a.time = runner_.time();
+  a.speed_factor = runner_.factor();
+  a.axes = command_.axes;
+  a.rest = runner_.trajectory();
+  a.allowed_contacts = command_.allowed_contacts;
+  return a;
+}
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,50 @@
+#include "components/trajectory_controller/node.hpp"
+
+#include "components/trajectory_controller/settings.hpp"
+
+namespace handsel::trajectory_controller {
+
+namespace {
+constexpr Duration kReportPeriod = std::chrono::milliseconds(20);
+}
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : settings_(load_settings(context.settings / "trajectory_controller.txtpb")),
+      core_(settings_, context.robot),
+      command_out_(bus.advertise<JointCommand>()),
+      active_out_(bus.advertise<ActiveTrajectory>()),
+      status_out_(bus.advertise<ExecutionStatus>()) {
+  command_.robot = context.robot->name();
+  bus.subscribe<RobotState>([this](const RobotState& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<HumanState>([this](const HumanState& m, const Receipt& r) { core_.on(m, r.arrival - r.age); });
+  bus.subscribe<Go>([this](const Go& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<TrajectoryForecast>([this](const TrajectoryForecast& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<TrajectoryCommand>([this](const TrajectoryCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
+  bus.subscribe<HandCommand>([this](const HandCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
+  timer_ = &bus.every(from_seconds(settings_.period), [this](TimePoint now) { tick(now); });
+}
+
+void Node::tick(TimePoint now) {
+  const std::uint64_t late = timer_ ? timer_->late_cycles : 0;
+  if (core_.step(now, late != late_before_)) {
+    ++command_.sequence;
+    command_.position = core_.set_point().position;
+    command_.velocity = core_.set_point().velocity;
+    command_.acceleration = core_.set_point().acceleration;
+    command_out_->publish(command_);
+  }
+  late_before_ = late;
+  if (const StatusKey key = core_.status_key(); now >= next_status_ || !(key == told_)) {
+    status_out_->publish(core_.status());
+    told_ = key;
+    next_status_ = now + kReportPeriod - from_seconds(0.5 * settings_.period);
+  }
+  if (now >= next_active_) {
+    active_out_->publish(core_.active());
+    next_active_ = now + kReportPeriod - from_seconds(0.5 * settings_.period);
+  }
+}
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,31 @@
+// Binds the trajectory controller to a bus.
+#pragma once
+
+#include <memory>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/node_context.hpp"
+#include "components/trajectory_controller/controller.hpp"
+
+namespace handsel::trajectory_controller {
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void tick(TimePoint now);
+
+  ControllerSettings settings_;
+  Controller core_;
+  std::unique_ptr<Publisher<JointCommand>> command_out_;
+  std::unique_ptr<Publisher<ActiveTrajectory>> active_out_;
+  std::unique_ptr<Publisher<ExecutionStatus>> status_out_;
+  const TimerStatus* timer_{};
+  std::uint64_t late_before_{};
+  JointCommand command_;
+  StatusKey told_;
+  TimePoint next_active_{}, next_status_{};
+};
+
+}  // namespace handsel::trajectory_controller

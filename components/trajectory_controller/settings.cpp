@@ -1,0 +1,90 @@
+#include "components/trajectory_controller/settings.hpp"
+
+#include "common/config/resources.hpp"
+#include "common/config/trajectory_controller.pb.h"
+
+namespace handsel::trajectory_controller {
+
+namespace {
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : file_(file) {}
+  double operator()(double value, const char* key, double low, double high) const {
+    if (!(value >= low && value <= high))
+      throw ConfigError(locate(file_, std::string(key) + ":") + ": " + key + " must be given, in [" + std::to_string(low) + ", " +
+                        std::to_string(high) + "]");
+    return value;
+  }
+
+ private:
+  std::filesystem::path file_;
+};
+
+}  // namespace
+
+ControllerSettings load_settings(const std::filesystem::path& file) {
+  config::TrajectoryControllerSettings in;
+  load_text_proto(file, in);
+  const Reader read(file);
+  constexpr double kTiny = 1e-6;
+  ControllerSettings s;
+  s.period = read(in.period(), "period", kTiny, 0.02);
+  s.attention_lost_factor = read(in.attention_lost_factor(), "attention_lost_factor", kTiny, 1);
+  s.recoil_limit = read(in.recoil_limit(), "recoil_limit", 0, 1);
+  s.max_command_age = read(in.max_command_age(), "max_command_age", kTiny, 60);
+  s.start_tolerance = read(in.start_tolerance(), "start_tolerance", 0, 1);
+  s.tracking_tolerance = read(in.tracking_tolerance(), "tracking_tolerance", kTiny, 10);
+  s.tracking_time = read(in.tracking_time(), "tracking_time", 0, 10);
+  s.forecast_hold = read(in.forecast_hold(), "forecast_hold", 0, 10);
+  s.forecast_slow = read(in.forecast_slow(), "forecast_slow", s.forecast_hold + kTiny, 60);
+  s.head_dead_band = read(in.head_dead_band(), "head_dead_band", 0, 1);
+  s.look_ahead = read(in.look_ahead(), "look_ahead", 0, 2);
+  s.late_limit = static_cast<int>(read(in.late_limit(), "late_limit", 1, 1000));
+
+  const auto& t = in.timeouts();
+  s.timeouts.robot_state = read(t.robot_state(), "robot_state", kTiny, 10);
+  s.timeouts.human_state = read(t.human_state(), "human_state", kTiny, 10);
+  s.timeouts.forecast = read(t.forecast(), "forecast", kTiny, 10);
+  s.timeouts.attention = read(t.attention(), "attention", kTiny, 10);
+  s.timeouts.supervisor = read(t.supervisor(), "supervisor", kTiny, 10);
+
+  const auto& g = in.guard();
+  s.guard.speed_max = read(g.speed_max(), "speed_max", kTiny, 10);
+  s.guard.speed_floor = read(g.speed_floor(), "speed_floor", 0, s.guard.speed_max);
+  s.guard.speed_uncertainty = read(g.speed_uncertainty(), "speed_uncertainty", 0, 10);
+  s.guard.speed_unknown = read(g.speed_unknown(), "speed_unknown", 0, s.guard.speed_max);
+  s.guard.unknown_after = read(g.unknown_after(), "unknown_after", 0, 10);
+  s.guard.reaction = read(g.reaction(), "reaction", 0, 10);
+  s.guard.intrusion = read(g.intrusion(), "intrusion", 0, 10);
+  s.guard.uncertainty_human = read(g.uncertainty_human(), "uncertainty_human", 0, 10);
+  s.guard.uncertainty_robot = read(g.uncertainty_robot(), "uncertainty_robot", 0, 10);
+  s.guard.uncovered_factor = read(g.uncovered_factor(), "uncovered_factor", kTiny, 1);
+  s.guard.exchange_speed = read(g.exchange_speed(), "exchange_speed", kTiny, 10);
+  s.guard.exchange_range = read(g.exchange_range(), "exchange_range", 0, 10);
+  s.guard.stop_persistence = read(g.stop_persistence(), "stop_persistence", 0, 10);
+
+  const auto& h = in.hand();
+  s.hand.grasp_speed = read(h.grasp_speed(), "grasp_speed", kTiny, 1);
+  s.hand.closing_least = read(h.closing_least(), "closing_least", kTiny, 10);
+  s.hand.contact_lag = read(h.contact_lag(), "contact_lag", kTiny, 10);
+  s.hand.contact_effort = read(h.contact_effort(), "contact_effort", kTiny, 1000);
+  s.hand.contact_speed = read(h.contact_speed(), "contact_speed", kTiny, 10);
+  s.hand.contact_time = read(h.contact_time(), "contact_time", 0, 10);
+  s.hand.squeeze = read(h.squeeze(), "squeeze", 0, 10);
+  s.hand.squeeze_travel = read(h.squeeze_travel(), "squeeze_travel", 0, 10);
+  s.hand.settle_time = read(h.settle_time(), "settle_time", 0, 10);
+  s.hand.least_contacts = static_cast<int>(read(h.least_contacts(), "least_contacts", 1, 100));
+  s.hand.grasp_lag = read(h.grasp_lag(), "grasp_lag", kTiny, 10);
+  s.hand.lost_payload = read(h.lost_payload(), "lost_payload", 0, 100);
+  s.hand.lost_time = read(h.lost_time(), "lost_time", 0, 10);
+  s.hand.person_range = read(h.person_range(), "person_range", 0, 10);
+  s.hand.pull.baseline_time = read(h.pull_baseline(), "pull_baseline", 0, 10);
+  s.hand.pull.filter_time = read(h.pull_filter(), "pull_filter", 0, 10);
+  s.hand.pull.hold_time = read(h.pull_hold(), "pull_hold", 0, 10);
+  s.hand.pull.direction_cosine = read(h.pull_cosine(), "pull_cosine", -1, 1);
+  s.hand.pull.away_cosine = read(h.pull_away_cosine(), "pull_away_cosine", -1, 1);
+  return s;
+}
+
+}  // namespace handsel::trajectory_controller
