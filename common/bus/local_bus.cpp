@@ -270,7 +270,10 @@ void LocalNetwork::Impl::arrive(Subscription& to, std::uint64_t writer, int stre
     Owner& owner = at->second;
     const bool silent = row.deadline > 0 && now - owner.last > from_seconds(row.deadline);
     const bool stronger = strength > owner.strength || (strength == owner.strength && writer < owner.writer);
-    if (owner.writer != 0 && owner.writer != writer && !silent && !stronger) return;
+    if (owner.writer != 0 && owner.writer != writer && !silent && !stronger) {
+      owner.last = now;  // as Cyclone: a turned-down sample renews the deadline of its instance
+      return;
+    }
     owner = {writer, strength, now};
   }
   std::size_t same_key = 0;

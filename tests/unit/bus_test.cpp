@@ -1,0 +1,279 @@
+// The rules every bus keeps, played on both.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "common/messages/execution.hpp"
+#include "common/messages/robot.hpp"
+#include "common/messages/system.hpp"
+#include "common/messages/world.hpp"
+#include "tests/unit/bus_stage.hpp"
+
+namespace handsel {
+namespace {
+
+using test::DdsStage;
+using test::LocalStage;
+using test::Stage;
+
+RobotState robot_state(std::uint64_t sequence) {
+  RobotState state;
+  state.robot = "jido";
+  state.sequence = sequence;
+  state.position = Vector::LinSpaced(22, -1, 1);
+  state.velocity = Vector::Constant(22, 0.25);
+  state.effort = Vector::Zero(22);
+  return state;
+}
+
+JointCommand joint_command(std::uint64_t sequence) {
+  JointCommand command;
+  command.robot = "jido";
+  command.sequence = sequence;
+  command.position = command.velocity = command.acceleration = Vector::Zero(22);
+  return command;
+}
+
+HandCommand hand_command(std::uint64_t id) {
+  HandCommand command;
+  command.robot = "jido";
+  command.id = id;
+  return command;
+}
+
+template <class StageType>
+class BusRules : public testing::Test {
+ protected:
+  StageType stage;
+  template <class M>
+  bool matched(const std::unique_ptr<Publisher<M>>& publisher, const SubscriptionStatus& status, int writers = 1) {
+    return stage.until([&] { return publisher->readers() >= 1 && status.writers == writers; });
+  }
+};
+using Stages = testing::Types<LocalStage, DdsStage>;
+TYPED_TEST_SUITE(BusRules, Stages);
+
+TYPED_TEST(BusRules, CarriesAMessageWithStampAndReceipt) {
+  Bus& a = this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  auto publisher = a.advertise<RobotState>();
+  RobotState got;
+  Receipt receipt;
+  const auto& status = b.subscribe<RobotState>([&](const RobotState& m, const Receipt& r) { got = m, receipt = r; });
+  EXPECT_EQ(b.lag<RobotState>(), Duration::max()) << "never seen counts as stale";
+  ASSERT_TRUE(this->matched(publisher, status));
+  ASSERT_TRUE(publisher->publish(robot_state(7)));
+  ASSERT_TRUE(this->stage.until([&] { return status.received == 1; }));
+  EXPECT_EQ(got.sequence, 7u);
+  EXPECT_EQ(got.robot, "jido");
+  EXPECT_EQ(got.position, robot_state(7).position);
+  EXPECT_EQ(got.external_torque.size(), 0);
+  EXPECT_GT(got.stamp, 0) << "a zero stamp is filled in";
+  EXPECT_NE(receipt.writer, 0u);
+  EXPECT_LE(receipt.arrival, b.now());
+  EXPECT_LT(to_seconds(b.lag<RobotState>()), 5.0);
+}
+
+TYPED_TEST(BusRules, RefusesToSendAMalformedMessageAndSaysSoInItsHealth) {
+  Bus& a = this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  std::string reason;
+  b.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
+    if (m.component == "a") reason = m.reason;
+  });
+  auto publisher = a.advertise<RobotState>();
+  RobotState bad = robot_state(1);
+  bad.velocity[3] = std::nan("");
+  EXPECT_FALSE(publisher->publish(bad));
+  EXPECT_TRUE(this->stage.until([&] { return reason.find("RobotState.velocity[3] is nan") != std::string::npos; })) << reason;
+}
+
+TYPED_TEST(BusRules, StateKeepsTheLastSampleAndCommandsTheLastEight) {
+  Bus& a = this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  auto facts = a.advertise<Facts>();
+  auto hands = a.advertise<HandCommand>();
+  std::vector<std::size_t> sizes;
+  std::vector<std::uint64_t> ids;
+  const auto& s1 = b.subscribe<Facts>([&](const Facts& m, const Receipt&) { sizes.push_back(m.facts.size()); });
+  const auto& s2 = b.subscribe<HandCommand>([&](const HandCommand& m, const Receipt&) { ids.push_back(m.id); });
+  ASSERT_TRUE(this->matched(facts, s1));
+  ASSERT_TRUE(this->matched(hands, s2));
+  this->stage.pause("b");
+  for (std::uint64_t i = 1; i <= 12; ++i) {
+    Facts message;
+    Fact fact;
+    fact.subject = "anna";
+    message.facts.resize(i, fact);
+    ASSERT_TRUE(facts->publish(message));
+    ASSERT_TRUE(hands->publish(hand_command(i)));
+  }
+  this->stage.pass(0.1);
+  this->stage.resume("b");
+  ASSERT_TRUE(this->stage.until([&] { return !sizes.empty() && ids.size() >= 8; }));
+  this->stage.pass(0.1);
+  EXPECT_EQ(sizes, std::vector<std::size_t>{12});
+  EXPECT_EQ(ids, (std::vector<std::uint64_t>{5, 6, 7, 8, 9, 10, 11, 12}));
+}
+
+TYPED_TEST(BusRules, LateJoinerGetsStateButNoOldCommand) {
+  Bus& a = this->stage.add("a");
+  auto go = a.advertise<Go>();
+  auto hands = a.advertise<HandCommand>();
+  Go permission;
+  permission.epoch = 3;
+  ASSERT_TRUE(go->publish(permission));
+  ASSERT_TRUE(hands->publish(hand_command(1)));
+  this->stage.pass(0.05);
+  Bus& b = this->stage.add("b");
+  std::uint64_t epoch = 0;
+  std::vector<std::uint64_t> ids;
+  b.subscribe<Go>([&](const Go& m, const Receipt&) { epoch = m.epoch; });
+  const auto& status = b.subscribe<HandCommand>([&](const HandCommand& m, const Receipt&) { ids.push_back(m.id); });
+  EXPECT_TRUE(this->stage.until([&] { return epoch == 3; }));
+  ASSERT_TRUE(this->matched(hands, status));
+  ASSERT_TRUE(hands->publish(hand_command(2)));
+  ASSERT_TRUE(this->stage.until([&] { return !ids.empty(); }));
+  EXPECT_EQ(ids, std::vector<std::uint64_t>{2});
+}
+
+TYPED_TEST(BusRules, DeathOfAWriterIsSeenAsLostWriterAndMissedDeadline) {
+  this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  Bus& c = this->stage.add("c");
+  auto publisher = c.advertise<RobotState>();
+  const auto& status = b.subscribe<RobotState>([](const RobotState&, const Receipt&) {});
+  c.every(std::chrono::milliseconds(5), [&](TimePoint) { publisher->publish(robot_state(1)); });
+  ASSERT_TRUE(this->stage.until([&] { return status.received > 20; }));
+  const std::uint64_t misses = status.deadline_misses;
+  this->stage.kill("c");
+  EXPECT_TRUE(this->stage.until([&] { return status.writers == 0 && status.writers_lost == 1; }));
+  EXPECT_TRUE(this->stage.until([&] { return status.deadline_misses == misses + 1; }));
+  EXPECT_GT(b.lag<RobotState>(), std::chrono::milliseconds(20));
+}
+
+TYPED_TEST(BusRules, StrongestLivingWriterOfASetpointIsHeard) {
+  this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  Bus& leader = this->stage.add("leader");
+  Bus& spare = this->stage.add("spare");
+  auto strong = leader.advertise<JointCommand>(10);
+  auto weak = spare.advertise<JointCommand>(1);
+  std::uint64_t from_leader = 0, from_spare = 0, since_both = 0;
+  const auto& status = b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) {
+    ++(m.sequence == 10 ? from_leader : from_spare);
+    if (from_leader > 0 && m.sequence == 1) ++since_both;
+  });
+  ASSERT_TRUE(this->stage.until([&] { return status.writers == 2; }));
+  leader.every(std::chrono::milliseconds(4), [&](TimePoint) { strong->publish(joint_command(10)); });
+  spare.every(std::chrono::milliseconds(4), [&](TimePoint) { weak->publish(joint_command(1)); });
+  ASSERT_TRUE(this->stage.until([&] { return from_leader >= 30; }));
+  EXPECT_LE(since_both, 2u);
+  const std::uint64_t before = from_spare;
+  this->stage.kill("leader");
+  EXPECT_TRUE(this->stage.until([&] { return from_spare > before + 10; }));
+}
+
+TYPED_TEST(BusRules, SpareThatWaitedTakesOverFromASilentLivingOwner) {
+  Bus& b = this->stage.add("b");
+  Bus& leader = this->stage.add("leader");
+  Bus& spare = this->stage.add("spare");
+  auto strong = leader.advertise<JointCommand>(10);
+  auto weak = spare.advertise<JointCommand>(1);
+  std::vector<std::uint64_t> heard;
+  const auto& status = b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) { heard.push_back(m.sequence); });
+  ASSERT_TRUE(this->stage.until([&] { return status.writers == 2; }));
+  strong->publish(joint_command(10));
+  ASSERT_TRUE(this->stage.until([&] { return !heard.empty(); }));
+  this->stage.pass(0.1);
+  spare.every(std::chrono::milliseconds(4), [&](TimePoint) { weak->publish(joint_command(1)); });
+  EXPECT_TRUE(this->stage.until([&] { return heard.back() == 1; }));
+}
+
+TYPED_TEST(BusRules, PolledSubscriptionGetsTheNewestOncePerPeriod) {
+  Bus& a = this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  auto publisher = a.advertise<RobotState>();
+  std::uint64_t sequence = 0, last = 0;
+  const auto& status =
+      b.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { last = m.sequence; }, {.period = std::chrono::milliseconds(50)});
+  ASSERT_TRUE(this->matched(publisher, status));
+  a.every(std::chrono::milliseconds(2), [&](TimePoint) { publisher->publish(robot_state(++sequence)); });
+  ASSERT_TRUE(this->stage.until([&] { return sequence > 200; }));
+  EXPECT_GT(last, 100u);
+  EXPECT_LT(status.received, sequence / 4);
+  EXPECT_GT(status.received, 2u);
+}
+
+TYPED_TEST(BusRules, TimersKeepTheirPaceAndCountTheirCycles) {
+  Bus& a = this->stage.add("a");
+  TimePoint first{}, last{};
+  const TimerStatus& timer = a.every(std::chrono::milliseconds(10), [&](TimePoint now) {
+    if (first == TimePoint{}) first = now;
+    last = now;
+  });
+  ASSERT_TRUE(this->stage.until([&] { return timer.cycles + timer.skipped >= 50; }));
+  EXPECT_NEAR(to_seconds(last - first), 0.01 * static_cast<double>(timer.cycles + timer.skipped - 1), 0.02);
+  int once = 0;
+  a.after(std::chrono::milliseconds(20), [&](TimePoint) { ++once; });
+  this->stage.pass(0.1);
+  EXPECT_EQ(once, 1);
+}
+
+TYPED_TEST(BusRules, JobsRunInTurnAndReportBackEvenWhenCancelled) {
+  Bus& a = this->stage.add("a");
+  std::vector<int> order;
+  bool saw_cancel = false;
+  a.run_job([](const CancelToken&) { return Duration(std::chrono::milliseconds(5)); }, [&] { order.push_back(1); });
+  CancelToken second = a.run_job(
+      [&](const CancelToken& token) {
+        saw_cancel = token.cancelled();
+        return Duration(std::chrono::milliseconds(5));
+      },
+      [&] { order.push_back(2); });
+  second.cancel();
+  a.run_job([](const CancelToken&) { return Duration::zero(); }, [&] { order.push_back(3); });
+  ASSERT_TRUE(this->stage.until([&] { return order.size() == 3; }));
+  EXPECT_EQ(order, (std::vector<int>{1, 2, 3}));
+}
+
+TYPED_TEST(BusRules, HealthTellsRatesAgesAndDegradation) {
+  Bus& a = this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  ComponentHealth health;
+  b.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
+    if (m.component == "a") health = m;
+  });
+  a.subscribe<HumanState>([](const HumanState&, const Receipt&) {});
+  a.subscribe<Facts>([](const Facts&, const Receipt&) {});
+  auto people = b.advertise<HumanState>();
+  b.every(std::chrono::milliseconds(20), [&](TimePoint) { people->publish(HumanState{}); });
+  a.set_degraded("waits for a person");
+  ASSERT_TRUE(this->stage.until([&] { return health.topics.size() == 2 && health.topics[0].rate > 40; }));
+  EXPECT_EQ(health.state, HealthState::degraded);
+  EXPECT_EQ(health.reason, "waits for a person");
+  EXPECT_EQ(health.topics[0].topic, "handsel/human_state");
+  EXPECT_LT(health.topics[0].age, 1.0);
+  EXPECT_LT(health.topics[1].age, 0.0) << "never seen";
+}
+
+TEST(LocalNetwork, SameSeedSameHistory) {
+  const auto history = [](std::uint64_t seed) {
+    LocalNetwork network(seed);
+    Bus& a = network.add("a");
+    Bus& b = network.add("b");
+    auto publisher = a.advertise<RobotState>();
+    std::vector<std::int64_t> arrivals;
+    b.subscribe<RobotState>([&](const RobotState&, const Receipt& r) { arrivals.push_back(r.arrival.time_since_epoch().count()); });
+    std::uint64_t sequence = 0;
+    a.every(std::chrono::milliseconds(2), [&](TimePoint) { publisher->publish(robot_state(++sequence)); });
+    network.run_until(TimePoint(std::chrono::seconds(1)));
+    return arrivals;
+  };
+  EXPECT_EQ(history(5), history(5));
+  EXPECT_NE(history(5), history(6));
+  EXPECT_GT(history(5).size(), 490u);
+}
+
+}  // namespace
+}  // namespace handsel
