@@ -1,0 +1,1 @@
+handsel_test(config SOURCES ${CMAKE_CURRENT_LIST_DIR}/config_test.cpp LINK handsel_config handsel_messages LABEL unit)

@@ -1,0 +1,230 @@
+// What is refused, and how it is said: file, line, what was wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "common/config/resources.hpp"
+#include "common/model/hand_model.hpp"
+#include "common/model/object_model.hpp"
+#include "common/model/robot_model.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace handsel {
+namespace {
+
+using test::message_of;
+using test::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+std::string urdf(const std::string& inside) {
+  return "<robot name=\"r\">\n<link name=\"base\"/>\n<link name=\"one\"><inertial><mass value=\"1\"/>"
+         "<inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial></link>\n"
+         "<joint name=\"j\" type=\"revolute\"><parent link=\"base\"/><child link=\"one\"/><axis xyz=\"0 0 1\"/>"
+         "<limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"3\"/></joint>\n" +
+         inside + "</robot>\n";
+}
+
+std::string joint(const std::string& name, const std::string& parent, const std::string& child, const std::string& rest = "") {
+  return "<joint name=\"" + name + "\" type=\"revolute\"><parent link=\"" + parent + "\"/><child link=\"" + child +
+         "\"/><axis xyz=\"0 0 1\"/><limit lower=\"-1\" upper=\"1\" velocity=\"2\" effort=\"3\"/>" + rest + "</joint>\n";
+}
+
+std::string urdf_refusal(const std::string& text) {
+  const TemporaryFolder folder;
+  return message_of<ConfigError>([&] { RobotModel::load_urdf(folder.write("r.urdf", text)); });
+}
+
+TEST(BadUrdf, MissingFile) {
+  EXPECT_THAT(message_of<MissingError>([] { RobotModel::load_urdf("/nowhere/r.urdf"); }), HasSubstr("/nowhere/r.urdf"));
+}
+
+TEST(BadUrdf, NotXml) {
+  EXPECT_THAT(urdf_refusal("<robot name=\"r\">\n<link name=\"a\"\n</robot>"), AllOf(HasSubstr("r.urdf:"), HasSubstr("XML")));
+  EXPECT_THAT(urdf_refusal("<house/>"), HasSubstr("no <robot>"));
+  EXPECT_THAT(urdf_refusal("<robot name=\"r\"/>"), HasSubstr("no link"));
+}
+
+TEST(BadUrdf, Cycles) {
+  EXPECT_THAT(
+      urdf_refusal("<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a") + "</robot>"),
+      HasSubstr("cycle"));
+  EXPECT_THAT(urdf_refusal(urdf("<link name=\"a\"/><link name=\"b\"/>\n" + joint("x", "a", "b") + joint("y", "b", "a"))),
+              HasSubstr("r.urdf"));
+  EXPECT_THAT(urdf_refusal(urdf(joint("again", "base", "one"))), AllOf(HasSubstr("r.urdf:5"), HasSubstr("more than one parent")));
+}
+
+TEST(BadUrdf, Duplicates) {
+  EXPECT_THAT(urdf_refusal(urdf("<link name=\"one\"/>\n")), AllOf(HasSubstr("r.urdf:5"), HasSubstr("link one is defined twice")));
+}
+
+TEST(BadUrdf, CapsulesAreNotUrdf) {
+  EXPECT_THAT(
+      urdf_refusal("<robot name=\"r\">\n<link name=\"a\"><collision><geometry>\n<capsule radius=\"1\" length=\"1\"/></geometry></collision>"
+                   "</link></robot>"),
+      AllOf(HasSubstr("r.urdf:3"), HasSubstr("link a has a <capsule>")));
+}
+
+TEST(BadUrdf, MissingMeshNamesTheLine) {
+  const TemporaryFolder folder;
+  const auto file = folder.write("r.urdf", urdf("<link name=\"m\"><collision><geometry><mesh filename=\"package://p/none.stl\"/></geometry>"
+                                                "</collision></link>\n" +
+                                                joint("k", "one", "m")));
+  EXPECT_THAT(message_of<MissingError>([&] { RobotModel::load_urdf(file); }), AllOf(HasSubstr("r.urdf:5"), HasSubstr("none.stl")));
+  EXPECT_EQ(RobotModel::load_urdf(file, {}, Meshes::skip).dof(), 2);
+}
+
+TEST(BadUrdf, Values) {
+  EXPECT_THAT(
+      urdf_refusal("<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"-1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" "
+                   "iyz=\"0\" izz=\"1\"/></inertial></link><link name=\"b\"/>" +
+                   joint("x", "a", "b") + "</robot>"),
+      HasSubstr("mass below 0"));
+  EXPECT_THAT(urdf_refusal(urdf("<link name=\"a\"><collision><geometry><sphere radius=\"0\"/></geometry></collision></link>" +
+                                joint("x", "one", "a"))),
+              HasSubstr("not > 0"));
+  EXPECT_THAT(urdf_refusal(urdf("<link name=\"a\"/>" + joint("x", "one", "a", "<mimic joint=\"ghost\"/>"))), HasSubstr("ghost"));
+  EXPECT_THAT(urdf_refusal(urdf("<link name=\"a\"/><link name=\"b\"/>" + joint("x", "one", "a", "<mimic joint=\"y\"/>") +
+                                joint("y", "a", "b", "<mimic joint=\"x\"/>"))),
+              HasSubstr("circle"));
+}
+
+TEST(Urdf, MeshesAreFoundInPackagesAboveTheUrdf) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "urdf");
+  folder.write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const auto file = folder.write("urdf/r.urdf", urdf("<link name=\"m\"><collision><geometry><mesh filename=\"package://any/tri.obj\" "
+                                                     "scale=\"2 2 2\"/></geometry></collision></link>" +
+                                                     joint("k", "one", "m")));
+  const auto robot = RobotModel::load_urdf(file);
+  const auto& shape = robot.links()[robot.link_index("m")].collision.at(0).shape;
+  EXPECT_EQ(std::get<MeshPtr>(shape)->vertices.size(), 3u);
+}
+
+TEST(Urdf, MimicsOfMimicsAreComposed) {
+  const TemporaryFolder folder;
+  const auto robot =
+      RobotModel::load_urdf(folder.write("r.urdf", urdf("<link name=\"a\"/><link name=\"b\"/>" +
+                                                        joint("x", "one", "a", "<mimic joint=\"j\" multiplier=\"2\" offset=\"0.1\"/>") +
+                                                        joint("y", "a", "b", "<mimic joint=\"x\" multiplier=\"-1\" offset=\"0.2\"/>"))));
+  ASSERT_EQ(robot.dof(), 1);
+  Vector q = Vector::Constant(1, 0.3);
+  const Pose T = robot.link_pose(q, robot.link_index("b"));
+  const double x = 2 * 0.3 + 0.1, y = -x + 0.2;
+  EXPECT_NEAR(std::atan2(T(1, 0), T(0, 0)), 0.3 + x + y, 1e-12);
+}
+
+std::string description(const std::string& more = "", const std::string& arm = "\"j\"", const std::string& limits = "") {
+  const std::string all = limits.empty() ? "comfort { joints: \"j\" velocity: 1 acceleration: 2 jerk: 6 }\n"
+                                           "guard { joints: \"j\" velocity: 2 acceleration: 4 jerk: 12 }\n"
+                                           "stop { joints: \"j\" velocity: 2 acceleration: 4 jerk: 12 }\n"
+                                         : limits;
+  return "name: \"r\"\nurdf: \"r.urdf\"\ngroups { name: \"arm\" joints: [" + arm + "] tip_link: \"one\" }\n" + all + more;
+}
+
+std::string robot_refusal(const std::string& text, const std::string& model = urdf("")) {
+  const TemporaryFolder folder;
+  folder.write("r.urdf", model);
+  return message_of<ConfigError>([&] { RobotModel::load(folder.write("r.txtpb", text)); });
+}
+
+TEST(RobotDescription, IsReadWhenRight) { EXPECT_EQ(robot_refusal(description("rest { key: \"j\" value: 0.5 }\n")), "no error"); }
+
+TEST(RobotDescription, UnknownKeyNamesTheLine) { EXPECT_THAT(robot_refusal(description("colour: 3\n")), HasSubstr("r.txtpb:7:")); }
+
+TEST(RobotDescription, UnknownNamesNameTheLine) {
+  EXPECT_THAT(robot_refusal(description("", "\"k\"")), AllOf(HasSubstr("r.txtpb:3"), HasSubstr("no joint \"k\"")));
+  EXPECT_THAT(robot_refusal(description("tool_link: \"palm\"\n")), AllOf(HasSubstr("r.txtpb:7"), HasSubstr("tool_link")));
+  EXPECT_THAT(robot_refusal(description("rest { key: \"k\" value: 0 }\n")), AllOf(HasSubstr("r.txtpb:7"), HasSubstr("rest")));
+  EXPECT_THAT(robot_refusal(description("redundancy_joint: \"k\"\n")), HasSubstr("redundancy_joint"));
+  EXPECT_THAT(robot_refusal(description("", "\"j\", \"j\"")), HasSubstr("twice"));
+}
+
+TEST(RobotDescription, RestMustBeInsideTheLimits) {
+  EXPECT_THAT(robot_refusal(description("rest { key: \"j\" value: 1.5 }\n")), HasSubstr("outside"));
+}
+
+TEST(RobotDescription, LimitsMustBeCompleteAndOrdered) {
+  const auto limits = [](double comfort, double stop) {
+    const auto entry = [](const char* kind, double v) {
+      return std::string(kind) + " { joints: \"j\" velocity: " + std::to_string(v) + " acceleration: 4 jerk: 12 }\n";
+    };
+    return entry("comfort", comfort) + entry("guard", 2) + entry("stop", stop);
+  };
+  EXPECT_THAT(robot_refusal(description("", "\"j\"", limits(1, 2))), HasSubstr("acceleration"));
+  EXPECT_THAT(robot_refusal(description("", "\"j\"", limits(1.9, 2))), HasSubstr("guard / 1.1"));
+  EXPECT_THAT(robot_refusal(description("", "\"j\"", limits(0, 2))), HasSubstr("must be > 0"));
+  EXPECT_THAT(robot_refusal(description("", "\"j\"", "comfort { joints: \"j\" velocity: 1 acceleration: 2 jerk: 6 }\n")),
+              HasSubstr("guard has no entry for \"j\""));
+}
+
+TEST(RobotDescription, WhatMovesNeedsAMass) {
+  EXPECT_THAT(robot_refusal(description(),
+                            "<robot name=\"r\"><link name=\"base\"/>\n<link name=\"one\"/>" + joint("j", "base", "one") + "</robot>"),
+              AllOf(HasSubstr("r.urdf:2"), HasSubstr("mass > 0")));
+}
+
+TEST(RobotDescription, MissingUrdfIsMissing) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of<MissingError>([&] { RobotModel::load(folder.write("r.txtpb", description())); }),
+              AllOf(HasSubstr("r.txtpb:2"), HasSubstr("r.urdf")));
+}
+
+TEST(RobotDescription, SrdfNamesAreChecked) {
+  const TemporaryFolder folder;
+  folder.write("r.urdf", urdf(""));
+  folder.write("r.srdf", "<robot name=\"r\">\n<disable_collisions link1=\"base\" link2=\"ghost\"/></robot>");
+  EXPECT_THAT(message_of<ConfigError>([&] { RobotModel::load(folder.write("r.txtpb", description("srdf: \"r.srdf\"\n"))); }),
+              AllOf(HasSubstr("r.srdf:2"), HasSubstr("ghost")));
+}
+
+TEST(HandDescription, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  folder.write("r.urdf", urdf("<link name=\"two\"/>" + joint("k", "base", "two")));
+  const auto refusal = [&](const std::string& text) {
+    return message_of<ConfigError>([&] { HandModel::load(folder.write("h.txtpb", text)); });
+  };
+  const auto hand = [](const std::string& tip, const std::string& more) {
+    return "name: \"h\"\nurdf: \"r.urdf\"\nfingers { name: \"thumb\" joints: \"j\" tip_link: \"" + tip +
+           "\" tip_radius: 0.01 }\nfingers { name: \"fore\" joints: \"k\" tip_link: \"two\" tip_radius: 0.01 }\n" + more;
+  };
+  EXPECT_EQ(refusal(hand("one", "")), "no error");
+  EXPECT_THAT(refusal(hand("three", "")), HasSubstr("tip_link"));
+  EXPECT_THAT(refusal(hand("one", "pregrasp { key: \"x\" value: 0 }\n")), AllOf(HasSubstr("h.txtpb:5"), HasSubstr("pregrasp")));
+  EXPECT_THAT(refusal(hand("one", "contact_margin: 2\n")), HasSubstr("h.txtpb:5"));
+  EXPECT_THAT(refusal("name: \"h\"\nurdf: \"r.urdf\"\n"), HasSubstr("two fingers"));
+}
+
+TEST(ObjectDescription, SaysWhatIsWrong) {
+  const TemporaryFolder folder;
+  folder.write("o.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const auto load = [&](const std::string& text) { return ObjectModel::load(folder.write("o.txtpb", text)); };
+  const auto refusal = [&](const std::string& text) { return message_of<ConfigError>([&] { load(text); }); };
+  EXPECT_THAT(refusal("name: \"o\"\nmesh: \"o.obj\"\nmass: 0\n"), AllOf(HasSubstr("o.txtpb:3"), HasSubstr("mass must be > 0")));
+  EXPECT_THAT(refusal("name: \"o\"\nmass: 1\n"), HasSubstr("mesh is missing"));
+  EXPECT_THAT(refusal("name: \"o\"\nmesh: \"o.obj\"\nmass: 1\nparts { sphere: -1 }\n"), HasSubstr("o.txtpb:4"));
+  EXPECT_THAT(refusal("name: \"o\"\nmesh: \"o.obj\"\nmass: 1\nparts { }\n"), HasSubstr("needs a shape"));
+  EXPECT_THAT(message_of<MissingError>([&] { load("name: \"o\"\nmesh: \"p.obj\"\nmass: 1\n"); }), HasSubstr("p.obj"));
+  const auto object = load("name: \"o\"\nmesh: \"o.obj\"\nmass: 1\nscale { x: 0.1 y: 0.1 z: 0.1 }\n");
+  ASSERT_EQ(object.parts.size(), 1u);
+  EXPECT_LT((std::get<Box>(object.parts[0].shape).size - Vector3::Constant(0.1)).norm(), 1e-9);
+}
+
+TEST(ForeignRobots, Load) {
+  const char* data = std::getenv("HANDSEL_DATA");
+  const std::filesystem::path root = data != nullptr ? data : "";
+  if (data == nullptr || !std::filesystem::exists(root / "robots")) GTEST_SKIP() << "HANDSEL_DATA is not set or has no robots";
+  const auto panda = RobotModel::load_urdf(root / "robots/franka_panda/panda.urdf", root / "robots/franka_panda/panda.srdf");
+  EXPECT_EQ(panda.group("panda_arm")->axes.size(), 7u);
+  EXPECT_GE(panda.group("panda_arm")->tip, 0);
+  EXPECT_EQ(RobotModel::load_urdf(root / "robots/kuka_iiwa14/model.urdf").dof(), 7);
+  EXPECT_EQ(RobotModel::load_urdf(root / "robots/kuka_lwr4plus/urdf/lwr4plus_plain.urdf").dof(), 7);
+  EXPECT_EQ(RobotModel::load_urdf(root / "robots/pr2/urdf/pr2.urdf").dof(), 20);
+  EXPECT_THAT(message_of<ConfigError>([&] { RobotModel::load_urdf(root / "humans/bullet_humanoid/humanoid_capsules.urdf"); }),
+              HasSubstr("<capsule>"));
+}
+
+}  // namespace
+}  // namespace handsel
