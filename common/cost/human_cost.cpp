@@ -75,7 +75,7 @@ double simplified_distance(const SimplifiedBody& body, const Vector3& a, const V
   return std::min(head_distance(body, a, b), segment_to_cylinder(body, a, b)) - radius;
 }
 
-HumanCost::HumanCost(const RobotModel& robot, CostSettings settings) : robot_(robot), settings_(settings), tool_(robot.tool_link()) {
+HumanCost::HumanCost(const RobotModel& robot, CostSettings settings) : robot_(&robot), settings_(settings), tool_(robot.tool_link()) {
   std::vector<bool> moves(robot.links().size(), false);
   for (std::size_t i = 0; i < robot.links().size(); ++i) {
     const int joint = robot.links()[i].parent_joint;
@@ -101,7 +101,7 @@ CostParts HumanCost::parts(const Vector& q) const {
   CostParts worst;
   worst.distance = std::numeric_limits<double>::infinity();
   if (people_.people.empty()) return worst;
-  robot_.forward(q, links_);
+  robot_->forward(q, links_);
   const Vector3 p_tool = T_world_base_ * links_[tool_].translation();
   double most = -1;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {

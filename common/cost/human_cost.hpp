@@ -48,7 +48,7 @@ class HumanCost {
 
  private:
   double weighted(const CostParts&) const;
-  const RobotModel& robot_;
+  const RobotModel* robot_;
   CostSettings settings_;
   std::vector<LinkCapsule> capsules_;
   HumanState people_;

@@ -1,0 +1,156 @@
+#include "components/path_planner/node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/config/path_planner.pb.h"
+#include "common/config/resources.hpp"
+#include "common/cost/cost_settings.hpp"
+#include "components/path_planner/path_planner.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+config::PathPlannerSettings load(const NodeContext& context) {
+  config::PathPlannerSettings s;
+  load_text_proto(context.settings / "path_planner.txtpb", s);
+  for (double positive : {s.step(), s.verify_step(), s.connect_range(), s.transition_range(), s.initial_temperature(), s.search_share(),
+                          s.cost_step(), s.longest_edge(), s.check_time(), s.longest_time(), s.max_scene_age()})
+    if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share and the temperature must be > 0");
+  if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
+    throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
+  return s;
+}
+
+Settings core_settings(const config::PathPlannerSettings& s) {
+  Settings out;
+  out.step = s.step();
+  out.verify_step = s.verify_step();
+  out.connect_range = s.connect_range();
+  out.transition_range = s.transition_range();
+  out.initial_temperature = s.initial_temperature();
+  out.search_share = s.search_share();
+  out.cost_step = s.cost_step();
+  out.length_weight = s.length_weight();
+  out.smoothing_rounds = s.smoothing_rounds();
+  out.patience = s.patience();
+  out.longest_edge = s.longest_edge();
+  return out;
+}
+
+PathReply reply_of(const PathRequest& request, const Result& result) {
+  PathReply reply;
+  reply.id = request.id;
+  reply.solved = result.solved;
+  reply.reason = result.reason;
+  reply.goal = static_cast<std::uint32_t>(result.goal);
+  reply.path = result.path;
+  reply.cost = result.cost;
+  reply.length = result.length;
+  reply.checks = result.checks;
+  return reply;
+}
+
+}  // namespace
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : bus_(bus),
+      robot_(context.robot),
+      reply_out_(bus.advertise<PathReply>()),
+      world_(*context.robot, context.objects),
+      cost_(*context.robot, load_cost_settings(context.settings)) {
+  const config::PathPlannerSettings file = load(context);
+  settings_ = core_settings(file);
+  timing_ = {file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())};
+  bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
+  bus.subscribe<PathRequest>([this](const PathRequest& request, const Receipt&) { on_request(request); });
+}
+
+void Node::on_request(const PathRequest& request) {
+  switch (desk_.admit(request.id)) {
+    case RequestDesk::Admission::under_way:
+      return;
+    case RequestDesk::Admission::answered:
+      reply_out_->publish(*desk_.answer(request.id));
+      return;
+    case RequestDesk::Admission::superseded:
+      refuse(request, "superseded by a newer request of the same client");
+      return;
+    case RequestDesk::Admission::fresh:
+      break;
+  }
+  for (auto& [number, token] : running_[request.id.client]) token.cancel();
+  if (const std::string why = not_ready(); !why.empty()) {
+    refuse(request, why);
+    return;
+  }
+  if (robot_->group(request.group) == nullptr) {
+    refuse(request, "the robot has no group \"" + request.group + "\"");
+    return;
+  }
+  start(request);
+}
+
+std::string Node::not_ready() const {
+  if (!scene_ || bus_.lag<Scene>() > timing_.max_scene_age) return "no current scene is known";
+  if (!people_ || bus_.lag<HumanState>() > timing_.max_scene_age) return "no current state of people is known";
+  if (!scene_->robot_known) return "the robot's place is not known yet";
+  return {};
+}
+
+void Node::start(const PathRequest& request) {
+  struct Work {
+    PathRequest request;
+    Problem problem;
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const HumanState> people;
+    Result result;
+  };
+  auto work = std::make_shared<Work>();
+  work->request = request;
+  work->scene = scene_;
+  work->people = people_;
+  Problem& problem = work->problem;
+  problem.axes = robot_->group(request.group)->axes;
+  problem.start = request.start;
+  problem.goals = request.goals;
+  problem.planner = request.planner;
+  problem.seed = request.seed;
+  problem.straight = request.straight;
+  const double time = std::clamp(request.time_limit, 0.0, timing_.longest_time);
+  problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
+
+  const auto compute = [this, work](const CancelToken& token) {
+    world_.set_scene(*work->scene);
+    world_.set_people(*work->people);
+    world_.set_attachment(work->request.attachment, work->request.allowed_contacts);
+    cost_.set_people(*work->people);
+    cost_.set_base(work->scene->T_world_base);
+    const Hooks hooks{[&token] { return token.cancelled(); }, {}};
+    work->result = plan(*robot_, world_, cost_, work->problem, settings_, hooks);
+    return from_seconds(timing_.check_time * static_cast<double>(work->result.checks));
+  };
+  const auto answer = [this, work] {
+    const RequestId id = work->request.id;
+    auto& of_client = running_[id.client];
+    of_client.erase(id.number);
+    if (of_client.empty()) running_.erase(id.client);
+    PathReply reply = reply_of(work->request, work->result);
+    if (!reply.solved && reply.reason == "cancelled" && desk_.superseded(id))
+      reply.reason = "superseded by a newer request of the same client";
+    desk_.close(reply);
+    reply_out_->publish(reply);
+  };
+  running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, answer));
+}
+
+void Node::refuse(const PathRequest& request, const std::string& reason) {
+  PathReply reply;
+  reply.id = request.id;
+  reply.reason = reason;
+  desk_.close(reply);
+  reply_out_->publish(reply);
+}
+
+}  // namespace handsel::path_planner

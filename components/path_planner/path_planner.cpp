@@ -1,0 +1,233 @@
+#include "components/path_planner/path_planner.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "components/path_planner/search.hpp"
+#include "components/path_planner/smoothing.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+constexpr int kAttempts = 3;  // the fine check may refuse what the coarse one let pass; each attempt halves the step twice
+
+std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
+
+const char* name_of(PlannerKind kind) {
+  switch (kind) {
+    case PlannerKind::rrt:
+      return "rrt";
+    case PlannerKind::trrt:
+      return "trrt";
+    case PlannerKind::bitrrt:
+      return "bitrrt";
+    default:
+      return "rrtconnect";
+  }
+}
+
+std::string format(const char* pattern, double a, double b) {
+  char text[200];
+  std::snprintf(text, sizeof text, pattern, a, b);
+  return text;
+}
+
+/// Why the problem makes no sense, or empty.
+std::string contradiction(const RobotModel& robot, const Problem& problem) {
+  if (problem.start.size() != robot.dof())
+    return format("the start has %.0f axes, the robot has %.0f", static_cast<double>(problem.start.size()), robot.dof());
+  if (!problem.start.allFinite()) return "the start is not finite";
+  if (problem.axes.empty()) return "no axes to plan for";
+  for (int axis : problem.axes)
+    if (axis < 0 || axis >= robot.dof()) return format("axis %.0f is none of the robot's %.0f", axis, robot.dof());
+  if (problem.goals.empty()) return "no goal was given";
+  for (const Vector& goal : problem.goals) {
+    if (goal.size() != static_cast<Eigen::Index>(problem.axes.size()))
+      return format("a goal has %.0f axes, the group has %.0f", static_cast<double>(goal.size()), static_cast<double>(problem.axes.size()));
+    if (!goal.allFinite()) return "a goal is not finite";
+  }
+  if (problem.budget == 0) return "the time limit is zero";
+  return {};
+}
+
+void finish(const SearchSpace& space, Result& result) {
+  for (std::size_t i = 1; i < result.path.size(); ++i) {
+    result.cost += space.integral_cost(result.path[i - 1], result.path[i]);
+    result.work += space.work(result.path[i - 1], result.path[i]);
+  }
+  result.length = path_length(result.path);
+  result.solved = true;
+}
+
+double price(const SearchSpace& space, const std::vector<Vector>& path) {
+  double sum = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) sum += space.price(path[i - 1], path[i]);
+  return sum;
+}
+
+class Planning {
+ public:
+  Planning(SearchSpace& space, const Problem& problem, const Settings& settings) : space_(space), problem_(problem), settings_(settings) {}
+
+  Result run() {
+    if (!ends_free()) return result_;
+    if (problem_.straight) return straight_line();
+    for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
+      space_.set_step(settings_.step / (1 << (2 * attempt)));
+      if (!find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919)) return result_;
+      if (verified()) {
+        finish(space_, result_);
+        return result_;
+      }
+    }
+    if (result_.reason.empty() || space_.cancelled()) out_of_budget(0);
+    result_.path.clear();
+    return result_;
+  }
+
+ private:
+  bool ends_free() {
+    const Vector start = space_.start();
+    if (std::string why = space_.outside_limits(start); !why.empty()) return refuse("the start: " + why);
+    const CollisionVerdict at_start = space_.verdict(start);
+    if (!at_start.free) return refuse("the start is in collision: " + contact(at_start));
+    std::string first;
+    for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
+      std::string why = space_.outside_limits(problem_.goals[i]);
+      if (why.empty()) {
+        const CollisionVerdict verdict = space_.verdict(problem_.goals[i]);
+        if (verdict.free) {
+          goals_.push_back(problem_.goals[i]);
+          goal_index_.push_back(i);
+          continue;
+        }
+        why = "in collision: " + contact(verdict);
+      }
+      if (first.empty()) first = why;
+      if (problem_.straight) break;
+    }
+    if (goals_.empty())
+      return refuse((problem_.goals.size() == 1 || problem_.straight
+                         ? "the goal is not possible, "
+                         : "none of the " + std::to_string(problem_.goals.size()) + " goals is possible, the first ") +
+                    first);
+    return true;
+  }
+
+  Result straight_line() {
+    result_.path = {space_.start(), goals_.front()};
+    result_.goal = goal_index_.front();
+    result_.planner = "straight";
+    const CollisionVerdict verdict = space_.motion_verdict(result_.path[0], result_.path[1], settings_.verify_step);
+    if (!verdict.free) {
+      result_.path.clear();
+      refuse("the straight line is blocked: " + contact(verdict));
+      return result_;
+    }
+    finish(space_, result_);
+    return result_;
+  }
+
+  bool find(std::uint64_t seed) {
+    space_.enter(Stage::search);
+    const Vector start = space_.start();
+    std::vector<Vector> direct;
+    for (std::size_t i = 0; i < goals_.size() && direct.empty(); ++i)
+      if (space_.motion_free(start, goals_[i])) {
+        direct = {start, goals_[i]};
+        result_.goal = goal_index_[i];
+      }
+    const bool people = space_.concerns_people();
+    const bool asked = problem_.planner != PlannerKind::automatic;
+    Found found;
+    if (!direct.empty() && !asked && !people) {
+      result_.path = direct;
+      result_.planner = "straight";
+    } else {
+      PlannerKind kind = asked ? problem_.planner : people ? PlannerKind::bitrrt : PlannerKind::rrt_connect;
+      if (!asked && kind == PlannerKind::bitrrt)
+        space_.limit(space_.checks() +
+                     static_cast<std::uint64_t>(settings_.search_share *
+                                                static_cast<double>(problem_.budget - std::min(problem_.budget, space_.checks()))));
+      found = search(space_, goals_, kind, seed);
+      space_.limit(problem_.budget);
+      if (found.path.empty() && !asked && kind == PlannerKind::bitrrt && !space_.exhausted() && direct.empty()) {
+        kind = PlannerKind::rrt_connect;
+        found = search(space_, goals_, kind, seed + 1);
+      }
+      if (found.path.empty() && direct.empty()) return out_of_budget(found.closest);
+      if (found.path.empty()) {
+        result_.path = direct;
+        result_.planner = "straight";
+      } else {
+        result_.path = found.path;
+        result_.goal = goal_index_[found.goal];
+        result_.planner = name_of(kind);
+      }
+    }
+    space_.enter(Stage::smooth);
+    Random random(seed);
+    smooth(space_, result_.path, random);
+    if (people && !direct.empty() && result_.path != direct) {
+      const std::size_t other = result_.goal;
+      std::vector<Vector> smoothed = direct;
+      smooth(space_, smoothed, random);
+      if (price(space_, smoothed) < price(space_, result_.path)) {
+        result_.path = smoothed;
+        result_.planner = "straight";
+        for (std::size_t i = 0; i < goals_.size(); ++i)
+          if (goals_[i] == smoothed.back()) result_.goal = goal_index_[i];
+      } else {
+        result_.goal = other;
+      }
+    }
+    prune(space_, result_.path);
+    return true;
+  }
+
+  bool verified() {
+    space_.enter(Stage::verify);
+    for (std::size_t i = 1; i < result_.path.size(); ++i) {
+      const CollisionVerdict verdict = space_.motion_verdict(result_.path[i - 1], result_.path[i], settings_.verify_step);
+      if (verdict.free) continue;
+      result_.reason = "every path found fails the fine check: " + contact(verdict);
+      return false;
+    }
+    result_.reason.clear();
+    return true;
+  }
+
+  bool refuse(const std::string& why) {
+    result_.reason = why;
+    return false;
+  }
+
+  bool out_of_budget(double closest) {
+    result_.path.clear();
+    if (space_.cancelled()) return refuse("cancelled");
+    return refuse(format("no path within %.0f checks; the search came within %.3f rad of joining start and goal",
+                         static_cast<double>(problem_.budget), closest));
+  }
+
+  SearchSpace& space_;
+  const Problem& problem_;
+  const Settings& settings_;
+  std::vector<Vector> goals_;
+  std::vector<std::size_t> goal_index_;
+  Result result_;
+};
+
+}  // namespace
+
+Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem, const Settings& settings,
+            const Hooks& hooks) {
+  Result result;
+  result.reason = contradiction(robot, problem);
+  if (!result.reason.empty()) return result;
+  SearchSpace space(robot, world, cost, problem, settings, hooks);
+  result = Planning(space, problem, settings).run();
+  result.checks = space.checks();
+  return result;
+}
+
+}  // namespace handsel::path_planner

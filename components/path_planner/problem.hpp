@@ -1,0 +1,58 @@
+// What the path planner is asked, and what it answers. Plain data.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/messages/planning.hpp"
+
+namespace handsel::path_planner {
+
+struct Settings {
+  double step{0.02};                 ///< states along a motion are judged at least this close while searching [rad, max norm]
+  double verify_step{0.002};         ///< and this close on the path that is returned [rad]
+  double connect_range{1.5};         ///< longest edge of RRT and RRT-Connect [rad]
+  double transition_range{0.3};      ///< longest edge of T-RRT and BiT-RRT [rad]
+  double initial_temperature{0.02};  ///< of the transition test, in units of cost
+  double search_share{0.7};          ///< of the budget for the first planner; the rest is for RRT-Connect when it finds nothing
+  double cost_step{0.1};             ///< spacing of cost samples along a motion [rad]
+  double length_weight{0.05};        ///< cost of a radian where no person is concerned
+  int smoothing_rounds{120};         ///< shortcuts and perturbations tried
+  int patience{40};                  ///< stop smoothing after this many in a row without gain
+  double longest_edge{0.6};          ///< l_max: a perturbation replaces at most this much of the path to either side [rad]
+};
+
+/// One planning problem. Everything a result depends on is in here, in the collision world and in the cost.
+struct Problem {
+  std::vector<int> axes;      ///< robot axes to plan for, in the order of `goals`
+  Vector start;               ///< all axes of the robot [rad]
+  std::vector<Vector> goals;  ///< alternatives, `axes` only [rad]
+  PlannerKind planner{PlannerKind::automatic};
+  std::uint64_t seed{1};
+  std::uint64_t budget{100000};  ///< states that may be judged
+  bool straight{};               ///< only the line from start to goals[0], checked
+};
+
+enum class Stage { search, smooth, verify };
+
+/// Where a caller looks in while planning runs. Both may be empty.
+struct Hooks {
+  std::function<bool()> cancelled;     ///< asked between checks; true ends the plan
+  std::function<void(Stage)> entered;  ///< a stage begins
+};
+
+struct Result {
+  bool solved{};
+  std::string reason;        ///< why not, one sentence
+  std::size_t goal{};        ///< index of the goal reached
+  std::vector<Vector> path;  ///< `axes` only; front() = start, back() = goals[goal]
+  double cost{};             ///< integral of the human-aware cost along the path [rad]
+  double work{};             ///< mechanical work: sum of the rises of the cost
+  double length{};           ///< joint-space length, Euclidean [rad]
+  std::uint64_t checks{};    ///< states judged
+  std::string planner;       ///< that found it
+};
+
+}  // namespace handsel::path_planner

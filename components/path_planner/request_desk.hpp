@@ -1,0 +1,58 @@
+// Who asked what: makes asking twice harmless and lets a newer request of a client replace its older ones. Pure.
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/messages/planning.hpp"
+
+namespace handsel::path_planner {
+
+class RequestDesk {
+ public:
+  /// Remembers this many answers.
+  explicit RequestDesk(std::size_t remembered = 64) : remembered_(remembered) {}
+
+  enum class Admission {
+    fresh,       ///< plan it
+    under_way,   ///< asked before, the answer will come
+    answered,    ///< asked before, see `answer`
+    superseded,  ///< the client has asked something newer since
+  };
+  Admission admit(const RequestId& id) {
+    if (answer(id) != nullptr) return Admission::answered;
+    for (const RequestId& open : open_)
+      if (open == id) return Admission::under_way;
+    std::uint64_t& newest = newest_[id.client];
+    if (id.number < newest) return Admission::superseded;
+    newest = id.number;
+    open_.push_back(id);
+    return Admission::fresh;
+  }
+  bool superseded(const RequestId& id) const {
+    const auto found = newest_.find(id.client);
+    return found != newest_.end() && found->second > id.number;
+  }
+  void close(const PathReply& reply) {
+    std::erase(open_, reply.id);
+    answers_.push_back(reply);
+    if (answers_.size() > remembered_) answers_.pop_front();
+  }
+  const PathReply* answer(const RequestId& id) const {
+    for (const PathReply& reply : answers_)
+      if (reply.id == id) return &reply;
+    return nullptr;
+  }
+  const std::vector<RequestId>& open() const { return open_; }
+
+ private:
+  std::size_t remembered_;
+  std::vector<RequestId> open_;
+  std::deque<PathReply> answers_;
+  std::map<std::uint64_t, std::uint64_t> newest_;
+};
+
+}  // namespace handsel::path_planner

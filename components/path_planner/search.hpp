@@ -1,0 +1,20 @@
+// The random search for a first path: OMPL's RRT, RRT-Connect and BiT-RRT on our space, samples, checks and
+// costs, and our T-RRT.
+#pragma once
+
+#include "components/path_planner/search_space.hpp"
+
+namespace handsel::path_planner {
+
+struct Found {
+  std::vector<Vector> path;  ///< empty when nothing was found
+  std::size_t goal{};        ///< index into `goals`
+  double closest{};          ///< least distance between the two trees, or tree and goals, when nothing was found [rad]
+  std::size_t nodes{};       ///< of the tree or trees
+};
+
+/// All goals must be free. Ends when the space is exhausted. The same seed gives the same path, also with other searches before it in the
+/// same process: no random number comes from OMPL's own generator.
+Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind planner, std::uint64_t seed);
+
+}  // namespace handsel::path_planner

@@ -1,0 +1,73 @@
+// The configuration space of one problem: which states and motions are free, what they cost, and how much budget is left.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/collision/collision_world.hpp"
+#include "common/cost/human_cost.hpp"
+#include "components/path_planner/problem.hpp"
+
+namespace handsel::path_planner {
+
+class SearchSpace {
+ public:
+  /// Bounds of unlimited axes are start +- 2 pi.
+  SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem, const Settings& settings,
+              const Hooks& hooks);
+
+  int size() const { return static_cast<int>(problem_.axes.size()); }
+  const Vector& lower() const { return lower_; }
+  const Vector& upper() const { return upper_; }
+  const Problem& problem() const { return problem_; }
+  const Settings& settings() const { return settings_; }
+  Vector start() const { return part(problem_.start); }
+  bool concerns_people() const { return cost_.anyone(); }
+
+  /// Empty when inside the position limits, else which axis is not and by how much.
+  std::string outside_limits(const Vector& q) const;
+  bool inside(const Vector& q) const;
+  CollisionVerdict verdict(const Vector& q);
+  bool free(const Vector& q);
+  CollisionVerdict motion_verdict(const Vector& from, const Vector& to, double step);
+  bool motion_free(const Vector& from, const Vector& to) { return motion_verdict(from, to, step_).free; }
+  void set_step(double step) { step_ = step; }
+  double step() const { return step_; }
+
+  double cost(const Vector& q) const;                                ///< of one state, [0, 1]
+  double integral_cost(const Vector& from, const Vector& to) const;  ///< along a motion [rad]
+  double work(const Vector& from, const Vector& to) const;           ///< rises of the cost along a motion
+  /// What smoothing makes smaller: integral cost and length_weight times the length.
+  double price(const Vector& from, const Vector& to) const;
+
+  std::uint64_t checks() const { return world_.checks() - checks_before_ + charged_; }
+  void charge(std::uint64_t checks) { charged_ += checks; }  ///< work that counts like that many checks
+  bool cancelled() const { return hooks_.cancelled && hooks_.cancelled(); }
+  bool exhausted() const { return checks() >= limit_ || cancelled(); }
+  void limit(std::uint64_t checks) { limit_ = checks; }  ///< budget counted from the beginning
+  void enter(Stage stage) const {
+    if (hooks_.entered) hooks_.entered(stage);
+  }
+
+ private:
+  Vector part(const Vector& all) const;
+  const Vector& whole(const Vector& q) const;
+  template <class F>
+  void along(const Vector& from, const Vector& to, F&& visit) const;
+
+  const RobotModel& robot_;
+  CollisionWorld& world_;
+  const HumanCost& cost_;
+  const Problem& problem_;
+  const Settings& settings_;
+  const Hooks& hooks_;
+  Vector lower_, upper_;
+  mutable Vector all_, all_to_;
+  std::uint64_t checks_before_{}, limit_{}, charged_{};
+  double step_{};
+};
+
+/// Euclidean length of a broken line [rad].
+double path_length(const std::vector<Vector>& path);
+
+}  // namespace handsel::path_planner

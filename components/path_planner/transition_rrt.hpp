@@ -1,0 +1,11 @@
+// T-RRT as the chapter's section 4.1.1 describes it: an RRT whose new states must pass a transition test on their cost. OMPL's own
+// cools so fast that it often finds nothing on our costs; its BiT-RRT does well and is used as it is.
+#pragma once
+
+#include "components/path_planner/search.hpp"
+
+namespace handsel::path_planner {
+
+Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_t seed);
+
+}  // namespace handsel::path_planner
