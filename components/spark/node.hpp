@@ -5,6 +5,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
+#include "common/messages/attention.hpp"
 #include "components/spark/fact_finder.hpp"
 #include "components/spark/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
