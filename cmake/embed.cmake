@@ -1,0 +1,15 @@
+# cmake -DOUT=x.cpp -DFILES="a;b" -P embed.cmake: writes handsel::bridge::page_files(), the files' names and bytes.
+set(arrays "")
+set(rows "")
+set(number 0)
+foreach(file ${FILES})
+  get_filename_component(name ${file} NAME)
+  file(READ ${file} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
+  string(APPEND arrays "const unsigned char file_${number}[] = {${bytes}0};\n")
+  string(APPEND rows "      {\"/${name}\", std::string_view(reinterpret_cast<const char*>(file_${number}), sizeof file_${number} - 1)},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${OUT}.new "#include \"components/bridge/http_server.hpp\"\n\nnamespace handsel::bridge {\nnamespace {\n${arrays}}  // namespace\n
+PageFiles page_files() {\n  return {\n${rows}  };\n}\n}  // namespace handsel::bridge\n")
+file(RENAME ${OUT}.new ${OUT})
