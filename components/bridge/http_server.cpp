@@ -9,6 +9,7 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/version.hpp>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <thread>
@@ -95,7 +96,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     auto response = std::make_shared<Response>(status, version);
     response->set(http::field::server, "handsel");
     response->set(http::field::content_type, type);
-    response->set(http::field::content_security_policy, kPolicy);
+    response->set("Content-Security-Policy", kPolicy);
     response->set(http::field::cache_control, "no-store");
     response->set("X-Content-Type-Options", "nosniff");
     response->set("Referrer-Policy", "no-referrer");
@@ -139,7 +140,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     head_.emplace(http::status::ok, version);
     head_->set(http::field::content_type, "text/event-stream");
     head_->set(http::field::cache_control, "no-store");
-    head_->set(http::field::content_security_policy, kPolicy);
+    head_->set("Content-Security-Policy", kPolicy);
     head_->keep_alive(false);
     serializer_.emplace(*head_);
     expire();
