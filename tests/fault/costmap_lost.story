@@ -1,0 +1,13 @@
+# The costmap dies while the arm moves: the validated trajectory is finished, the process comes back, the task is done.
+start give_mug seed 9
+wait ready within 15s
+task give mug
+wait phase approach within 30s
+wait moving within 5s
+kill -9 costmap
+expect status names costmap within 1s
+expect back costmap within 5s
+expect task done within 80s
+expect handover
+expect no limit violations
+stop

@@ -1,0 +1,102 @@
+// The command as its user meets it: exit codes, one sentence for each mistake, no process left behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/shell.hpp"
+
+namespace handsel::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kHandsel = HANDSEL_COMMAND;
+const std::string kDomain = " --domain 39";
+
+int processes_running() { return std::atoi(shell("ps -eo args | grep -c '[b]in/handsel_.*--domain 39'").out.c_str()); }
+
+/// One sentence, exit code, nothing left.
+void expect_refusal(const std::string& arguments, int exit_code, const std::string& says) {
+  SCOPED_TRACE(arguments);
+  const Outcome outcome = shell(kHandsel + " " + arguments);
+  EXPECT_EQ(outcome.exit_code, exit_code) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr(says));
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_EQ(processes_running(), 0);
+}
+
+struct TemporaryFile {
+  explicit TemporaryFile(const std::string& text) { std::ofstream(path) << text; }
+  ~TemporaryFile() { std::filesystem::remove(path); }
+  std::filesystem::path path = std::filesystem::temp_directory_path() / ("handsel-test-" + std::to_string(getpid()) + ".txtpb");
+};
+
+TEST(Command, wrong_usage_is_one_sentence) {
+  expect_refusal("", 2, "subcommand");
+  expect_refusal("dance", 2, "dance");
+  expect_refusal("run --scenario give_mug --sed 3", 2, "--sed");
+  expect_refusal("up --domain 300", 2, "300");
+  expect_refusal("task give", 2, "object");
+  expect_refusal("speed 120", 2, "120");
+  expect_refusal("topic hz nonsense" + kDomain, 2, "nonsense");
+}
+
+TEST(Command, help_is_an_answer) {
+  for (const char* command : {"", "up", "run", "task", "task give", "story", "speed", "status", "topic", "topic hz", "doctor", "eval"}) {
+    const Outcome outcome = shell(kHandsel + " " + command + " --help");
+    EXPECT_EQ(outcome.exit_code, 0) << command;
+    EXPECT_THAT(outcome.out, HasSubstr("--help")) << command;
+  }
+}
+
+TEST(Command, what_is_not_there_is_named_before_anything_starts) {
+  expect_refusal("run --scenario nowhere" + kDomain, 3, "nowhere");
+  expect_refusal("up --robot nobody" + kDomain, 3, "nobody");
+  expect_refusal("story nothing.story", 3, "nothing.story");
+  const TemporaryFile scenario("name: \"x\" objects { id: \"a\" model: \"unknown_thing\" } tasks { kind: \"give\" object: \"a\" }");
+  expect_refusal("run --scenario " + scenario.path.string() + kDomain, 3, "unknown_thing");
+}
+
+TEST(Command, a_wrong_scenario_is_named_with_file_and_line) {
+  const TemporaryFile unknown_key("name: \"x\"\nbanana: 3\n");
+  expect_refusal("run --scenario " + unknown_key.path.string() + kDomain, 2, unknown_key.path.string() + ":2");
+}
+
+TEST(Command, a_wrong_joint_name_is_named) {
+  const TemporaryFile scenario("name: \"x\" start { key: \"elbow_of_nobody\" value: 1 } tasks { kind: \"give\" object: \"mug\" }");
+  expect_refusal("run --scenario " + scenario.path.string() + kDomain, 2, "elbow_of_nobody");
+}
+
+TEST(Command, a_scenario_without_tasks_cannot_be_performed) {
+  const TemporaryFile scenario("name: \"x\"\n");
+  expect_refusal("run --scenario " + scenario.path.string() + kDomain, 2, "no tasks");
+}
+
+TEST(Command, asking_an_empty_domain_says_that_nothing_runs_there) {
+  for (const char* command : {"status", "task give mug", "speed 50", "task cancel"}) expect_refusal(command + kDomain, 3, "domain 39");
+}
+
+TEST(Command, topics_are_listed_as_json_lines) {
+  const Outcome outcome = shell(kHandsel + " topic list");
+  EXPECT_EQ(outcome.exit_code, 0);
+  std::istringstream lines(outcome.out);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) EXPECT_FALSE(nlohmann::json::parse(line)["topic"].get<std::string>().empty());
+  EXPECT_GT(count, 25);
+}
+
+TEST(Command, a_domain_in_use_is_refused_and_the_system_there_lives_on) {
+  const Outcome outcome = shell(kHandsel + " up --headless --port 0" + kDomain + " >/dev/null 2>&1 & up=$!; " +                      //
+                                "for i in $(seq 100); do " + kHandsel + " status" + kDomain + " >/dev/null 2>&1 && break; done; " +  //
+                                kHandsel + " run --scenario give_mug" + kDomain + "; code=$?; " +                                    //
+                                kHandsel + " status" + kDomain + "; kill -INT $up; wait $up; echo $code $?");
+  EXPECT_THAT(outcome.err, HasSubstr("domain 39 is in use"));
+  EXPECT_THAT(outcome.out, HasSubstr("\"component\":\"supervisor\""));
+  EXPECT_THAT(outcome.out, testing::EndsWith("2 0\n"));
+  EXPECT_EQ(processes_running(), 0);
+}
+
+}  // namespace
+}  // namespace handsel::test
