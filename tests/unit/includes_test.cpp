@@ -88,7 +88,9 @@ TEST(Includes, only_the_simulator_knows_physics_and_only_the_bridge_knows_http) 
         EXPECT_FALSE(starts_with(include.target, "bullet/") || starts_with(include.target, "bt") || starts_with(include.target, "Bullet"))
             << where(include);
       }
-      if (!starts_with(include.file, "components/bridge/")) EXPECT_FALSE(starts_with(include.target, "boost/beast")) << where(include);
+      if (!starts_with(include.file, "components/bridge/")) {
+        EXPECT_FALSE(starts_with(include.target, "boost/beast")) << where(include);
+      }
     }
   }
 }
