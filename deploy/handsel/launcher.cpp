@@ -8,7 +8,6 @@
 #include <sys/pidfd.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -46,12 +45,6 @@ std::filesystem::path state_directory() {
 }
 
 }  // namespace
-
-TimePoint monotonic_now() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return TimePoint(std::chrono::seconds(t.tv_sec) + Duration(t.tv_nsec));
-}
 
 struct Launcher::Child {
   ProcessSpec spec;

@@ -13,12 +13,11 @@
 #include <vector>
 
 #include "common/base/time.hpp"
+#include "common/bus/executor.hpp"
 #include "deploy/handsel/processes.hpp"
 
 namespace handsel {
 
-/// CLOCK_MONOTONIC as a TimePoint; the clock DdsBus judges ages on.
-TimePoint monotonic_now();
 
 /// A process as it stands.
 struct ProcessStatus {
