@@ -5,8 +5,8 @@
 #include <signal.h>
 #include <sys/eventfd.h>
 #include <sys/file.h>
-#include <sys/pidfd.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -126,7 +126,7 @@ void Launcher::start(Child& child) {
     return;
   }
   child.pid = pid;
-  child.pid_fd = pidfd_open(pid, 0);
+  child.pid_fd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   child.started = monotonic_now();
   ++child.starts;
 }

@@ -18,7 +18,6 @@
 
 namespace handsel {
 
-
 /// A process as it stands.
 struct ProcessStatus {
   std::string name;

@@ -16,7 +16,9 @@ int main(int argc, char** argv) {
   handsel::add_status_command(app, exit_code);
   handsel::add_topic_commands(app, exit_code);
   handsel::add_doctor_command(app, exit_code);
+#ifdef HANDSEL_EVAL_COMMAND
   handsel::add_eval_command(app, exit_code);
+#endif
 #ifdef HANDSEL_TRAJECTORY_COMMAND
   handsel::add_trajectory_commands(app, exit_code);
 #endif

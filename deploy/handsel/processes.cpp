@@ -17,8 +17,8 @@ int default_domain() {
   int domain = -1;
   const std::string value = text;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), domain);
-  if (error != std::errc() || end != value.data() + value.size() || domain < 0 || domain > 232) {
-    throw ConfigError("HANDSEL_DOMAIN is \"" + value + "\"; it must be a number from 0 to 232");
+  if (error != std::errc() || end != value.data() + value.size() || domain < 0 || domain > 230) {
+    throw ConfigError("HANDSEL_DOMAIN is \"" + value + "\"; it must be a number from 0 to 230");
   }
   return domain;
 }

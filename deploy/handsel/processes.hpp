@@ -23,14 +23,14 @@ struct ProcessSpec {
 
 /// What the whole system is started with.
 struct SystemOptions {
-  int domain{0};      ///< DDS domain, 0..232
+  int domain{0};      ///< DDS domain, 0..230
   std::string robot;  ///< empty: the scenario's
   std::string scenario{"give_mug"};
   std::uint64_t seed{1};
   int web_port{-1};  ///< of the bridge; 0: any free one; -1: as its settings say
 };
 
-/// The default domain: $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number in 0..232.
+/// The default domain: $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number in 0..230.
 int default_domain();
 /// One ProcessSpec for each of kProcesses; throws MissingError naming the first binary that is not beside this one.
 std::vector<ProcessSpec> system_processes(const SystemOptions&);

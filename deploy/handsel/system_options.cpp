@@ -12,7 +12,7 @@ namespace handsel {
 
 void add_domain_option(CLI::App& command, int& domain) {
   domain = default_domain();
-  command.add_option("--domain", domain, "DDS domain (default: HANDSEL_DOMAIN, else 0)")->check(CLI::Range(0, 232));
+  command.add_option("--domain", domain, "DDS domain (default: HANDSEL_DOMAIN, else 0)")->check(CLI::Range(0, 230));
 }
 
 void add_system_options(CLI::App& command, SystemOptions& options) {

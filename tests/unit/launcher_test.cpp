@@ -115,7 +115,7 @@ TEST_F(LauncherTest, children_die_with_a_launcher_that_was_killed) {
 }
 
 TEST_F(LauncherTest, a_domain_is_held_by_one_system_at_a_time) {
-  const int domain = 231;
+  const int domain = 229;
   {
     const DomainLock first(domain);
     EXPECT_THROW(DomainLock second(domain), ConfigError);
