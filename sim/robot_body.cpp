@@ -24,7 +24,7 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
   const int n = bodies();
   qd_ = Vector::Zero(model.dof());
   effort_ = Vector::Zero(model.dof());
-  force_.resize(n), moment_.resize(n), alpha_.resize(n), acc_.resize(n);
+  force_.resize(n), moment_.resize(n), alpha_.resize(n), acc_.resize(n), wanted_.resize(n);
 
   multibody_ = std::make_unique<btMultiBody>(n, 1.0, btVector3(1, 1, 1), true, false);
   multibody_->setBaseWorldTransform(to_bt(T_world_base));
@@ -75,9 +75,6 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
       world_.addCollisionObject(b.collider.get(), group, mask);
       multibody_->getLink(i).m_collider = b.collider.get();
     }
-    b.motor = std::make_unique<btMultiBodyJointMotor>(multibody_.get(), i, 0.0, 0.0);
-    b.motor->finalizeMultiDof();
-    world_.addMultiBodyConstraint(b.motor.get());
   }
   btAlignedObjectArray<btQuaternion> rotations;
   btAlignedObjectArray<btVector3> origins;
@@ -85,11 +82,11 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
   multibody_->updateCollisionObjectWorldTransforms(rotations, origins);
   T_world_link_.resize(model.links().size());
   forward();
+  soften_fingers();
 }
 
 RobotBody::~RobotBody() {
   for (Body& b : bodies_) {
-    world_.removeMultiBodyConstraint(b.motor.get());
     if (b.collider) world_.removeCollisionObject(b.collider.get());
   }
   world_.removeMultiBody(multibody_.get());
@@ -141,17 +138,73 @@ void RobotBody::lump(const RobotModel& model) {
   }
 }
 
-void RobotBody::drive(const Vector& position, const Vector& velocity, const Vector& acceleration, double dt) {
-  inverse_dynamics(acceleration);
+// Stiffness in proportion to what a joint moves, as high as the torque limits and the fastest motion of the finger allow; Rayleigh damping.
+void RobotBody::soften_fingers() {
+  const int palm = model_.tool_link() < 0 ? -1 : body_of_link_[model_.tool_link()];
+  if (palm < 0) return;
+  std::vector<std::vector<int>> fingers;
   for (int i = 0; i < bodies(); ++i) {
     Body& b = bodies_[i];
-    const double forward = std::clamp(b.feed_forward, -b.limit, b.limit);
-    b.feed_forward = forward;
-    multibody_->addJointTorque(i, forward);
-    const double want = b.factor * position[b.dof] + b.offset;
-    const double error = want - multibody_->getJointPos(i);
-    b.motor->setVelocityTarget(b.factor * velocity[b.dof] + settings_.bandwidth * error);
-    b.motor->setMaxAppliedImpulse((b.limit - std::abs(forward)) * dt);
+    if (b.parent < 0 || (b.parent != palm && bodies_[b.parent].finger < 0)) continue;
+    b.finger = b.parent == palm ? static_cast<int>(fingers.size()) : bodies_[b.parent].finger;
+    if (b.parent == palm) fingers.emplace_back();
+    fingers[b.finger].push_back(i);
+  }
+  const double fastest = settings_.finger_bandwidth;
+  for (const std::vector<int>& finger : fingers) {
+    const auto n = static_cast<Eigen::Index>(finger.size());
+    const Eigen::MatrixXd M = mass_matrix(finger);
+    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    double quickest = 2 * fastest * fastest;
+    for (double share = 1; quickest > fastest * fastest; share *= 0.8) {
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const Body& b = bodies_[finger[i]];
+        K(i, i) = std::min(b.limit / (settings_.finger_travel * (b.prismatic ? 0.01 : 1)), share * M(i, i) * fastest * fastest);
+      }
+      quickest = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(K, M, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      bodies_[finger[i]].stiffness = K(i, i);
+      bodies_[finger[i]].damping = K(i, i) / fastest;
+    }
+  }
+}
+
+// By unit accelerations at rest; gravity falls out of the difference.
+Eigen::MatrixXd RobotBody::mass_matrix(const std::vector<int>& of) {
+  const auto n = static_cast<Eigen::Index>(of.size());
+  Eigen::MatrixXd M(n, n);
+  std::fill(wanted_.begin(), wanted_.end(), 0.0);
+  inverse_dynamics(wanted_);
+  Eigen::VectorXd rest(n);
+  for (Eigen::Index i = 0; i < n; ++i) rest[i] = bodies_[of[i]].torque;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    wanted_[of[k]] = 1;
+    inverse_dynamics(wanted_);
+    wanted_[of[k]] = 0;
+    for (Eigen::Index i = 0; i < n; ++i) M(i, k) = bodies_[of[i]].torque - rest[i];
+  }
+  return (M + M.transpose()) / 2 + 1e-9 * Eigen::MatrixXd::Identity(n, n);
+}
+
+void RobotBody::drive(const Vector& position, const Vector& velocity, const Vector& acceleration) {
+  const double w = settings_.bandwidth;
+  for (int i = 0; i < bodies(); ++i) {
+    const Body& b = bodies_[i];
+    wanted_[i] = b.factor * acceleration[b.dof];
+    wanted_[i] += 2 * w * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
+    if (b.finger >= 0) continue;
+    wanted_[i] += w * w * std::clamp(b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i), -0.1, 0.1);
+  }
+  inverse_dynamics(wanted_);
+  for (int i = 0; i < bodies(); ++i) {
+    Body& b = bodies_[i];
+    if (b.finger >= 0) {
+      b.torque += b.stiffness * (b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i)) +
+                  b.damping * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
+    }
+    b.torque = std::clamp(b.torque, -b.limit, b.limit);
+    multibody_->addJointTorque(i, b.torque);
   }
 }
 
@@ -162,7 +215,7 @@ void RobotBody::push(int body, const Vector3& point, const Wrench& wrench) {
   multibody_->addLinkTorque(body, to_bt(Vector3(wrench.torque + (point - com).cross(wrench.force))));
 }
 
-void RobotBody::read(double dt) {
+void RobotBody::read() {
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
     if (model_.axes()[b.dof].joint != model_.links()[b.link].parent_joint) continue;
@@ -172,7 +225,7 @@ void RobotBody::read(double dt) {
   effort_.setZero();
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
-    effort_[b.dof] += b.factor * (b.feed_forward + b.motor->getAppliedImpulse(0) / dt);
+    effort_[b.dof] += b.factor * b.torque;
   }
   forward();
 }
@@ -205,12 +258,12 @@ void RobotBody::forward() {
 }
 
 // Newton and Euler in world axes about each body's frame origin, at the present velocities and the wanted accelerations.
-void RobotBody::inverse_dynamics(const Vector& acceleration) {
+void RobotBody::inverse_dynamics(const std::vector<double>& acceleration) {
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
     const Vector3 p = b.T_world.translation();
     const Vector3 axis = b.T_world.linear() * b.axis;
-    const double qdd = b.factor * acceleration[b.dof], qd = multibody_->getJointVel(i);
+    const double qdd = acceleration[i], qd = multibody_->getJointVel(i);
     Vector3 w0 = Vector3::Zero(), alpha0 = Vector3::Zero(), a0 = Vector3(0, 0, kGravity), r = Vector3::Zero();
     if (b.parent >= 0) {
       w0 = bodies_[b.parent].omega;
@@ -230,7 +283,7 @@ void RobotBody::inverse_dynamics(const Vector& acceleration) {
   for (int i = bodies() - 1; i >= 0; --i) {
     Body& b = bodies_[i];
     const Vector3 axis = b.T_world.linear() * b.axis;
-    b.feed_forward = b.prismatic ? axis.dot(force_[i]) : axis.dot(moment_[i]);
+    b.torque = b.prismatic ? axis.dot(force_[i]) : axis.dot(moment_[i]);
     if (b.parent < 0) continue;
     const Vector3 r = b.T_world.translation() - bodies_[b.parent].T_world.translation();
     force_[b.parent] += force_[i];

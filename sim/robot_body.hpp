@@ -6,7 +6,6 @@
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
-#include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 
 #include "common/model/robot_model.hpp"
@@ -14,9 +13,14 @@
 
 namespace handsel::sim {
 
+/// Arm and head: computed torque, so that the references are followed without sag. Joints of the hand (beyond the tool's body):
+/// impedance, so that a finger stopped by an object presses with a torque that grows with the distance to its reference. Both within the
+/// torque limits.
 struct ServoSettings {
-  double bandwidth{60.0};       ///< of the position loop [1/s]
-  double default_effort{50.0};  ///< [Nm] where the model gives none
+  double bandwidth{60.0};        ///< of the computed-torque loop [rad/s]
+  double finger_bandwidth{600};  ///< of the fastest motion of a free finger [rad/s]; below the physics rate
+  double finger_travel{0.5};     ///< a finger presses with its whole torque at this distance [rad] (a hundredth of it in m)
+  double default_effort{50.0};   ///< where the model gives none [Nm]
 };
 
 class RobotBody {
@@ -26,11 +30,11 @@ class RobotBody {
   ~RobotBody();
 
   /// Set-points of all axes for the coming step. Coupled joints follow their axis.
-  void drive(const Vector& position, const Vector& velocity, const Vector& acceleration, double dt);
+  void drive(const Vector& position, const Vector& velocity, const Vector& acceleration);
   /// Wrench on the body at a world point, for the coming step.
   void push(int body, const Vector3& point, const Wrench&);
   /// Reads the state after a step.
-  void read(double dt);
+  void read();
 
   const Vector& position() const { return q_; }  ///< all axes
   const Vector& velocity() const { return qd_; }
@@ -60,16 +64,19 @@ class RobotBody {
     Vector3 com{Vector3::Zero()};
     Eigen::Matrix3d inertia{Eigen::Matrix3d::Zero()};
     Eigen::Matrix3d R_body_principal{Eigen::Matrix3d::Identity()};
-    std::unique_ptr<btMultiBodyJointMotor> motor;
     std::unique_ptr<btMultiBodyLinkCollider> collider;
     Pose T_world{Pose::Identity()};
     Vector3 omega{Vector3::Zero()}, v{Vector3::Zero()};  // of the frame origin, world
-    double feed_forward{0};
+    int finger{-1};  // which chain beyond the tool's body
+    double stiffness{0}, damping{0};  // of a finger joint
+    double torque{0};
   };
 
   void lump(const RobotModel&);
   void forward();
-  void inverse_dynamics(const Vector& acceleration);
+  void soften_fingers();
+  Eigen::MatrixXd mass_matrix(const std::vector<int>& bodies);
+  void inverse_dynamics(const std::vector<double>& acceleration);  // by body; fills Body::torque
 
   const RobotModel& model_;
   ServoSettings settings_;
@@ -80,6 +87,7 @@ class RobotBody {
   std::vector<Pose> T_body_link_, T_world_link_;
   std::unique_ptr<btMultiBody> multibody_;
   Vector q_, qd_, effort_;
+  std::vector<double> wanted_;
   std::vector<Vector3> force_, moment_, alpha_, acc_;  // scratch of the inverse dynamics
 };
 

@@ -440,12 +440,12 @@ struct SimWorld::Impl {
       control(setup.disturbances[next_disturbance++].control);
     }
     side.step(now(), settings.step, gripped >= 0);
-    robot->drive(side.position(), side.velocity(), side.acceleration(), settings.step);
+    robot->drive(side.position(), side.velocity(), side.acceleration());
     move_people();
     hold_with_robot();
     dynamics.stepSimulation(settings.step, 0);
     ++steps;
-    robot->read(settings.step);
+    robot->read();
     for (ObjectBody& object : objects) read_object(object);
     gather(dispatcher, settings.step, kReach, touches);
     update_grasp();
