@@ -67,8 +67,8 @@ class RobotBody {
     std::unique_ptr<btMultiBodyLinkCollider> collider;
     Pose T_world{Pose::Identity()};
     Vector3 omega{Vector3::Zero()}, v{Vector3::Zero()};  // of the frame origin, world
-    int finger{-1};  // which chain beyond the tool's body
-    double stiffness{0}, damping{0};  // of a finger joint
+    int finger{-1};                                      // which chain beyond the tool's body
+    double stiffness{0}, damping{0};                     // of a finger joint
     double torque{0};
   };
 

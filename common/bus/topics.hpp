@@ -50,7 +50,7 @@ struct TopicRow {
   X(TaskGoal, "task_goal", goal, 0, 0, 512, "handsel bridge", "supervisor")                                                          \
   X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel")                                                         \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner")                                             \
-  X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", "supervisor attention sim trajectory_controller") \
+  X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", "supervisor attention trajectory_controller") \
   X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller")                                                            \
   X(TrajectoryCommand, "trajectory", command, 0, 0, 2621440, "manipulation_planner", "trajectory_controller")                        \
   X(HandCommand, "hand_command", command, 0, 0, 1024, "manipulation_planner", "trajectory_controller")                               \

@@ -1,0 +1,114 @@
+#include "sim/node.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/config/resources.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+constexpr std::uint64_t kCatchUp = 20;  // steps at most in one tick; what is then missing is slip, shown in real_time_factor
+
+std::uint64_t steps_per(double rate, double step) { return std::max<std::uint64_t>(1, std::llround(1 / (rate * step))); }
+
+}  // namespace
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : context_(context),
+      settings_(load_settings(context.settings)),
+      bus_(bus),
+      state_out_(bus.advertise<RobotState>()),
+      human_out_(bus.advertise<HumanObservation>()),
+      object_out_(bus.advertise<ObjectObservation>()),
+      truth_out_(bus.advertise<GroundTruth>()) {
+  if (context.scenario.empty()) throw ConfigError("the simulator needs --scenario");
+  load_text_proto(context.scenario, scenario_);
+  per_state_ = steps_per(settings_.state_rate, settings_.step);
+  per_truth_ = steps_per(settings_.truth_rate, settings_.step);
+  restart();
+  bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
+    if (m.robot == context_.robot->name()) world_->command(m, r.writer);
+  });
+  bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
+  bus.every(from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
+}
+
+void Node::restart() {
+  world_ = std::make_unique<SimWorld>(*context_.robot, context_.objects, scenario_, settings_, context_.seed);
+  steps_ = 0;
+  started_ = false;
+}
+
+void Node::on_control(const SimControl& control) {
+  switch (control.action) {
+    case SimAction::pause:
+      paused_ = true;
+      break;
+    case SimAction::resume:
+      paused_ = false;
+      started_ = false;
+      break;
+    case SimAction::reset:
+      restart();
+      break;
+    default:
+      bus_.set_degraded(world_->control(control));
+      break;
+  }
+}
+
+void Node::tick(TimePoint now) {
+  if (paused_) return;
+  if (!started_) {
+    started_ = true;
+    start_ = measured_from_ = now;
+    since_start_ = 0;
+    measured_sim_ = world_->time();
+  }
+  const auto due = static_cast<std::uint64_t>(to_seconds(now - start_) / settings_.step + 0.5) + 1;
+  if (due > since_start_ + kCatchUp) {  // slip: time that was lost is not made up for
+    start_ = now - from_seconds(static_cast<double>(since_start_) * settings_.step);
+    return;
+  }
+  while (since_start_ < due) {
+    world_->step();
+    ++since_start_;
+    ++steps_;
+    publish();
+  }
+  if (const double passed = to_seconds(now - measured_from_); passed >= 1.0) {
+    factor_ = (world_->time() - measured_sim_) / passed;
+    measured_from_ = now;
+    measured_sim_ = world_->time();
+  }
+}
+
+void Node::publish() {
+  if (steps_ % per_state_ == 0 && world_->robot_state(state_)) {
+    state_.stamp = bus_.stamp_now();
+    state_out_->publish(state_);
+  }
+  const auto stamp_of = [&](double seen) { return bus_.stamp_now() - from_seconds(world_->time() - seen).count(); };
+  human_due_.clear();
+  world_->human_observations(human_due_);
+  for (auto& delivery : human_due_) {
+    delivery.message.stamp = stamp_of(delivery.seen);
+    human_out_->publish(delivery.message);
+  }
+  object_due_.clear();
+  world_->object_observations(object_due_);
+  for (auto& delivery : object_due_) {
+    delivery.message.stamp = stamp_of(delivery.seen);
+    object_out_->publish(delivery.message);
+  }
+  if (steps_ % per_truth_ == 0) {
+    world_->truth(truth_);
+    truth_.stamp = bus_.stamp_now();
+    truth_.real_time_factor = factor_;
+    truth_out_->publish(truth_);
+  }
+}
+
+}  // namespace handsel::sim

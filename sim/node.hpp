@@ -1,0 +1,42 @@
+// Binds the emulated world to a bus. It speaks the hardware's messages: no component knows that it is simulated.
+#pragma once
+
+#include <memory>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/node_context.hpp"
+#include "common/config/scenario.pb.h"
+#include "sim/world.hpp"
+
+namespace handsel::sim {
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void tick(TimePoint now);
+  void publish();
+  void on_control(const SimControl&);
+  void restart();
+
+  NodeContext context_;
+  SimSettings settings_;
+  config::Scenario scenario_;
+  Bus& bus_;
+  std::unique_ptr<SimWorld> world_;
+  std::unique_ptr<Publisher<RobotState>> state_out_;
+  std::unique_ptr<Publisher<HumanObservation>> human_out_;
+  std::unique_ptr<Publisher<ObjectObservation>> object_out_;
+  std::unique_ptr<Publisher<GroundTruth>> truth_out_;
+  RobotState state_;
+  GroundTruth truth_;
+  std::vector<Delivery<HumanObservation>> human_due_;
+  std::vector<Delivery<ObjectObservation>> object_due_;
+  std::uint64_t steps_{0}, since_start_{0}, per_state_{1}, per_truth_{1};
+  bool paused_{false}, started_{false};
+  TimePoint start_{}, measured_from_{};
+  double measured_sim_{0}, factor_{1};
+};
+
+}  // namespace handsel::sim
