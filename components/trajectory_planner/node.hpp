@@ -1,0 +1,39 @@
+// The trajectory planner on a Bus.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/process.hpp"
+#include "common/messages/world.hpp"
+#include "components/trajectory_planner/request_desk.hpp"
+#include "components/trajectory_planner/trajectory_planner.hpp"
+
+namespace handsel::trajectory_planner {
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void on_request(const TrajectoryRequest& request);
+  void start(const TrajectoryRequest& request);
+  void answer(const TrajectoryReply& reply);
+  std::string not_ready() const;
+
+  Bus& bus_;
+  std::shared_ptr<const RobotModel> robot_;
+  Settings settings_;
+  Duration max_scene_age_{}, check_time_{};
+  std::unique_ptr<Publisher<TrajectoryReply>> reply_out_;
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const HumanState> people_;
+  RequestDesk desk_;
+
+  // Used by jobs only, which run one after the other.
+  CollisionWorld world_;
+  HumanCost cost_;
+};
+
+}  // namespace handsel::trajectory_planner
