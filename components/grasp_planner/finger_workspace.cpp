@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kSeedsPerCell = 3;
 constexpr double kDistinct = 0.35;  // [rad] seeds of one cell differ by more in some axis
-constexpr std::int64_t kMostSamples = 1'500'000;
+constexpr std::int64_t kMostSamples = 1'000'000;
 
 // How many samples each axis needs so that the tip moves less than `step` between two of them.
 std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chain, double step) {
@@ -58,18 +58,21 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
       q[a] = lower[a] + share * (upper[a] - lower[a]);
       centrality = std::min(centrality, 2 * std::min(share, 1 - share));
     }
-    chain.forward(q, T);
     return centrality;
   };
+  std::vector<Eigen::Vector3f> tips(static_cast<std::size_t>(samples));
   for (std::int64_t i = 0; i < samples; ++i) {
     set_sample(i);
-    box_.extend(chain.tip(T));
+    chain.forward(q, T);
+    const Vector3 p = chain.tip(T);
+    box_.extend(p);
+    tips[static_cast<std::size_t>(i)] = p.cast<float>();
   }
   cells_ = (box_.sizes() / step_).array().floor().cast<int>() + 1;
   entry_.assign(static_cast<std::size_t>(cells_.x()) * static_cast<std::size_t>(cells_.y()) * static_cast<std::size_t>(cells_.z()), 0);
   for (std::int64_t i = 0; i < samples; ++i) {
     const double centrality = set_sample(i);
-    const Vector3 p = chain.tip(T);
+    const Vector3 p = tips[static_cast<std::size_t>(i)].cast<double>().cwiseMax(box_.min()).cwiseMin(box_.max());
     std::uint32_t& entry = entry_[static_cast<std::size_t>(cell(p))];
     if (entry == 0) {
       seeds_.emplace_back();
@@ -84,6 +87,7 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
       worse = worse || (differ <= kDistinct && s.centrality >= centrality);
     }
     if (worse || (!near && seeds.size() >= kSeedsPerCell && seeds.back().centrality >= centrality)) continue;
+    chain.forward(q, T);
     Seed seed{Vector(static_cast<Eigen::Index>(n)), centrality, chain.tip_direction(T), chain.closing_direction(T)};
     for (std::size_t k = 0; k < n; ++k) seed.q[static_cast<Eigen::Index>(k)] = q[chain.axes()[k]];
     std::erase_if(seeds, [&](const Seed& s) { return (s.q - seed.q).cwiseAbs().maxCoeff() <= kDistinct; });

@@ -24,13 +24,13 @@ bool plausible(const FingerWorkspace::Seed& seed, const Vector3& normal) {
 
 }  // namespace
 
-FrameSearch::FrameSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings)
-    : kit_(kit), object_(object), settings_(settings), seen_(object.points().size(), 0) {}
+FrameSearch::FrameSearch(const HandKit& kit, const FingerWorkspaces& workspaces, const Graspable& object, const GraspListSettings& settings)
+    : kit_(kit), workspaces_(workspaces), object_(object), settings_(settings), seen_(object.points().size(), 0) {}
 
 void FrameSearch::candidates(int finger, const Pose& T_object_hand, std::vector<std::uint32_t>& points) {
   points.clear();
   ++query_;
-  for (const WorkspaceSphere& s : kit_.workspaces[static_cast<std::size_t>(finger)].spheres()) {
+  for (const WorkspaceSphere& s : workspaces_[static_cast<std::size_t>(finger)].spheres()) {
     hits_.clear();
     object_.tip_centres().inside_ball(T_object_hand * s.centre, s.radius, hits_);
     for (const std::uint32_t i : hits_) {
@@ -47,7 +47,7 @@ bool FrameSearch::judge(int finger, const Pose& T_object_hand, std::uint32_t poi
   const Pose T_hand_object = T_object_hand.inverse();
   const Vector3 p_hand_tip = T_hand_object * object_.tip_centre(point);
   const Vector3 normal = T_hand_object.linear() * object_.points()[point].normal;
-  for (const FingerWorkspace::Seed& seed : kit_.workspaces[static_cast<std::size_t>(finger)].seeds(p_hand_tip)) {
+  for (const FingerWorkspace::Seed& seed : workspaces_[static_cast<std::size_t>(finger)].seeds(p_hand_tip)) {
     if (!plausible(seed, normal)) continue;
     out.q = hand.pregrasp();
     for (std::size_t k = 0; k < chain.axes().size(); ++k) out.q[chain.axes()[k]] = seed.q[static_cast<Eigen::Index>(k)];
@@ -94,7 +94,7 @@ std::vector<FingerContact> FrameSearch::contacts(int finger, const Pose& T_objec
       return (o.position - p.position).squaredNorm() < apart * apart && o.normal.dot(p.normal) > 0.8;
     });
     if (known) continue;
-    const auto& seeds = kit_.workspaces[static_cast<std::size_t>(finger)].seeds(T_hand_object * object_.tip_centre(i));
+    const auto& seeds = workspaces_[static_cast<std::size_t>(finger)].seeds(T_hand_object * object_.tip_centre(i));
     const Vector3 normal = T_hand_object.linear() * p.normal;
     if (std::none_of(seeds.begin(), seeds.end(), [&](const auto& seed) { return plausible(seed, normal); })) continue;
     ++tries;

@@ -18,7 +18,7 @@ struct FingerContact {
 
 class FrameSearch {
  public:
-  FrameSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
+  FrameSearch(const HandKit& kit, const FingerWorkspaces& workspaces, const Graspable& object, const GraspListSettings& settings);
 
   /// Points of the object a finger's workspace covers with the hand at this pose: those well inside first.
   void candidates(int finger, const Pose& T_object_hand, std::vector<std::uint32_t>& points);
@@ -29,6 +29,7 @@ class FrameSearch {
   bool judge(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out);
 
   const HandKit& kit_;
+  const FingerWorkspaces& workspaces_;
   const Graspable& object_;
   const GraspListSettings& settings_;
   std::vector<std::uint32_t> seen_;  // per point: the query that met it last

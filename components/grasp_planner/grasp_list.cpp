@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/segments.hpp"
 #include "components/grasp_planner/epsilon.hpp"
 #include "components/grasp_planner/frame_search.hpp"
 #include "components/grasp_planner/so3_grid.hpp"
@@ -65,8 +66,9 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
 }
 
 struct GraspLister::Impl {
-  Impl(std::shared_ptr<const HandKit> k, std::shared_ptr<const Graspable> o, const GraspListSettings& s)
-      : kit(std::move(k)), object(std::move(o)), settings(s), search(*kit, *object, settings) {
+  Impl(std::shared_ptr<const HandKit> k, std::shared_ptr<const FingerWorkspaces> w, std::shared_ptr<const Graspable> o,
+       const GraspListSettings& s)
+      : kit(std::move(k)), workspaces(std::move(w)), object(std::move(o)), settings(s), search(*kit, *workspaces, *object, settings) {
     positions = uniform_positions(object->box(), settings.positions);
     orientations = so3_sequence(settings.orientations);
     out.hand = kit->hand.name();
@@ -221,8 +223,28 @@ struct GraspLister::Impl {
       winner_epsilon = e;
     }
     if (best < 0) return FrameReason::not_closed;
-    out.grasps.push_back({make_grasp(id, T_object_hand, found[winner.index], winner_epsilon, best), winner.scores});
+    const Grasp grasp = make_grasp(id, T_object_hand, found[winner.index], winner_epsilon, best);
+    out.grasps.push_back({grasp, winner.scores, room(grasp)});
     return FrameReason::grasped;
+  }
+
+  double room(const Grasp& g) const {
+    std::vector<std::vector<Pose>> T_hand_step;
+    kit->forward(g.hand_joints, T_hand_step);
+    std::vector<HandShape::Round> rounds = kit->shape.rounds(T_hand_step);
+    for (HandShape::Round& r : rounds) {
+      r.a = g.T_object_hand * r.a;
+      r.b = g.T_object_hand * r.b;
+    }
+    std::size_t free = 0;
+    for (const SurfacePoint& p : object->points()) {
+      free += std::all_of(rounds.begin(), rounds.end(), [&](const HandShape::Round& r) {
+        const double reach = r.radius + settings.free_distance;
+        Vector3 on_round, on_point;
+        return nearest_points(r.a, r.b, p.position, p.position, on_round, on_point) > reach * reach;
+      });
+    }
+    return static_cast<double>(free) / static_cast<double>(object->points().size());
   }
 
   Grasp make_grasp(std::uint64_t id, const Pose& T_object_hand, const Combination& c, double grasp_epsilon, double grasp_quality) const {
@@ -248,6 +270,7 @@ struct GraspLister::Impl {
   }
 
   std::shared_ptr<const HandKit> kit;
+  std::shared_ptr<const FingerWorkspaces> workspaces;
   std::shared_ptr<const Graspable> object;
   GraspListSettings settings;
   FrameSearch search;
@@ -261,8 +284,9 @@ struct GraspLister::Impl {
   GraspList out;
 };
 
-GraspLister::GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const Graspable> object, const GraspListSettings& settings)
-    : impl_(std::make_unique<Impl>(std::move(kit), std::move(object), settings)) {}
+GraspLister::GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+                         std::shared_ptr<const Graspable> object, const GraspListSettings& settings)
+    : impl_(std::make_unique<Impl>(std::move(kit), std::move(workspaces), std::move(object), settings)) {}
 GraspLister::~GraspLister() = default;
 GraspLister::GraspLister(GraspLister&&) noexcept = default;
 
@@ -286,9 +310,9 @@ GraspList GraspLister::list() const {
   return sorted;
 }
 
-GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
-                      const std::function<bool()>& cancelled) {
-  GraspLister lister(std::move(kit), std::move(object), settings);
+GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings, const std::function<bool()>& cancelled) {
+  GraspLister lister(std::move(kit), std::move(workspaces), std::move(object), settings);
   while (lister.advance(64)) {
     if (cancelled && cancelled()) break;
   }

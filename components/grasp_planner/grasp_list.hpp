@@ -34,6 +34,7 @@ struct GraspListSettings {
   double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
   double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
   double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
+  double free_distance{0.03};            ///< surface this far from the hand counts as room for another hand [m]
   std::uint64_t seed{1};
 };
 
@@ -58,6 +59,7 @@ struct GraspScores {
 struct ListedGrasp {
   Grasp grasp;  ///< id = number of its frame; contacts in the order of the fingers
   GraspScores scores;
+  double room{};  ///< share of the surface that is free for another hand, [0, 1]
 };
 
 struct GraspList {
@@ -76,7 +78,8 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
 
 class GraspLister {
  public:
-  GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const Graspable> object, const GraspListSettings& settings);
+  GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+              std::shared_ptr<const Graspable> object, const GraspListSettings& settings);
   ~GraspLister();
   GraspLister(GraspLister&&) noexcept;
 
@@ -93,7 +96,8 @@ class GraspLister {
 };
 
 /// All frames at once; `cancelled` is asked now and then.
-GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
+GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
                       const std::function<bool()>& cancelled = {});
 
 }  // namespace handsel::grasp_planner

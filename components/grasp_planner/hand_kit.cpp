@@ -11,17 +11,15 @@ std::vector<FingerChain> make_chains(const HandModel& hand) {
   return chains;
 }
 
-std::vector<FingerWorkspace> make_workspaces(const HandModel& hand, const std::vector<FingerChain>& chains,
-                                             const WorkspaceSettings& settings) {
-  std::vector<FingerWorkspace> workspaces;
-  for (const FingerChain& c : chains) workspaces.emplace_back(hand, c, settings);
-  return workspaces;
-}
-
 }  // namespace
 
-HandKit::HandKit(const HandModel& hand_model, const WorkspaceSettings& settings)
-    : hand(hand_model), chains(make_chains(hand)), workspaces(make_workspaces(hand, chains, settings)), shape(hand, chains) {}
+HandKit::HandKit(const HandModel& hand_model) : hand(hand_model), chains(make_chains(hand)), shape(hand, chains) {}
+
+FingerWorkspaces make_workspaces(const HandKit& kit, const WorkspaceSettings& settings) {
+  FingerWorkspaces workspaces;
+  for (const FingerChain& c : kit.chains) workspaces.emplace_back(kit.hand, c, settings);
+  return workspaces;
+}
 
 void HandKit::forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const {
   T_hand_step.resize(chains.size());

@@ -1,4 +1,4 @@
-// Everything about a hand that grasping needs and no object changes: chains, workspaces, solids. Made once a hand.
+// What grasping needs to know of a hand, whatever the object: chains and solids; its workspaces apart, because they take a moment to make.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace handsel::grasp_planner {
 
 struct HandKit {
-  explicit HandKit(const HandModel& hand_model, const WorkspaceSettings& settings = {});
+  explicit HandKit(const HandModel& hand_model);
 
   /// Step poses of every finger for the posture q of the hand.
   void forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const;
@@ -19,8 +19,11 @@ struct HandKit {
 
   HandModel hand;
   std::vector<FingerChain> chains;
-  std::vector<FingerWorkspace> workspaces;
   HandShape shape;
 };
+
+/// One a finger, in their order.
+using FingerWorkspaces = std::vector<FingerWorkspace>;
+FingerWorkspaces make_workspaces(const HandKit& kit, const WorkspaceSettings& settings = {});
 
 }  // namespace handsel::grasp_planner

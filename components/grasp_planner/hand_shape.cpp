@@ -151,6 +151,44 @@ bool HandShape::fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int
   return groups_touch(fingers_[static_cast<std::size_t>(a)], T_hand_step_a, fingers_[static_cast<std::size_t>(b)], T_hand_step_b);
 }
 
+bool HandShape::touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+                        double clearance) const {
+  if (palm_touches(object, T_object_hand, clearance)) return true;
+  for (std::size_t f = 0; f < fingers_.size(); ++f) {
+    if (finger_touches(static_cast<int>(f), T_hand_step[f], object, T_object_hand, clearance)) return true;
+  }
+  return false;
+}
+
+std::vector<HandShape::Low> HandShape::lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const {
+  std::vector<Low> out;
+  const auto add = [&](const Solid& s, const Pose& T_hand_s) {
+    const Pose T_world_s = T_world_hand * T_hand_s;
+    if (s.capsule) {
+      const Vector3 a = T_world_s * s.a, b = T_world_s * s.b;
+      out.push_back({0.5 * (a + b), std::min(a.z(), b.z()) - s.radius});
+      return;
+    }
+    const Pose T_world_shape = T_world_s * s.T_step_shape;
+    const Vector3 middle = T_world_shape * s.shape->box_center();
+    if (const auto* mesh = std::get_if<MeshPtr>(&s.shape->shape())) {
+      double low = middle.z();
+      for (const Vector3& v : (*mesh)->vertices) low = std::min(low, (T_world_shape * v).z());
+      out.push_back({middle, low});
+    } else if (const auto* c = std::get_if<Cylinder>(&s.shape->shape())) {
+      const double along = std::abs(T_world_shape.linear()(2, 2));
+      out.push_back({middle, middle.z() - 0.5 * c->length * along - c->radius * std::sqrt(std::max(0.0, 1 - along * along))});
+    } else {
+      out.push_back({middle, middle.z() - T_world_shape.linear().row(2).cwiseAbs().dot(s.shape->box_half())});
+    }
+  };
+  for (const Solid& s : palm_) add(s, Pose::Identity());
+  for (std::size_t f = 0; f < fingers_.size(); ++f) {
+    for (const Solid& s : fingers_[f]) add(s, step_pose(T_hand_step[f], s.step));
+  }
+  return out;
+}
+
 std::vector<HandShape::Round> HandShape::rounds(const std::vector<std::vector<Pose>>& T_hand_step) const {
   std::vector<Round> out;
   const auto add = [&out](const Solid& s, const Pose& T) {

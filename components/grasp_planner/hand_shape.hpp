@@ -21,6 +21,15 @@ class HandShape {
                       double clearance) const;
   bool finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const;
   bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const;
+  /// The whole hand, palm and fingers.
+  bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+               double clearance) const;
+  /// Each solid's middle and lowest height in the world.
+  struct Low {
+    Vector3 middle{Vector3::Zero()};
+    double height{};
+  };
+  std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const;
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
   struct Round {
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};

@@ -17,13 +17,19 @@ std::shared_ptr<const HandKit> sah() {
   return kit;
 }
 
+std::shared_ptr<const FingerWorkspaces> workspaces() {
+  static const auto made = std::make_shared<const FingerWorkspaces>(make_workspaces(*sah()));
+  return made;
+}
+
 ObjectModel object(const std::string& name) { return ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb")); }
 
 GraspList list_of(const std::string& name, std::uint32_t positions = 24, std::uint32_t orientations = 48) {
   GraspListSettings settings;
   settings.positions = positions;
   settings.orientations = orientations;
-  return list_grasps(sah(), std::make_shared<const Graspable>(object(name), sah()->tip_radius(), settings.step_share, 1), settings);
+  return list_grasps(sah(), workspaces(), std::make_shared<const Graspable>(object(name), sah()->tip_radius(), settings.step_share, 1),
+                     settings);
 }
 
 // How deep a point is inside a shape [m], negative outside.
@@ -136,9 +142,9 @@ TEST(GraspList, an_object_of_the_wrong_size_is_refused_with_a_sentence) {
   }
 }
 
-TEST(FingerWorkspaces, spheres_are_inside_and_the_finger_gets_everywhere_in_them) {
+TEST(FingerWorkspace, spheres_are_inside_and_the_finger_gets_everywhere_in_them) {
   for (std::size_t f = 0; f < sah()->chains.size(); ++f) {
-    const FingerWorkspace& w = sah()->workspaces[f];
+    const FingerWorkspace& w = (*workspaces())[f];
     EXPECT_TRUE(w.has_volume());
     ASSERT_GE(w.spheres().size(), 5U);
     int reached = 0, asked = 0;

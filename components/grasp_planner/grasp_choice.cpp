@@ -1,0 +1,278 @@
+#include "components/grasp_planner/grasp_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace handsel::grasp_planner {
+namespace {
+
+constexpr double kSweepStep = 0.008;      // [m] between two tests along an approach
+constexpr double kLargestApproach = 0.9;  // [rad] an arm axis moves less on the straight approach
+constexpr double kLargestLift = 1.4;      // [rad] and on the lift
+constexpr double kSameDistance = 0.02;    // [m] grasps nearer than this ...
+constexpr double kSameAngle = 0.35;       // [rad] ... and less turned count as one variant
+
+Vector with_hand(const RobotModel&, const Vector& q, const Group& arm, const Vector& arm_q, const Group& hand, const Vector& hand_q) {
+  return RobotModel::with(RobotModel::with(q, arm, arm_q), hand, hand_q);
+}
+
+bool alike(const Pose& a, const Pose& b) {
+  return (a.translation() - b.translation()).norm() < kSameDistance &&
+         Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() < kSameAngle;
+}
+
+}  // namespace
+
+const char* reason_text(ChoiceReason reason) {
+  switch (reason) {
+    case ChoiceReason::chosen:
+      return "chosen";
+    case ChoiceReason::below_support:
+      return "the hand would be in or under what the object stands on";
+    case ChoiceReason::out_of_reach:
+      return "no posture of the arm reaches it";
+    case ChoiceReason::collision:
+      return "arm or hand would collide at the grasp";
+    case ChoiceReason::cannot_lift:
+      return "the arm could not lift the object straight up";
+    case ChoiceReason::no_approach:
+      return "no straight approach is free";
+    case ChoiceReason::not_considered:
+      return "not considered: enough better ones were found, or the budget was used up";
+    case ChoiceReason::count:
+      break;
+  }
+  return "unknown";
+}
+
+Refusals Choice::refusals() const {
+  Refusals out;
+  for (std::size_t r = 1; r < reasons.size(); ++r) {
+    if (reasons[r] > 0) out.push_back({std::to_string(reasons[r]) + " grasps", reason_text(static_cast<ChoiceReason>(r))});
+  }
+  return out;
+}
+
+std::string Choice::why_none(const GraspList& list) const {
+  if (list.grasps.empty()) {
+    const auto most = std::max_element(list.reasons.begin() + 1, list.reasons.end());
+    return "no stable grasp of hand " + list.hand + " on object " + list.object + " in " + std::to_string(list.frames) +
+           " frames; mostly " + reason_text(static_cast<FrameReason>(most - list.reasons.begin()));
+  }
+  const auto most = std::max_element(reasons.begin() + 1, reasons.end());
+  return "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here; mostly " +
+         reason_text(static_cast<ChoiceReason>(most - reasons.begin()));
+}
+
+GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
+                           const ChoiceSettings& settings)
+    : robot_(std::move(robot)), kit_(std::move(kit)), library_(std::move(library)), settings_(settings) {
+  arm_ = &robot_->require_group("arm");
+  hand_ = &robot_->require_group("hand");
+  if (arm_->tip < 0 || arm_->tip != robot_->tool_link()) {
+    throw ConfigError("robot " + robot_->name() + ": the arm's tip_link must be the tool_link, the palm of the hand");
+  }
+  const std::vector<Axis>& axes = kit_->hand.model().axes();
+  bool same = axes.size() == hand_->axes.size();
+  for (std::size_t i = 0; same && i < axes.size(); ++i)
+    same = robot_->axes()[static_cast<std::size_t>(hand_->axes[i])].name == axes[i].name;
+  if (!same) {
+    throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + kit_->hand.name() +
+                      " in the order of its fingers");
+  }
+  // Straight away from where contacts happen, then a cone of directions around it.
+  const Vector3 away = -kit_->hand.T_hand_grasp().translation().normalized();
+  const Vector3 side = away.unitOrthogonal(), other = away.cross(side);
+  retreats_.push_back(away);
+  for (const double tilt : {0.45, 0.9}) {
+    for (int k = 0; k < 6; ++k) {
+      const double turn = std::numbers::pi / 3 * k;
+      retreats_.push_back(std::cos(tilt) * away + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
+    }
+  }
+}
+
+struct GraspChooser::Search {
+  Search(const GraspChooser& chooser, const GraspRequest& r, const Graspable& g, const Scene& s, const HumanState& people)
+      : self(chooser), request(r), object(g), scene(s), world(*chooser.robot_, chooser.library_) {
+    for (const SceneObject& o : scene.objects) {
+      if (o.id == request.object) T_world_object = o.T_world_object;
+    }
+    T_root_world = scene.T_world_base.inverse();
+    world.set_base(scene.T_world_base);
+    world.set_scene(scene);
+    world.set_people(people);
+    world.set_attachment({}, {request.object});
+    for (const Person& p : people.people) {
+      if (p.id != request.for_human) continue;
+      for (const BodyJoint& j : p.joints) {
+        if (j.name == "torso") to_person = j.position - T_world_object.translation();
+      }
+    }
+    to_person.z() = 0;
+    if (to_person.norm() > 1e-6) to_person.normalize();
+  }
+
+  const RobotModel& robot() const { return *self.robot_; }
+  const ChoiceSettings& settings() const { return self.settings_; }
+
+  bool below_support(const Pose& T_world_hand, const Grasp& g) {
+    self.kit_->forward(g.hand_joints, T_closed);
+    self.kit_->forward(g.pregrasp_joints, T_open);
+    for (const auto* T : {&T_closed, &T_open}) {
+      for (const HandShape::Low& low : self.kit_->shape.lows(*T, T_world_hand)) {
+        for (const SceneBox& box : scene.boxes) {
+          if (!box.supports) continue;
+          const Vector3 local = box.T_world_box.inverse() * low.middle;
+          const double top = (box.T_world_box * Vector3(0, 0, 0.5 * box.size.z())).z();
+          const bool over = std::abs(local.x()) < 0.5 * box.size.x() && std::abs(local.y()) < 0.5 * box.size.y();
+          if (over && T_world_object.translation().z() > top - 0.02 && low.height < top + settings().support_gap) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  std::optional<Vector> reach(const Pose& T_world_hand, const Vector& seed, int restarts) {
+    ++out.reaches;
+    IkOptions options;
+    options.max_iterations = 80;
+    options.restarts = restarts;
+    options.random_seed = request.seed + 1;
+    return robot().inverse(*self.arm_, T_root_world * T_world_hand, seed, options);
+  }
+
+  bool free(const Vector& arm_q, const Vector& hand_q) {
+    ++out.states;
+    return world.is_free(with_hand(robot(), request.start, *self.arm_, arm_q, *self.hand_, hand_q));
+  }
+
+  /// The straight way from approach_q to grasp_q with the hand opened: nothing touched, the object neither.
+  bool way_in_free(const Vector& approach_q, const Vector& grasp_q, const Grasp& g) {
+    const Vector from = with_hand(robot(), request.start, *self.arm_, approach_q, *self.hand_, g.pregrasp_joints);
+    const Vector to = with_hand(robot(), request.start, *self.arm_, grasp_q, *self.hand_, g.pregrasp_joints);
+    const int steps = static_cast<int>(std::ceil(settings().stand_off / kSweepStep));
+    const Pose T_object_root = T_world_object.inverse() * scene.T_world_base;
+    for (int i = 0; i <= steps; ++i) {
+      const double share = static_cast<double>(i) / steps;
+      const Pose T_object_hand = T_object_root * robot().link_pose(from + share * (to - from), robot().tool_link());
+      ++out.touch_tests;
+      const double clearance = i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
+      if (self.kit_->shape.touches(T_open, object, T_object_hand, clearance)) return false;
+    }
+    out.states += static_cast<std::uint64_t>(motion_states(from, to, 0.04));
+    return world.check_motion(from, to, 0.04).free;
+  }
+
+  bool sweep_free(const Pose& T_object_hand, const Vector3& retreat) {
+    for (double s = settings().stand_off; s > 0; s -= 2 * kSweepStep) {
+      Pose T = T_object_hand;
+      T.translate(Vector3(s * retreat));
+      ++out.touch_tests;
+      if (self.kit_->shape.touches(T_open, object, T, settings().approach_clearance)) return false;
+    }
+    return true;
+  }
+
+  std::optional<Vector> approach(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g) {
+    std::vector<Vector3> ways = self.retreats_;
+    ways.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
+    for (const Vector3& way : ways) {
+      if (!sweep_free(g.T_object_hand, way)) continue;
+      Pose T = T_world_hand;
+      T.translate(Vector3(settings().stand_off * way));
+      const auto q = reach(T, with_hand(robot(), request.start, *self.arm_, grasp_q, *self.hand_, g.pregrasp_joints), 0);
+      if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > kLargestApproach) continue;
+      if (way_in_free(*q, grasp_q, g)) return q;
+    }
+    return std::nullopt;
+  }
+
+  ChoiceReason consider(const ListedGrasp& listed, Grasp& g) {
+    const Pose T_world_hand = T_world_object * listed.grasp.T_object_hand;
+    if (below_support(T_world_hand, listed.grasp)) return ChoiceReason::below_support;
+    const auto grasp_q = reach(T_world_hand, request.start, 2);
+    if (!grasp_q) return ChoiceReason::out_of_reach;
+    g = listed.grasp;
+    if (!free(*grasp_q, g.hand_joints) || !free(*grasp_q, g.pregrasp_joints)) return ChoiceReason::collision;
+    Pose T_lifted = T_world_hand;
+    T_lifted.translation().z() += settings().lift;
+    const auto lifted = reach(T_lifted, RobotModel::with(request.start, *self.arm_, *grasp_q), 0);
+    if (!lifted || (*lifted - *grasp_q).cwiseAbs().maxCoeff() > kLargestLift) return ChoiceReason::cannot_lift;
+    if (!free(*lifted, g.hand_joints)) return ChoiceReason::cannot_lift;
+    const auto approach_q = approach(T_world_hand, *grasp_q, g);
+    if (!approach_q) return ChoiceReason::no_approach;
+    g.arm_joints = *grasp_q;
+    g.approach_joints = *approach_q;
+    return ChoiceReason::chosen;
+  }
+
+  /// What can be said of a grasp before the arm is looked at.
+  double rank(const ListedGrasp& listed) const {
+    const double fingers = static_cast<double>(self.kit_->chains.size());
+    double sum = settings().rank_quality * listed.grasp.quality +
+                 settings().rank_contacts * static_cast<double>(listed.grasp.contacts.size()) / fingers;
+    if (request.for_human.empty()) return sum;
+    sum += settings().rank_room * listed.room;
+    const Vector3 to_hand = T_world_object.linear() * listed.grasp.T_object_hand.translation();
+    return sum - settings().rank_side * std::max(0.0, to_hand.normalized().dot(to_person));
+  }
+
+  double posture(const Vector& arm_q) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < self.arm_->axes.size(); ++i) {
+      const auto a = static_cast<std::size_t>(self.arm_->axes[i]);
+      const Axis& axis = robot().axes()[a];
+      sum +=
+          std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot().rest_posture()[static_cast<Eigen::Index>(a)]) / (axis.upper - axis.lower);
+    }
+    return 1 - sum / static_cast<double>(self.arm_->axes.size());
+  }
+
+  const GraspChooser& self;
+  const GraspRequest& request;
+  const Graspable& object;
+  const Scene& scene;
+  CollisionWorld world;
+  Pose T_world_object{Pose::Identity()}, T_root_world{Pose::Identity()};
+  Vector3 to_person{Vector3::Zero()};
+  std::vector<std::vector<Pose>> T_closed, T_open;
+  Choice out;
+};
+
+Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene,
+                            const HumanState& people, const std::function<bool()>& cancelled) const {
+  Search search(*this, request, object, scene, people);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < list.grasps.size(); ++i) order.emplace_back(search.rank(list.grasps[i]), i);
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  struct Found {
+    double rank;
+    Grasp grasp;
+  };
+  std::vector<Found> found;
+  // Twice as many as asked for, so that the arm's posture has a say.
+  const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
+  for (const auto& [rank, index] : order) {
+    const bool stop = found.size() >= enough || search.out.reaches >= settings_.reach_budget || (cancelled && cancelled());
+    Grasp grasp;
+    const ChoiceReason reason = stop ? ChoiceReason::not_considered : search.consider(list.grasps[index], grasp);
+    ++search.out.reasons[static_cast<std::size_t>(reason)];
+    if (reason == ChoiceReason::chosen)
+      found.push_back({rank + settings_.rank_posture * search.posture(grasp.arm_joints), std::move(grasp)});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.rank > b.rank; });
+  // One of each kind first: when the best fails, the next should be different.
+  std::vector<Grasp> again;
+  for (Found& f : found) {
+    const bool known = std::any_of(search.out.grasps.begin(), search.out.grasps.end(),
+                                   [&](const Grasp& g) { return alike(g.T_object_hand, f.grasp.T_object_hand); });
+    (known ? again : search.out.grasps).push_back(std::move(f.grasp));
+  }
+  std::move(again.begin(), again.end(), std::back_inserter(search.out.grasps));
+  if (search.out.grasps.size() > request.max_grasps) search.out.grasps.resize(request.max_grasps);
+  return search.out;
+}
+
+}  // namespace handsel::grasp_planner

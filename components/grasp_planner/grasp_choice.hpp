@@ -1,0 +1,77 @@
+// From the list of an object to the grasps that serve now: this robot, this scene, these people (chapter sections 3.2.8 - 3.2.9 for one
+// hand).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "common/collision/collision_world.hpp"
+#include "components/grasp_planner/grasp_list.hpp"
+
+namespace handsel::grasp_planner {
+
+struct ChoiceSettings {
+  double stand_off{0.09};            ///< length of the straight approach [m]
+  double approach_clearance{0.003};  ///< kept between the opened hand and the object on it [m]
+  double lift{0.12};                 ///< the arm must be able to go this far straight up [m]
+  double support_gap{0.004};         ///< kept between hand and support [m]
+  std::uint32_t reach_budget{400};   ///< inverse kinematics of the arm tried at most
+  double rank_quality{1.0};          ///< weights of the order of the reply
+  double rank_posture{0.4};          ///< nearness to the rest posture of the arm
+  double rank_contacts{0.2};         ///< share of the fingers in contact
+  double rank_room{0.3};             ///< surface left free; when a person is to take the object
+  double rank_side{0.1};             ///< hand not between object and person; then too
+};
+
+/// Why a listed grasp does not serve now.
+enum class ChoiceReason : std::uint8_t {
+  chosen,
+  below_support,   ///< some part of the hand would be in or under what the object stands on
+  out_of_reach,    ///< no arm posture reaches it
+  collision,       ///< arm or hand collides there
+  cannot_lift,     ///< the arm cannot go straight up with it
+  no_approach,     ///< no straight way in without touching the object or anything else
+  not_considered,  ///< the budget was used up, or enough better ones were found
+  count
+};
+const char* reason_text(ChoiceReason);
+
+struct Choice {
+  std::vector<Grasp> grasps;  ///< with arm_joints and approach_joints, best first
+  std::array<std::uint64_t, static_cast<std::size_t>(ChoiceReason::count)> reasons{};
+  std::uint64_t reaches{};      ///< inverse kinematics solved or tried
+  std::uint64_t states{};       ///< robot states judged for collision
+  std::uint64_t touch_tests{};  ///< hand against object
+
+  Refusals refusals() const;
+  /// One sentence when there are no grasps: how many the list had, and what most of them failed on.
+  std::string why_none(const GraspList& list) const;
+};
+
+/// What does not change from request to request.
+class GraspChooser {
+ public:
+  /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not those of the hand description.
+  GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
+               const ChoiceSettings& settings);
+
+  /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may be empty.
+  Choice choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene, const HumanState& people,
+                const std::function<bool()>& cancelled = {}) const;
+
+  const RobotModel& robot() const { return *robot_; }
+
+ private:
+  struct Search;
+  std::shared_ptr<const RobotModel> robot_;
+  std::shared_ptr<const HandKit> kit_;
+  ObjectLibrary library_;
+  ChoiceSettings settings_;
+  const Group* arm_{};
+  const Group* hand_{};
+  std::vector<Vector3> retreats_;  // unit, hand frame: ways to back off from a grasp, the straightest first
+};
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,207 @@
+#include "components/grasp_planner/node.hpp"
+
+#include <algorithm>
+
+#include "common/config/resources.hpp"
+
+namespace handsel::grasp_planner {
+namespace {
+
+constexpr std::size_t kRememberedReplies = 8;
+constexpr double kMoved = 0.01;  // [m] an object moved by more needs new candidates
+
+config::GraspPlannerSettings load_settings(const NodeContext& context) {
+  config::GraspPlannerSettings settings;
+  load_text_proto(context.settings / "grasp_planner.txtpb", settings);
+  return settings;
+}
+
+std::shared_ptr<const HandKit> load_kit(const NodeContext& context) {
+  if (context.robot->hand().empty()) throw ConfigError("robot " + context.robot->name() + " names no hand; the grasp planner needs one");
+  return std::make_shared<const HandKit>(HandModel::load(hand_description(context.robot->hand())));
+}
+
+double positive(const char* key, double value) {
+  if (!(value > 0)) throw ConfigError(std::string("grasp_planner.txtpb: ") + key + " must be > 0");
+  return value;
+}
+
+// Modelled time of the work done, from the counts: about what one core needs.
+Duration list_time(const GraspList& list) {
+  return from_seconds(3e-6 * static_cast<double>(list.finger_solutions) + 6e-6 * static_cast<double>(list.touch_tests) +
+                      12e-6 * static_cast<double>(list.closure_tests) + 10e-6 * static_cast<double>(list.frames));
+}
+Duration choice_time(const Choice& choice) {
+  return from_seconds(0.002 + 4e-4 * static_cast<double>(choice.reaches) + 3e-5 * static_cast<double>(choice.states) +
+                      4e-5 * static_cast<double>(choice.touch_tests));
+}
+
+}  // namespace
+
+GraspListSettings list_settings(const config::GraspPlannerSettings& t, std::uint64_t seed) {
+  GraspListSettings s;
+  s.positions = static_cast<std::uint32_t>(positive("positions", t.positions()));
+  s.orientations = static_cast<std::uint32_t>(positive("orientations", t.orientations()));
+  s.step_share = positive("step_share", t.step_share());
+  if (t.cone_edges() < 6) throw ConfigError("grasp_planner.txtpb: cone_edges must be at least 6");
+  s.cone_edges = static_cast<int>(t.cone_edges());
+  s.full_epsilon = positive("full_epsilon", t.full_epsilon());
+  s.weights = {t.weight_stability(), t.weight_centre(), t.weight_force(), t.weight_curvature()};
+  if (std::min({t.weight_stability(), t.weight_centre(), t.weight_force(), t.weight_curvature()}) < 0 ||
+      !(t.weight_stability() + t.weight_centre() + t.weight_force() + t.weight_curvature() > 0)) {
+    throw ConfigError("grasp_planner.txtpb: the weights of the quality must not be negative, and one must be > 0");
+  }
+  s.contacts_per_finger = static_cast<std::uint32_t>(positive("contacts_per_finger", t.contacts_per_finger()));
+  s.tries_per_finger = static_cast<std::uint32_t>(positive("tries_per_finger", t.tries_per_finger()));
+  s.opening = positive("opening", t.opening());
+  s.open_clearance = positive("open_clearance", t.open_clearance());
+  s.free_distance = positive("free_distance", t.free_distance());
+  s.seed = seed;
+  return s;
+}
+
+ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
+  ChoiceSettings s;
+  s.stand_off = positive("stand_off", t.stand_off());
+  s.approach_clearance = positive("approach_clearance", t.approach_clearance());
+  s.lift = positive("lift", t.lift());
+  s.support_gap = positive("support_gap", t.support_gap());
+  s.reach_budget = static_cast<std::uint32_t>(positive("reach_budget", t.reach_budget()));
+  s.rank_quality = t.rank_quality();
+  s.rank_posture = t.rank_posture();
+  s.rank_contacts = t.rank_contacts();
+  s.rank_room = t.rank_room();
+  s.rank_side = t.rank_side();
+  return s;
+}
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : bus_(bus),
+      settings_(load_settings(context)),
+      objects_(context.objects),
+      kit_(load_kit(context)),
+      chooser_(std::make_shared<const GraspChooser>(context.robot, kit_, context.objects, choice_settings(settings_))),
+      // The list of an object is the same whatever the seed of the node: it is kept on disk and shared.
+      book_(std::make_shared<GraspBook>(kit_, list_settings(settings_, 1), GraspStore(settings_.store() ? default_store() : ""))),
+      reply_out_(bus.advertise<GraspReply>()),
+      candidates_out_(bus.advertise<GraspCandidates>()) {
+  positive("candidates_period", settings_.candidates_period());
+  bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
+    scene_ = scene;
+    prepare(scene);
+  });
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
+  bus.subscribe<GraspRequest>([this](const GraspRequest& request, const Receipt&) { answer(request); });
+  bus.every(from_seconds(settings_.candidates_period()), [this](TimePoint now) { propose(now); });
+}
+
+void Node::prepare(const Scene& scene) {
+  for (const SceneObject& o : scene.objects) {
+    const ObjectModel* model = objects_(o.model);
+    if (model == nullptr || !prepared_.insert(o.model).second) continue;
+    auto problem = std::make_shared<std::string>();
+    bus_.run_job(
+        [book = book_, model, problem](const CancelToken& token) {
+          try {
+            const auto page = book->page(*model, [&token] { return token.cancelled(); });
+            return page ? list_time(page->list) : Duration{};
+          } catch (const ConfigError& e) {
+            *problem = e.what();
+            return Duration{};
+          }
+        },
+        [this, problem] {
+          if (!problem->empty()) bus_.set_degraded(*problem);
+        });
+  }
+}
+
+void Node::answer(const GraspRequest& request) {
+  const auto known = std::find_if(replies_.begin(), replies_.end(), [&](const GraspReply& r) { return r.id == request.id; });
+  if (known != replies_.end()) {
+    GraspReply again = *known;
+    again.stamp = 0;
+    reply_out_->publish(again);
+    return;
+  }
+  if (std::find(pending_.begin(), pending_.end(), request.id) != pending_.end()) return;
+  pending_.push_back(request.id);
+  choose(request, true);
+}
+
+void Node::choose(const GraspRequest& request, bool reply) {
+  struct Result {
+    GraspReply reply;
+  };
+  auto result = std::make_shared<Result>();
+  result->reply.id = request.id;
+  const auto object =
+      std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
+  const ObjectModel* model = object != scene_.objects.end() ? objects_(object->model) : nullptr;
+  if (object == scene_.objects.end()) {
+    result->reply.reason = "object " + request.object + " is not in the scene";
+  } else if (model == nullptr) {
+    result->reply.reason = "object " + request.object + " is of model " + object->model + ", of which there is no description";
+  } else if (request.start.size() != chooser_->robot().dof()) {
+    result->reply.reason =
+        "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(chooser_->robot().dof());
+  } else {
+    T_world_proposed_ = object->T_world_object;
+  }
+  const bool work = result->reply.reason.empty();
+  bus_.run_job(
+      [book = book_, chooser = chooser_, request, scene = scene_, people = people_, model, result, work](const CancelToken& token) {
+        if (!work) return Duration{};
+        const auto cancelled = [&token] { return token.cancelled(); };
+        try {
+          const auto page = book->page(*model, cancelled);
+          if (!page) {
+            result->reply.reason = "cancelled";
+            return Duration{};
+          }
+          const Choice choice = chooser->choose(request, page->list, *page->object, scene, people, cancelled);
+          result->reply.grasps = choice.grasps;
+          result->reply.rejected = choice.refusals();
+          for (Refusal& r : page->list.refusals()) result->reply.rejected.push_back(std::move(r));
+          if (choice.grasps.empty()) result->reply.reason = choice.why_none(page->list);
+          return choice_time(choice);
+        } catch (const ConfigError& e) {
+          result->reply.reason = e.what();
+          return Duration{};
+        }
+      },
+      [this, result, request, reply] {
+        proposing_ = false;
+        candidates_.object = request.object;
+        candidates_.grasps = result->reply.grasps;
+        if (!reply) return;
+        std::erase(pending_, request.id);
+        replies_.push_back(result->reply);
+        if (replies_.size() > kRememberedReplies) replies_.pop_front();
+        reply_out_->publish(result->reply);
+        served_ = request;
+        served_at_ = bus_.now();
+        serving_ = true;
+      });
+}
+
+void Node::propose(TimePoint now) {
+  if (!serving_) return;
+  if (to_seconds(now - served_at_) > settings_.candidates_time()) {
+    serving_ = false;
+    return;
+  }
+  const auto object =
+      std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == served_.object; });
+  if (object == scene_.objects.end() || object->holder == Holder::robot || object->holder == Holder::human) return;
+  const bool moved = (object->T_world_object.translation() - T_world_proposed_.translation()).norm() > kMoved;
+  if (moved && !proposing_) {
+    proposing_ = true;
+    choose(served_, false);
+  }
+  if (candidates_.grasps.empty()) return;
+  candidates_.stamp = 0;
+  candidates_out_->publish(candidates_);
+}
+
+}  // namespace handsel::grasp_planner

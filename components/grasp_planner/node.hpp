@@ -1,0 +1,51 @@
+// The grasp planner on a Bus.
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/process.hpp"
+#include "common/config/grasp_planner.pb.h"
+#include "components/grasp_planner/grasp_book.hpp"
+#include "components/grasp_planner/grasp_choice.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Settings as the core takes them. ConfigError naming the field.
+GraspListSettings list_settings(const config::GraspPlannerSettings& text, std::uint64_t seed);
+ChoiceSettings choice_settings(const config::GraspPlannerSettings& text);
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void prepare(const Scene& scene);
+  void answer(const GraspRequest& request);
+  void choose(const GraspRequest& request, bool reply);
+  void propose(TimePoint now);
+
+  Bus& bus_;
+  config::GraspPlannerSettings settings_;
+  ObjectLibrary objects_;
+  std::shared_ptr<const HandKit> kit_;
+  std::shared_ptr<const GraspChooser> chooser_;
+  std::shared_ptr<GraspBook> book_;  // used by jobs only, one after the other
+  std::unique_ptr<Publisher<GraspReply>> reply_out_;
+  std::unique_ptr<Publisher<GraspCandidates>> candidates_out_;
+  Scene scene_;
+  HumanState people_;
+  std::set<std::string> prepared_;  // models whose list was asked for
+  std::deque<GraspReply> replies_;  // the latest: asking twice is harmless
+  std::deque<RequestId> pending_;
+  GraspRequest served_;  // the request whose object candidates are kept up for
+  TimePoint served_at_{};
+  bool serving_{}, proposing_{};
+  Pose T_world_proposed_{Pose::Identity()};
+  GraspCandidates candidates_;
+};
+
+}  // namespace handsel::grasp_planner
