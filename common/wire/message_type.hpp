@@ -41,6 +41,8 @@ class MessageType {
   virtual std::string to_json(const void* message) const = 0;
   /// Calls with every leaf value of the sample.
   virtual void leaves(void* wire, const std::function<void(const WireLeaf&)>& visit) const = 0;
+  /// For tests: a valid sample with two elements a list, or one with every list and text at its bound.
+  virtual void fill(void* wire, bool full) const = 0;
 
   /// Zeroed IDL sample with its buffers' deleter; default domain message.
   virtual std::shared_ptr<void> new_wire() const = 0;

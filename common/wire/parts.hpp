@@ -71,6 +71,11 @@ class DescribedType final : public MessageType {
     WireIo io = WireIo::leaves(visit);
     describe(io, none, *static_cast<W*>(wire));
   }
+  void fill(void* wire, bool full) const override {
+    M none{};
+    WireIo io = WireIo::fill(full);
+    describe(io, none, *static_cast<W*>(wire));
+  }
   std::shared_ptr<void> new_wire() const override {
     void* sample = dds_alloc(sizeof(W));
     std::memset(sample, 0, sizeof(W));

@@ -84,6 +84,12 @@ WireIo WireIo::leaves(const std::function<void(const WireLeaf&)>& visit) {
   return io;
 }
 
+WireIo WireIo::fill(bool full) {
+  WireIo io(Mode::fill);
+  io.full_ = full;
+  return io;
+}
+
 void WireIo::begin() {
   if (mode_ == Mode::json) *text_ += '{';
 }
@@ -208,6 +214,9 @@ void WireIo::stamp(Stamp& m, std::int64_t& w) {
       break;
     case Mode::leaves:
       leaf("stamp", WireLeaf::Kind::integer, &w, sizeof w);
+      break;
+    case Mode::fill:
+      w = 1;
   }
 }
 
@@ -226,6 +235,9 @@ void WireIo::number(const char* field, double& m, double& w, Range range) {
       break;
     case Mode::leaves:
       leaf(field, WireLeaf::Kind::number, &w, sizeof w);
+      break;
+    case Mode::fill:
+      w = range.low <= 0.25 && 0.25 <= range.high ? 0.25 : (range.low + range.high) / 2;
   }
 }
 
@@ -255,6 +267,9 @@ void WireIo::integer(const char* field, std::uint64_t& m, std::uint64_t& w) {
       break;
     case Mode::leaves:
       leaf(field, WireLeaf::Kind::integer, &w, sizeof w);
+      break;
+    case Mode::fill:
+      w = 1;
   }
 }
 
@@ -266,6 +281,10 @@ void WireIo::integer(const char* field, std::uint32_t& m, std::uint32_t& w, std:
     return;
   }
   if (mode_ == Mode::leaves) return leaf(field, WireLeaf::Kind::integer, &w, sizeof w);
+  if (mode_ == Mode::fill) {
+    w = 1;
+    return;
+  }
   const std::uint32_t value = mode_ == Mode::to_wire ? m : w;
   if (value < low || value > high)
     return fail(field, "is " + std::to_string(value) + ", must be from " + std::to_string(low) + " to " + std::to_string(high));
@@ -291,12 +310,19 @@ void WireIo::flag(const char* field, bool& m, bool& w) {
       break;
     case Mode::leaves:
       leaf(field, WireLeaf::Kind::flag, &w, sizeof w);
+      break;
+    case Mode::fill:
+      w = true;
   }
 }
 
 void WireIo::choice_field(const char* field, std::uint32_t& m, std::uint32_t& w, void* at, std::span<const char* const> names) {
   if (failed_) return;
   if (mode_ == Mode::leaves) return leaf(field, WireLeaf::Kind::choice, at, sizeof w);
+  if (mode_ == Mode::fill) {
+    w = 0;
+    return;
+  }
   if (mode_ == Mode::json) {
     json_key(field);
     if (m < names.size())
@@ -320,6 +346,12 @@ void WireIo::text_field(const char* field, std::string& m, char* w, std::size_t 
     return;
   }
   if (mode_ == Mode::leaves) return leaf(field, WireLeaf::Kind::text, w, bound + 1);
+  if (mode_ == Mode::fill) {
+    const std::size_t n = full_ ? bound : 1;
+    std::memset(w, 'x', n);
+    w[n] = '\0';
+    return;
+  }
   std::string_view value;
   if (mode_ == Mode::to_wire) {
     value = m;
@@ -358,7 +390,7 @@ void WireIo::numbers(const char* field, Vector& m, double* w, std::size_t length
   if (mode_ == Mode::from_wire) m.resize(static_cast<Eigen::Index>(length));
   for (std::size_t i = 0; i < length && !failed_; ++i) {
     at(static_cast<int>(i));
-    double& value = mode_ == Mode::leaves ? w[i] : m[static_cast<Eigen::Index>(i)];
+    double& value = wire_only() ? w[i] : m[static_cast<Eigen::Index>(i)];
     number(field, value, w[i], range);
   }
   --depth_;
@@ -378,6 +410,10 @@ void WireIo::octets(const char* field, std::vector<std::uint8_t>& m, std::uint8_
     return;
   }
   if (mode_ == Mode::leaves) return;
+  if (mode_ == Mode::fill) {
+    std::memset(w, 1, length);
+    return;
+  }
   if (!fits(field, length, bound)) return;
   if (mode_ == Mode::from_wire)
     m.assign(w, w + length);
@@ -414,6 +450,7 @@ void WireIo::direction(const char* field, Vector3& m, handsel_Vector3& w, bool m
     return;
   }
   point(field, m, w, Range{-2, 2});
+  if (mode_ == Mode::fill) w = {1, 0, 0};
   if (!converting()) return;
   const double norm = m.norm();
   if (std::abs(norm - 1) > 1e-3) return fail(field, "has length " + number_text(norm) + ", must be a unit vector");
@@ -458,6 +495,7 @@ void WireIo::pose(const char* field, Pose& m, handsel_Pose& w) {
   number("z", q.z(), w.orientation.z, unit);
   number("w", q.w(), w.orientation.w, unit);
   --depth_;
+  if (mode_ == Mode::fill) w.orientation = {0, 0, 0, 1};
   if (mode_ == Mode::from_wire && !failed_) {
     const double norm = q.norm();
     if (std::abs(norm - 1) > 1e-3)

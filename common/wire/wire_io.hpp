@@ -1,5 +1,6 @@
 // The visitor every message describes itself to, once: the same description converts to and from the IDL struct, validates, prints JSON and
-// lists the leaves of a sample. A description is `void describe(WireIo&, Domain&, Idl&)` naming each pair of fields with its bounds.
+// lists the leaves of a sample or fills one for tests. A description is `void describe(WireIo&, Domain&, Idl&)` naming each pair of fields
+// with its bounds.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +38,7 @@ class WireIo {
   static WireIo from_wire(const char* message, std::string& why);
   static WireIo json(std::string& out);
   static WireIo leaves(const std::function<void(const WireLeaf&)>& visit);
+  static WireIo fill(bool full);
 
   bool ok() const { return !failed_; }
 
@@ -59,7 +61,7 @@ class WireIo {
     std::uint32_t wi = static_cast<std::uint32_t>(w);
     static_assert(sizeof(W) == sizeof(std::uint32_t));
     choice_field(field, mi, wi, &w, names);
-    if (mode_ == Mode::to_wire) w = static_cast<W>(wi);
+    if (mode_ == Mode::to_wire || mode_ == Mode::fill) w = static_cast<W>(wi);
     if (mode_ == Mode::from_wire) m = static_cast<E>(mi);
   }
 
@@ -73,6 +75,7 @@ class WireIo {
   void vector(const char* field, Vector& m, Seq& w, Range range, std::size_t bound = kMaxAxes) {
     if (failed_) return;
     if (mode_ == Mode::to_wire && fits(field, static_cast<std::size_t>(m.size()), bound)) resize(w, static_cast<std::size_t>(m.size()));
+    if (mode_ == Mode::fill) resize(w, full_ ? bound : kFew);
     numbers(field, m, w._buffer, w._length, bound, range);
   }
   template <class Seq>
@@ -81,7 +84,7 @@ class WireIo {
     for (std::size_t i = 0; i < size(m, w); ++i) {
       at(static_cast<int>(i));
       std::uint32_t none = 0;
-      integer(field, mode_ == Mode::leaves ? none : m[i], mode_ == Mode::json ? none : w._buffer[i], 0, high);
+      integer(field, wire_only() ? none : m[i], mode_ == Mode::json ? none : w._buffer[i], 0, high);
     }
     close_list();
   }
@@ -89,6 +92,7 @@ class WireIo {
   void bytes(const char* field, std::vector<std::uint8_t>& m, Seq& w, std::size_t bound, std::uint8_t high = 255) {
     if (failed_) return;
     if (mode_ == Mode::to_wire && fits(field, m.size(), bound)) resize(w, m.size());
+    if (mode_ == Mode::fill) resize(w, full_ ? bound : 1);
     octets(field, m, w._buffer, w._length, bound, high);
   }
   /// Elements describe themselves. `cut`: what exceeds the bound is left out when sent instead of refused.
@@ -101,7 +105,7 @@ class WireIo {
     for (std::size_t i = 0; i < size(m, w, bound) && !failed_; ++i) {
       at(static_cast<int>(i));
       open(nullptr);
-      describe(*this, mode_ == Mode::leaves ? no_element : m[i], mode_ == Mode::json ? no_wire : w._buffer[i]);
+      describe(*this, wire_only() ? no_element : m[i], mode_ == Mode::json ? no_wire : w._buffer[i]);
       close();
     }
     close_list();
@@ -113,7 +117,7 @@ class WireIo {
     for (std::size_t i = 0; i < size(m, w); ++i) {
       at(static_cast<int>(i));
       char no_wire[sizeof(*w._buffer)] = {};
-      text_field(field, mode_ == Mode::leaves ? no_text : m[i], mode_ == Mode::json ? no_wire : w._buffer[i], sizeof(*w._buffer) - 1, kind);
+      text_field(field, wire_only() ? no_text : m[i], mode_ == Mode::json ? no_wire : w._buffer[i], sizeof(*w._buffer) - 1, kind);
     }
     close_list();
   }
@@ -133,7 +137,7 @@ class WireIo {
   void end();
 
  private:
-  enum class Mode : std::uint8_t { to_wire, from_wire, json, leaves };
+  enum class Mode : std::uint8_t { to_wire, from_wire, json, leaves, fill };
   struct Step {
     const char* field;
     int index;
@@ -169,6 +173,8 @@ class WireIo {
     } else if (mode_ == Mode::from_wire) {
       if (!fits(field, w._length, bound)) return false;
       m.resize(w._length);
+    } else if (mode_ == Mode::fill) {
+      resize(w, full_ ? bound : kFew);
     }
     begin_json_list(field);
     stack_[depth_++] = {field, -1};
@@ -197,8 +203,13 @@ class WireIo {
     w._length = static_cast<std::uint32_t>(n);
   }
 
+  /// The domain value is not looked at.
+  bool wire_only() const { return mode_ == Mode::leaves || mode_ == Mode::fill; }
+
   static constexpr int kDepth = 12;
+  static constexpr std::size_t kFew = 2;  // elements of a list in a sample that is not full
   Mode mode_;
+  bool full_{false};
   bool failed_{false};
   bool first_{true};
   int depth_{0};
