@@ -1,114 +1,28 @@
-// Damped least squares (Levenberg-Marquardt, damping by the remaining error) on the chain of one group: joints that reach a limit are
-// frozen there and the rest solved again; the null space pulls toward the rest posture; seeded restarts. Ours.
+// Closed form where the chain is shoulder-elbow-wrist (srs_arm.hpp); else damped least squares (Levenberg-Marquardt, damping by the
+// remaining error) on the chain of one group: joints that reach a limit are frozen there and the rest solved again; the null space pulls
+// toward the rest posture; seeded restarts. Ours.
 #include <Eigen/Cholesky>
 
 #include <cmath>
 #include <random>
 
-#include "common/model/robot_model.hpp"
+#include "common/model/ik_chain.hpp"
+#include "common/model/srs_arm.hpp"
 
 namespace handsel {
 namespace {
 
-constexpr int kMaxAxes = 24;
-constexpr double kMetresPerRadian = 0.3;  // weighs turning against moving
-constexpr double kMaxStep = 0.6;          // [rad] per iteration
+constexpr double kMetresPerRadian = 0.3;               // weighs turning against moving
+constexpr double kMaxStep = 0.6;                       // [rad] per iteration
+constexpr double kOnLimit = 1e-7, kWorthTrying = 0.3;  // [rad] outside of a closed-form solution
 constexpr double kPullNearSeed = 0.05, kPullElsewhere = 0.3;
 constexpr int kPatience = 15;  // iterations without 5 % progress
 
-using Axes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>;
-using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxAxes>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
-struct Element {
-  Pose T_before;
-  Vector3 axis;
-  bool prismatic;
-  int column;
-  double factor, offset;
-};
-
-class Chain {
- public:
-  Chain(const RobotModel& robot, const Group& group, const Vector& q) : size_(static_cast<int>(group.axes.size())) {
-    lower_.resize(size_), upper_.resize(size_), rest_.resize(size_);
-    for (int i = 0; i < size_; ++i) {
-      const Axis& axis = robot.axes()[group.axes[i]];
-      lower_[i] = axis.lower, upper_[i] = axis.upper, rest_[i] = robot.rest_posture()[group.axes[i]];
-    }
-    std::vector<int> path;
-    for (int link = group.tip; robot.links()[link].parent_joint >= 0; link = robot.joints()[path.back()].parent)
-      path.push_back(robot.links()[link].parent_joint);
-    Pose T = Pose::Identity();
-    for (auto j = path.rbegin(); j != path.rend(); ++j) {
-      const Joint& joint = robot.joints()[*j];
-      T = T * joint.T_parent_joint;
-      if (joint.kind == JointKind::fixed) continue;
-      int column = -1;
-      for (int c = 0; c < size_; ++c)
-        if (group.axes[c] == joint.dof) column = c;
-      if (column < 0) {
-        const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
-        if (joint.kind == JointKind::prismatic)
-          T.translation() += T.linear() * (value * joint.axis);
-        else
-          T.rotate(Eigen::AngleAxisd(value, joint.axis));
-        continue;
-      }
-      const bool prismatic = joint.kind == JointKind::prismatic;
-      if (!elements_.empty()) reach_ += T.translation().norm();
-      if (prismatic) reach_ += std::max(std::abs(lower_[column]), std::abs(upper_[column])) * std::abs(joint.mimic_factor);
-      elements_.push_back({T, joint.axis, prismatic, column, joint.mimic_factor, joint.mimic_offset});
-      T = Pose::Identity();
-    }
-    T_after_ = T;
-    reach_ += T.translation().norm();
-  }
-
-  int size() const { return size_; }
-  bool empty() const { return elements_.empty(); }
-  const Axes& lower() const { return lower_; }
-  const Axes& upper() const { return upper_; }
-  const Axes& rest() const { return rest_; }
-  bool within_reach(const Vector3& p) const { return (p - elements_.front().T_before.translation()).norm() <= reach_ + 1e-6; }
-
-  Pose forward(const Axes& q, Jacobian* J) const {
-    Pose T = Pose::Identity();
-    Vector3 origins[2 * kMaxAxes], axes[2 * kMaxAxes];
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      const Element& e = elements_[i];
-      T = T * e.T_before;
-      origins[i] = T.translation();
-      axes[i] = T.linear() * e.axis;
-      const double value = e.factor * q[e.column] + e.offset;
-      if (e.prismatic)
-        T.translation() += value * axes[i];
-      else
-        T.linear() = T.linear() * Eigen::AngleAxisd(value, e.axis).toRotationMatrix();
-    }
-    T = T * T_after_;
-    if (J == nullptr) return T;
-    J->setZero(6, size_);
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      const Element& e = elements_[i];
-      if (e.prismatic) {
-        J->block<3, 1>(0, e.column) += e.factor * axes[i];
-      } else {
-        J->block<3, 1>(0, e.column) += e.factor * axes[i].cross(T.translation() - origins[i]);
-        J->block<3, 1>(3, e.column) += e.factor * axes[i];
-      }
-    }
-    return T;
-  }
-  bool fits() const { return size_ <= kMaxAxes && elements_.size() <= 2 * kMaxAxes; }
-
- private:
-  int size_;
-  Axes lower_, upper_, rest_;
-  std::vector<Element> elements_;
-  Pose T_after_{Pose::Identity()};
-  double reach_{0};
-};
+using ik::Axes;
+using ik::Chain;
+using ik::Jacobian;
+using ik::kMaxAxes;
+using ik::Vector6;
 
 Vector6 error_of(const Pose& target, const Pose& now) {
   Vector6 e;
@@ -185,6 +99,13 @@ std::optional<Vector> RobotModel::inverse(const Group& group, const Pose& T_root
   Axes q(chain.size());
   for (int i = 0; i < chain.size(); ++i) q[i] = q_seed[group.axes[i]];
   q = q.cwiseMax(chain.lower()).cwiseMin(chain.upper());
+  if (const auto arm = ik::SrsArm::recognise(chain)) {
+    const auto solution = arm->solve(T_root_tip, q);
+    if (!solution || solution->outside > kWorthTrying) return std::nullopt;
+    q = solution->q;
+    if (solution->outside < kOnLimit || converge(chain, T_root_tip, options, 0.0, q)) return Vector(q);
+    return std::nullopt;
+  }
   if (converge(chain, T_root_tip, options, kPullNearSeed, q)) return Vector(q);
 
   std::mt19937_64 engine(options.random_seed);

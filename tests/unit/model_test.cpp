@@ -177,6 +177,37 @@ TEST(InverseKinematics, StaysNearItsSeedForANearbyPose) {
   EXPECT_LT((*found - RobotModel::part(jido().rest_posture(), arm)).cwiseAbs().maxCoeff(), 0.1);
 }
 
+TEST(InverseKinematics, FindsTheSolutionBesideItsSeed) {
+  constexpr std::uint64_t seed = 33;
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> share(0.12, 0.88), noise(-0.05, 0.05);
+  const auto& arm = jido().require_group("arm");
+  for (int trial = 0; trial < 200; ++trial) {
+    Vector q = jido().rest_posture(), near = q;
+    for (int a : arm.axes) {
+      q[a] = jido().axes()[a].lower + share(engine) * (jido().axes()[a].upper - jido().axes()[a].lower);
+      near[a] = q[a] + noise(engine);
+    }
+    const auto found = jido().inverse(arm, jido().link_pose(q, arm.tip), near);
+    ASSERT_TRUE(found.has_value()) << "trial " << trial << " of seed " << seed;
+    EXPECT_LT((*found - RobotModel::part(near, arm)).norm(), 0.6) << "trial " << trial << " of seed " << seed;
+  }
+}
+
+TEST(InverseKinematics, IsNumericForOtherChains) {
+  std::mt19937_64 engine(5);
+  const auto& hand = sah().model();
+  for (const char* name : {"thumb", "fore"}) {
+    const auto& finger = hand.require_group(name);
+    for (int trial = 0; trial < 50; ++trial) {
+      const Vector q = random_axes(hand, finger, engine, sah().rest());
+      const auto found = hand.inverse(finger, hand.link_pose(q, finger.tip), sah().rest());
+      ASSERT_TRUE(found.has_value()) << name << " trial " << trial;
+      EXPECT_LT((*found - RobotModel::part(q, finger)).cwiseAbs().maxCoeff(), 1e-2) << name << " trial " << trial;
+    }
+  }
+}
+
 TEST(InverseKinematics, SaysNoOutOfReach) {
   const auto& arm = jido().require_group("arm");
   Pose far = jido().link_pose(jido().rest_posture(), arm.tip);

@@ -1,0 +1,109 @@
+// The chain of joints that moves one group's tip, prepared for inverse kinematics: everything that does not turn is folded in.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/model/robot_model.hpp"
+
+namespace handsel::ik {
+
+constexpr int kMaxAxes = 24;
+
+using Axes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>;
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxAxes>;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+struct Element {
+  Pose T_before;
+  Vector3 axis;
+  bool prismatic;
+  int column;
+  double factor, offset;
+};
+
+class Chain {
+ public:
+  Chain(const RobotModel& robot, const Group& group, const Vector& q) : size_(static_cast<int>(group.axes.size())) {
+    lower_.resize(size_), upper_.resize(size_), rest_.resize(size_);
+    for (int i = 0; i < size_; ++i) {
+      const Axis& axis = robot.axes()[group.axes[i]];
+      lower_[i] = axis.lower, upper_[i] = axis.upper, rest_[i] = robot.rest_posture()[group.axes[i]];
+    }
+    std::vector<int> path;
+    for (int link = group.tip; robot.links()[link].parent_joint >= 0; link = robot.joints()[path.back()].parent)
+      path.push_back(robot.links()[link].parent_joint);
+    Pose T = Pose::Identity();
+    for (auto j = path.rbegin(); j != path.rend(); ++j) {
+      const Joint& joint = robot.joints()[*j];
+      T = T * joint.T_parent_joint;
+      if (joint.kind == JointKind::fixed) continue;
+      int column = -1;
+      for (int c = 0; c < size_; ++c)
+        if (group.axes[c] == joint.dof) column = c;
+      if (column < 0) {
+        const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
+        if (joint.kind == JointKind::prismatic)
+          T.translation() += T.linear() * (value * joint.axis);
+        else
+          T.rotate(Eigen::AngleAxisd(value, joint.axis));
+        continue;
+      }
+      const bool prismatic = joint.kind == JointKind::prismatic;
+      if (!elements_.empty()) reach_ += T.translation().norm();
+      if (prismatic) reach_ += std::max(std::abs(lower_[column]), std::abs(upper_[column])) * std::abs(joint.mimic_factor);
+      elements_.push_back({T, joint.axis, prismatic, column, joint.mimic_factor, joint.mimic_offset});
+      T = Pose::Identity();
+    }
+    T_after_ = T;
+    reach_ += T.translation().norm();
+  }
+
+  int size() const { return size_; }
+  bool empty() const { return elements_.empty(); }
+  const Axes& lower() const { return lower_; }
+  const Axes& upper() const { return upper_; }
+  const Axes& rest() const { return rest_; }
+  const std::vector<Element>& elements() const { return elements_; }
+  bool within_reach(const Vector3& p) const { return (p - elements_.front().T_before.translation()).norm() <= reach_ + 1e-6; }
+
+  Pose forward(const Axes& q, Jacobian* J) const {
+    Pose T = Pose::Identity();
+    Vector3 origins[2 * kMaxAxes], axes[2 * kMaxAxes];
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      const Element& e = elements_[i];
+      T = T * e.T_before;
+      origins[i] = T.translation();
+      axes[i] = T.linear() * e.axis;
+      const double value = e.factor * q[e.column] + e.offset;
+      if (e.prismatic)
+        T.translation() += value * axes[i];
+      else
+        T.linear() = T.linear() * Eigen::AngleAxisd(value, e.axis).toRotationMatrix();
+    }
+    T = T * T_after_;
+    if (J == nullptr) return T;
+    J->setZero(6, size_);
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      const Element& e = elements_[i];
+      if (e.prismatic) {
+        J->block<3, 1>(0, e.column) += e.factor * axes[i];
+      } else {
+        J->block<3, 1>(0, e.column) += e.factor * axes[i].cross(T.translation() - origins[i]);
+        J->block<3, 1>(3, e.column) += e.factor * axes[i];
+      }
+    }
+    return T;
+  }
+  bool fits() const { return size_ <= kMaxAxes && elements_.size() <= 2 * kMaxAxes; }
+
+ private:
+  int size_;
+  Axes lower_, upper_, rest_;
+  std::vector<Element> elements_;
+  Pose T_after_{Pose::Identity()};
+  double reach_{0};
+};
+
+}  // namespace handsel::ik

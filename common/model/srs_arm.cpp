@@ -1,0 +1,187 @@
+#include "common/model/srs_arm.hpp"
+
+#include <limits>
+
+namespace handsel::ik {
+namespace {
+
+constexpr double kSame = 1e-6;  // [m] and [rad], for recognising the shape
+constexpr int kCircleSamples = 48;
+constexpr int kRefinements = 24;
+constexpr double kViolation = 1e3;                     // cost of each radian outside the limits
+constexpr double kOnLimit = 1e-7, kWorthTrying = 0.3;  // [rad] outside the limits
+constexpr double kRestWeight = 0.02;
+constexpr double kMargin = 0.15;  // [rad] wanted to the limits
+constexpr double kMarginWeight = 4.0;
+
+double wrap(double angle) { return angle - 2 * M_PI * std::nearbyint(angle / (2 * M_PI)); }
+
+/// Where two lines meet; false when they do not.
+bool meet(const Vector3& p, const Vector3& a, const Vector3& q, const Vector3& b, Vector3& at) {
+  const Vector3 n = a.cross(b);
+  if (n.norm() < 0.9) return false;
+  at = p + a * ((q - p).cross(b).dot(n) / n.squaredNorm());
+  return std::abs((q - p).dot(n)) < kSame;
+}
+
+bool on_line(const Vector3& x, const Vector3& p, const Vector3& a) { return a.cross(x - p).norm() < kSame; }
+
+}  // namespace
+
+/// What does not change along the circle of elbow positions.
+struct SrsArm::Problem {
+  Axes seed;
+  Eigen::Matrix3d R_tip;  // R_target * R_zero^T
+  Vector3 to_target;      // shoulder to wrist, wanted
+  double elbow, elbow_cost;
+  Eigen::Matrix3d R_elbow_t;  // turn of the elbow, transposed
+  Eigen::Matrix3d R_start;    // a turn of the shoulder that brings the wrist to its place
+  Vector3 circle_axis;
+};
+
+std::optional<SrsArm> SrsArm::recognise(const Chain& chain) {
+  const auto& elements = chain.elements();
+  if (chain.size() != 7 || elements.size() != 7) return std::nullopt;
+  SrsArm arm(chain);
+  std::array<Vector3, 7> point;
+  Pose T = Pose::Identity();
+  for (int i = 0; i < 7; ++i) {
+    const Element& e = elements[i];
+    if (e.prismatic || e.column != i || e.factor != 1 || e.offset != 0) return std::nullopt;
+    T = T * e.T_before;
+    point[i] = T.translation();
+    arm.axis_[i] = T.linear() * e.axis;
+    if (i > 0 && std::abs(arm.axis_[i].dot(arm.axis_[i - 1])) > kSame) return std::nullopt;
+  }
+  const auto& a = arm.axis_;
+  Vector3 elbow, wrist;
+  if (!meet(point[0], a[0], point[1], a[1], arm.shoulder_) || !on_line(arm.shoulder_, point[2], a[2])) return std::nullopt;
+  if (!meet(point[4], a[4], point[5], a[5], wrist) || !on_line(wrist, point[6], a[6])) return std::nullopt;
+  if (!meet(point[2], a[2], point[3], a[3], elbow) || !on_line(elbow, point[4], a[4])) return std::nullopt;
+  for (const auto& [i, k] : {std::pair(0, 2), std::pair(4, 6), std::pair(2, 4)})
+    if (a[i].cross(a[k]).norm() > kSame) return std::nullopt;
+  arm.to_elbow_ = elbow - arm.shoulder_;
+  arm.to_wrist_ = wrist - elbow;
+  if (arm.to_elbow_.norm() < 0.01 || arm.to_wrist_.norm() < 0.01) return std::nullopt;
+  const Pose T_zero = chain.forward(Axes::Zero(7), nullptr);
+  arm.R_zero_ = T_zero.linear();
+  arm.p_tip_wrist_ = T_zero.inverse() * wrist;
+  for (int k = 0; k < 2; ++k) {
+    arm.basis_[k] << a[4 * k + 1].cross(a[4 * k]), a[4 * k + 1], a[4 * k];
+    arm.last_sign_[k] = a[4 * k].dot(a[4 * k + 2]) > 0 ? 1.0 : -1.0;
+  }
+  return arm;
+}
+
+double SrsArm::axis_cost(const Problem& problem, int axis, double& angle) const {
+  const double low = chain_->lower()[axis], high = chain_->upper()[axis], seed = problem.seed[axis];
+  angle = seed + wrap(angle - seed);
+  if (angle < low && angle + 2 * M_PI <= high) angle += 2 * M_PI;
+  if (angle > high && angle - 2 * M_PI >= low) angle -= 2 * M_PI;
+  const double outside = std::max({low - angle, angle - high, 0.0});
+  if (outside > M_PI) angle = wrap(angle);
+  const double inside = std::min(angle - low, high - angle), tight = std::max(kMargin - inside, 0.0);
+  const double from_seed = angle - seed, from_rest = angle - chain_->rest()[axis];
+  return from_seed * from_seed + kRestWeight * from_rest * from_rest + kMarginWeight * tight * tight +
+         kViolation * std::max({low - angle, angle - high, 0.0});
+}
+
+/// Splits R into turns about three axes from `first`; of the two ways the cheaper one goes into the candidate.
+void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const {
+  const Eigen::Matrix3d& B = basis_[first / 4];
+  const Eigen::Matrix3d Z = B.transpose() * R * B;
+  const double sine = std::hypot(Z(0, 2), Z(1, 2)), middle = std::atan2(sine, Z(2, 2));
+  double q0, q2;
+  if (sine > 1e-9) {
+    q0 = std::atan2(Z(1, 2), Z(0, 2));
+    q2 = std::atan2(Z(2, 1), -Z(2, 0));
+  } else {
+    q0 = problem.seed[first];
+    const double both = std::atan2(Z(1, 0), Z(1, 1));
+    q2 = Z(2, 2) > 0 ? both - q0 : q0 - std::atan2(-Z(1, 0), Z(1, 1));
+  }
+  double best = std::numeric_limits<double>::infinity();
+  std::array<double, 3> chosen{};
+  for (const double side : {1.0, -1.0}) {
+    const double half_turn = side > 0 || sine <= 1e-9 ? 0.0 : M_PI;
+    std::array<double, 3> q{q0 + half_turn, side * middle, last_sign_[first / 4] * (q2 + half_turn)};
+    double cost = 0;
+    for (int i = 0; i < 3; ++i) cost += axis_cost(problem, first + i, q[i]);
+    if (cost < best) best = cost, chosen = q;
+  }
+  candidate.cost += best;
+  for (int i = 0; i < 3; ++i) candidate.q[first + i] = chosen[i];
+}
+
+SrsArm::Candidate SrsArm::at(const Problem& problem, double circle) const {
+  Candidate candidate{problem.elbow_cost, Axes::Zero(7)};
+  candidate.q[3] = problem.elbow;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
+  choose(problem, R, 0, candidate);
+  choose(problem, problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, candidate);
+  return candidate;
+}
+
+/// Golden-section search between the samples beside `centre`.
+SrsArm::Candidate SrsArm::refine(const Problem& problem, double centre) const {
+  constexpr double golden = 0.6180339887498949;
+  double low = centre - 2 * M_PI / kCircleSamples, high = centre + 2 * M_PI / kCircleSamples;
+  double x = high - golden * (high - low), y = low + golden * (high - low);
+  Candidate at_x = at(problem, x), at_y = at(problem, y), best = at(problem, centre);
+  for (int i = 0; i < kRefinements; ++i) {
+    if (at_x.cost < at_y.cost) {
+      high = y, y = x, at_y = at_x;
+      x = high - golden * (high - low);
+      at_x = at(problem, x);
+    } else {
+      low = x, x = y, at_x = at_y;
+      y = low + golden * (high - low);
+      at_y = at(problem, y);
+    }
+  }
+  for (const auto& c : {at_x, at_y})
+    if (c.cost < best.cost) best = c;
+  return best;
+}
+
+double SrsArm::outside(const Axes& q) const { return std::max({0.0, (chain_->lower() - q).maxCoeff(), (q - chain_->upper()).maxCoeff()}); }
+
+std::optional<SrsArm::Solution> SrsArm::solve(const Pose& T_root_tip, const Axes& seed) const {
+  Problem problem;
+  problem.seed = seed;
+  problem.R_tip = T_root_tip.linear() * R_zero_.transpose();
+  problem.to_target = T_root_tip * p_tip_wrist_ - shoulder_;
+  const double upper = to_elbow_.norm(), fore = to_wrist_.norm(), d = problem.to_target.norm();
+  const double cosine = (d * d - upper * upper - fore * fore) / (2 * upper * fore);
+  if (d < 1e-6 || std::abs(cosine) > 1) return std::nullopt;
+  problem.circle_axis = problem.to_target / d;
+  // Turned by this much from straight; the arm may be folded back on itself when all joints are 0.
+  const double bend = to_elbow_.dot(to_wrist_) > 0 ? std::acos(cosine) : M_PI - std::acos(cosine);
+
+  Candidate best{std::numeric_limits<double>::infinity(), Axes::Zero(7)};
+  const auto keep = [&best](const Candidate& c) {
+    if (c.cost < best.cost) best = c;
+  };
+  for (const double side : {1.0, -1.0}) {
+    problem.elbow = side * bend;
+    problem.elbow_cost = axis_cost(problem, 3, problem.elbow);
+    const Eigen::Matrix3d R_elbow = Eigen::AngleAxisd(problem.elbow, axis_[3]).toRotationMatrix();
+    problem.R_elbow_t = R_elbow.transpose();
+    problem.R_start = Eigen::Quaterniond::FromTwoVectors(to_elbow_ + R_elbow * to_wrist_, problem.to_target).toRotationMatrix();
+    std::array<double, kCircleSamples> cost;
+    int least = 0;
+    for (int i = 0; i < kCircleSamples; ++i) {
+      cost[i] = at(problem, 2 * M_PI * i / kCircleSamples).cost;
+      if (cost[i] < cost[least]) least = i;
+    }
+    keep(refine(problem, 2 * M_PI * least / kCircleSamples));
+    for (int i = 0; i < kCircleSamples && outside(best.q) > kOnLimit; ++i) {
+      const double before = cost[(i + kCircleSamples - 1) % kCircleSamples], after = cost[(i + 1) % kCircleSamples];
+      if (i != least && cost[i] <= before && cost[i] <= after && cost[i] < kViolation * kWorthTrying)
+        keep(refine(problem, 2 * M_PI * i / kCircleSamples));
+    }
+  }
+  return Solution{best.q.cwiseMax(chain_->lower()).cwiseMin(chain_->upper()), outside(best.q)};
+}
+
+}  // namespace handsel::ik

@@ -1,0 +1,48 @@
+// Closed-form inverse kinematics of seven-joint arms with a spherical shoulder, an elbow and a spherical wrist (KUKA LWR and iiwa). Ours.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "common/model/ik_chain.hpp"
+
+namespace handsel::ik {
+
+class SrsArm {
+ public:
+  /// The arm, if the chain is one: axes 1 to 3 meet in the shoulder, 5 to 7 in the wrist, neighbours are perpendicular and the elbow is
+  /// on axes 3 and 5, which are parallel when all joints are 0.
+  static std::optional<SrsArm> recognise(const Chain& chain);
+
+  /// The solution inside the limits nearest `seed`, found over the whole circle of elbow positions; a little weight goes to the rest
+  /// posture and to staying off the limits. When there is none: the one least outside, put on the limits, with `outside` > 0; nullopt when
+  /// the wrist is out of reach.
+  struct Solution {
+    Axes q;
+    double outside;  ///< largest violation of a limit before it was put on it [rad]
+  };
+  std::optional<Solution> solve(const Pose& T_root_tip, const Axes& seed) const;
+
+ private:
+  struct Candidate {
+    double cost;
+    Axes q;
+  };
+  struct Problem;
+
+  explicit SrsArm(const Chain& chain) : chain_(&chain) {}
+  double axis_cost(const Problem& problem, int axis, double& angle) const;
+  void choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const;
+  Candidate at(const Problem& problem, double circle) const;
+  Candidate refine(const Problem& problem, double centre) const;
+  double outside(const Axes& q) const;
+
+  const Chain* chain_;
+  std::array<Vector3, 7> axis_;  // at zero, root frame
+  Vector3 shoulder_, to_elbow_, to_wrist_, p_tip_wrist_;
+  Eigen::Matrix3d R_zero_;                // of the tip
+  std::array<Eigen::Matrix3d, 2> basis_;  // of shoulder and wrist: columns axis2 x axis1, axis2, axis1
+  std::array<double, 2> last_sign_;       // third axis of each along (+1) or against (-1) its first
+};
+
+}  // namespace handsel::ik
