@@ -251,12 +251,32 @@ struct CollisionWorld::Impl {
     return false;
   }
 
-  bool judge(const Vector& q, CollisionVerdict* verdict) {
+  /// Whether any robot capsule comes near a person who is an obstacle: the capsules hold the links.
+  bool near_people() const {
+    for (const LinkCapsule& capsule : capsules) {
+      const Pose T_world_link = T_world_base * T_root_link[capsule.link];
+      const Vector3 a = T_world_link * capsule.a, b = T_world_link * capsule.b;
+      for (const PersonBody& person : people) {
+        if (!person.obstacle || (person.allowed && person.arm)) continue;
+        if (segment_distance(a, b, person.a, person.b) <= capsule.radius + person.radius) return true;
+      }
+    }
+    return false;
+  }
+
+  bool people_touch(CollisionVerdict* verdict) const {
+    if (people.empty() || !near_people()) return false;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      if (bodies[i].moves && person_touch(i, verdict)) return true;
+    return false;
+  }
+
+  bool judge(const Vector& q, CollisionVerdict* verdict, bool with_people = true) {
     ++checks;
     place(q);
     for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict) || person_touch(i, verdict)))
-        return false;
+      if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict))) return false;
+    if (with_people && people_touch(verdict)) return false;
     const bool known = self_free.size() == q.size();
     for (int axis = 0; axis < robot.dof(); ++axis) changed[axis] = !known || self_free[axis] != q[axis];
     if (self_touch(link_pairs, verdict) || self_touch(held_pairs, verdict)) return false;
@@ -321,6 +341,20 @@ CollisionVerdict CollisionWorld::check(const Vector& q) {
 }
 
 bool CollisionWorld::is_free(const Vector& q) { return impl_->judge(q, nullptr); }
+
+CollisionVerdict CollisionWorld::check_people(const Vector& q) {
+  CollisionVerdict verdict;
+  ++impl_->checks;
+  impl_->place(q);
+  impl_->people_touch(&verdict);
+  return verdict;
+}
+
+CollisionVerdict CollisionWorld::check_scene(const Vector& q) {
+  CollisionVerdict verdict;
+  impl_->judge(q, &verdict, false);
+  return verdict;
+}
 
 CollisionVerdict CollisionWorld::check_motion(const Vector& from, const Vector& to, double step) {
   CollisionVerdict verdict;

@@ -54,6 +54,10 @@ class CollisionWorld {
 
   CollisionVerdict check(const Vector& q);  ///< all axes
   bool is_free(const Vector& q);            ///< the same without the names
+  /// Contact with people only, as set_people and the allowed contacts make them obstacles; cheap when they are far.
+  CollisionVerdict check_people(const Vector& q);
+  /// Contact with scene, obstacles and itself only.
+  CollisionVerdict check_scene(const Vector& q);
   /// Checks the straight line every `step` [rad, max norm], both ends included, ends and middle first.
   CollisionVerdict check_motion(const Vector& from, const Vector& to, double step = 0.02);
   /// Least distance robot (with what it holds) to people [m]; closed forms against capsules around the robot's links; +inf if nobody.
@@ -62,7 +66,7 @@ class CollisionWorld {
   /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked: distances beyond `cap` return `cap`.
   double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity());
 
-  std::uint64_t checks() const;  ///< states judged so far by check, is_free and check_motion
+  std::uint64_t checks() const;  ///< states judged so far, by whatever function
 
  private:
   struct Impl;

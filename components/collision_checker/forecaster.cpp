@@ -1,0 +1,162 @@
+#include "components/collision_checker/forecaster.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace handsel::collision_checker {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kOtherAxes = 0.05;    // [rad] the other axes may move this much before the scene is judged anew
+constexpr double kRestMotion = 1e-3;   // [rad] at rest, smaller motions change nothing
+constexpr double kFarClearance = 5.0;  // [m] clearances of a query beyond this are not looked for
+
+std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
+
+bool same(const Attachment& a, const Attachment& b) {
+  return a.object == b.object && (a.object.empty() || a.T_tool_object.isApprox(b.T_tool_object, 1e-4));
+}
+
+}  // namespace
+
+Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings)
+    : robot_(robot), settings_(settings), world_(robot, std::move(library)), cost_(robot, cost) {}
+
+void Forecaster::set_scene(const Scene& scene) {
+  const bool moved = !scene.T_world_base.isApprox(T_world_base_, 1e-6);
+  world_.set_scene(scene);
+  if (scene.robot_known) {
+    T_world_base_ = scene.T_world_base;
+    cost_.set_base(T_world_base_);
+  }
+  if (moved || scene.revision != revision_) memory_.clear();
+  revision_ = scene.revision;
+  rest_known_ = false;
+}
+
+void Forecaster::set_people(const HumanState& people) {
+  world_.set_people(people, PeopleParts::without_forearms_and_hands);
+  cost_.set_people(people);
+  rest_known_ = false;
+}
+
+bool Forecaster::fits(const ActiveTrajectory& active) const {
+  if (active.position.size() != robot_.dof()) return false;
+  if (static_cast<int>(active.axes.size()) != active.rest.size()) return false;
+  return std::all_of(active.axes.begin(), active.axes.end(), [this](std::uint32_t axis) { return static_cast<int>(axis) < robot_.dof(); });
+}
+
+void Forecaster::remember_for(const ActiveTrajectory& active) {
+  Vector others = active.position;
+  for (std::uint32_t axis : active.axes) others[axis] = 0;
+  const bool known = !memory_.empty() && trajectory_ == active.trajectory && same(attachment_, active.attachment) &&
+                     allowed_ == active.allowed_contacts && others_.size() == others.size() &&
+                     (others - others_).cwiseAbs().maxCoeff() < kOtherAxes;
+  if (known) return;
+  if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts || trajectory_ != active.trajectory)
+    world_.set_attachment(active.attachment, active.allowed_contacts);
+  trajectory_ = active.trajectory;
+  attachment_ = active.attachment;
+  allowed_ = active.allowed_contacts;
+  others_ = others;
+  const std::size_t states = 2 + static_cast<std::size_t>(active.rest.duration() / settings_.spacing);
+  memory_.assign(states, Memory::unknown);
+  contacts_.assign(states, {});
+  sample_.position.resize(active.rest.size());
+  sample_.velocity.resize(active.rest.size());
+  sample_.acceleration.resize(active.rest.size());
+}
+
+CollisionVerdict Forecaster::scene_verdict(std::size_t index, const Vector& q) {
+  if (memory_[index] == Memory::unknown) {
+    contacts_[index] = world_.check_scene(q);
+    memory_[index] = contacts_[index].free ? Memory::free : Memory::collides;
+  }
+  return contacts_[index];
+}
+
+void Forecaster::look(const Vector& q, TrajectoryForecast& forecast) {
+  forecast.clearance = std::min(forecast.clearance, world_.distance_to_people(q));
+  if (cost_.anyone()) forecast.cost = std::max(forecast.cost, cost_(q));
+}
+
+TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
+  TrajectoryForecast forecast;
+  forecast.trajectory = active.trajectory;
+  forecast.time_to_collision = kInfinity;
+  forecast.clearance = kInfinity;
+  if (!fits(active)) {
+    forecast.collides = true;
+    forecast.time_to_collision = 0;
+    forecast.clearance = 0;
+    forecast.reason = "the running trajectory does not fit the robot " + robot_.name();
+    return forecast;
+  }
+  const double duration = active.rest.duration();
+  const bool backward = active.speed_factor < 0;
+  if (active.trajectory == 0 || active.rest.size() == 0 || (!backward && active.time >= duration)) {
+    const bool stood = rest_known_ && rest_position_.size() == active.position.size() &&
+                       (rest_position_ - active.position).cwiseAbs().maxCoeff() < kRestMotion;
+    if (!stood) {
+      if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts) remember_for(active);
+      rest_ = forecast;
+      look(active.position, rest_);
+      rest_position_ = active.position;
+      rest_known_ = true;
+    }
+    rest_.trajectory = active.trajectory;
+    return rest_;
+  }
+  remember_for(active);
+  rest_known_ = false;
+  const double speed = std::max(std::abs(active.speed_factor), settings_.least_speed);
+  const double reach = speed * settings_.horizon, spacing = settings_.spacing;
+  const auto index_at = [&](double t) { return static_cast<long>(std::clamp(t, 0.0, duration) / spacing); };
+  const long last_index = static_cast<long>(std::ceil(duration / spacing));
+  // States lie on a fixed grid of the trajectory's own time; the first is the one about to be reached, then on in the sense of motion.
+  const long first = backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
+  const long end = backward ? index_at(active.time - reach) : std::min(last_index, index_at(active.time + reach) + 1);
+  look(active.position, forecast);
+  Vector q = active.position;
+  for (long k = first;; k += backward ? -1 : 1) {
+    const double t = std::min(duration, static_cast<double>(k) * spacing);
+    active.rest.sample(t, sample_);
+    for (std::size_t i = 0; i < active.axes.size(); ++i) q[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
+    CollisionVerdict verdict = scene_verdict(static_cast<std::size_t>(k), q);
+    if (verdict.free) verdict = world_.check_people(q);
+    look(q, forecast);
+    if (!verdict.free) {
+      forecast.collides = true;
+      forecast.time_to_collision = std::max(0.0, std::abs(t - active.time) / speed);
+      forecast.reason = contact(verdict);
+      break;
+    }
+    if (k == end) break;
+  }
+  return forecast;
+}
+
+StateVerdict judge(const RobotModel& robot, CollisionWorld& world, const StateQuery& query) {
+  StateVerdict verdict;
+  verdict.id = query.id;
+  verdict.clearance = kInfinity;
+  world.set_attachment(query.attachment, query.allowed_contacts);
+  for (const Vector& q : query.states) {
+    CollisionVerdict one;
+    std::string why;
+    if (q.size() != robot.dof()) {
+      why = "a state has " + std::to_string(q.size()) + " axes, the robot has " + std::to_string(robot.dof());
+    } else if (one = world.check(q); !one.free) {
+      why = contact(one);
+    }
+    verdict.free.push_back(why.empty() ? 1 : 0);
+    if (verdict.reason.empty()) verdict.reason = why;
+    if (why.empty())
+      verdict.clearance = std::min(
+          {verdict.clearance, world.distance_to_people(q), world.distance_to_scene(q, std::min(kFarClearance, verdict.clearance))});
+  }
+  return verdict;
+}
+
+}  // namespace handsel::collision_checker

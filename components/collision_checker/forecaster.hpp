@@ -1,0 +1,65 @@
+// Where the running trajectory leads: contact, clearance and cost over the next moments, against the newest scene and people. Pure.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/collision/collision_world.hpp"
+#include "common/cost/human_cost.hpp"
+#include "common/messages/execution.hpp"
+
+namespace handsel::collision_checker {
+
+struct ForecastSettings {
+  double horizon{1.5};       ///< looked ahead at present speed [s]
+  double least_speed{0.25};  ///< speed factor assumed for a slower or held trajectory, so that what holds it stays seen
+  double spacing{0.05};      ///< of states, in time of the trajectory [s]
+};
+
+/// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower the clearance, the controller's guard
+/// answers for them. What scene and robot themselves say about a state of a trajectory is remembered until one of them changes.
+class Forecaster {
+ public:
+  Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings);
+
+  void set_scene(const Scene& scene);
+  void set_people(const HumanState& people);
+
+  /// At rest: no contact is reported, clearance and cost of where the robot stands. A trajectory that does not fit the robot is reported as
+  /// a collision now, with the reason.
+  TrajectoryForecast forecast(const ActiveTrajectory& active);
+
+  std::uint64_t checks() const { return world_.checks(); }
+
+ private:
+  enum class Memory : char { unknown, free, collides };
+  bool fits(const ActiveTrajectory& active) const;
+  void remember_for(const ActiveTrajectory& active);
+  void look(const Vector& q, TrajectoryForecast& forecast);
+  CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
+
+  const RobotModel& robot_;
+  ForecastSettings settings_;
+  CollisionWorld world_;
+  HumanCost cost_;
+  std::uint64_t revision_{0};
+  Pose T_world_base_{Pose::Identity()};
+
+  std::uint64_t trajectory_{0};  // that memory_ is about
+  Attachment attachment_;
+  std::vector<std::string> allowed_;
+  Vector others_;               // positions of the axes the trajectory does not move, when memory_ began
+  std::vector<Memory> memory_;  // by state of the trajectory
+  std::vector<CollisionVerdict> contacts_;
+  MotionState3 sample_;
+
+  Vector rest_position_;  // where `rest_` was computed
+  TrajectoryForecast rest_;
+  bool rest_known_{false};
+};
+
+/// Judges the states of a query in order. `clearance` is over the free ones.
+StateVerdict judge(const RobotModel& robot, CollisionWorld& world, const StateQuery& query);
+
+}  // namespace handsel::collision_checker

@@ -1,0 +1,82 @@
+#include "components/collision_checker/node.hpp"
+
+#include "common/config/collision_checker.pb.h"
+#include "common/config/resources.hpp"
+#include "common/cost/cost_settings.hpp"
+
+namespace handsel::collision_checker {
+namespace {
+
+config::CollisionCheckerSettings load(const NodeContext& context) {
+  config::CollisionCheckerSettings s;
+  load_text_proto(context.settings / "collision_checker.txtpb", s);
+  for (double positive : {s.period(), s.horizon(), s.least_speed(), s.spacing(), s.max_age(), s.check_time()})
+    if (!(positive > 0)) throw ConfigError("collision_checker.txtpb: every setting must be > 0");
+  if (s.least_speed() > 1) throw ConfigError("collision_checker.txtpb: least_speed must be at most 1");
+  return s;
+}
+
+ForecastSettings core_settings(const config::CollisionCheckerSettings& s) { return {s.horizon(), s.least_speed(), s.spacing()}; }
+
+}  // namespace
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : bus_(bus),
+      robot_(context.robot),
+      forecaster_(*context.robot, context.objects, load_cost_settings(context.settings), core_settings(load(context))),
+      query_world_(*context.robot, context.objects),
+      forecast_out_(bus.advertise<TrajectoryForecast>()),
+      verdict_out_(bus.advertise<StateVerdict>()) {
+  const config::CollisionCheckerSettings settings = load(context);
+  check_time_ = settings.check_time();
+  max_age_ = from_seconds(settings.max_age());
+  bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt&) { active_ = active; });
+  bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
+    scene_ = std::make_shared<Scene>(scene);
+    forecaster_.set_scene(scene);
+  });
+  bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) {
+    people_ = std::make_shared<HumanState>(people);
+    forecaster_.set_people(people);
+  });
+  bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
+  bus.every(from_seconds(settings.period()), [this](TimePoint) { forecast(); });
+}
+
+void Node::forecast() {
+  const char* missing = bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
+                        : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
+                        : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
+                                                                : "";
+  bus_.set_degraded(missing);
+  if (*missing != '\0') return;
+  forecast_out_->publish(forecaster_.forecast(active_));
+}
+
+void Node::answer(const StateQuery& query) {
+  struct Work {
+    StateQuery query;
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const HumanState> people;
+    StateVerdict verdict;
+  };
+  auto work = std::make_shared<Work>(Work{query, scene_, people_, {}});
+  if (!work->scene || !work->people) {
+    work->verdict.id = query.id;
+    work->verdict.reason = work->scene ? "no state of people is known" : "no scene is known";
+    work->verdict.free.assign(query.states.size(), 0);
+    verdict_out_->publish(work->verdict);
+    return;
+  }
+  bus_.run_job(
+      [this, work](const CancelToken&) {
+        query_world_.set_scene(*work->scene);
+        query_world_.set_people(*work->people);
+        const std::uint64_t before = query_world_.checks();
+        work->verdict = judge(*robot_, query_world_, work->query);
+        return from_seconds(check_time_ * static_cast<double>(query_world_.checks() - before));
+      },
+      [this, work] { verdict_out_->publish(work->verdict); });
+}
+
+}  // namespace handsel::collision_checker

@@ -1,0 +1,36 @@
+// The collision checker on a Bus.
+#pragma once
+
+#include <memory>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/process.hpp"
+#include "common/messages/execution.hpp"
+#include "common/messages/planning.hpp"
+#include "common/messages/world.hpp"
+#include "components/collision_checker/forecaster.hpp"
+
+namespace handsel::collision_checker {
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void forecast();
+  void answer(const StateQuery& query);
+
+  Bus& bus_;
+  std::shared_ptr<const RobotModel> robot_;
+  double check_time_{};
+  Duration max_age_{};
+  Forecaster forecaster_;
+  CollisionWorld query_world_;  // used by jobs only, which run one after the other
+  std::unique_ptr<Publisher<TrajectoryForecast>> forecast_out_;
+  std::unique_ptr<Publisher<StateVerdict>> verdict_out_;
+  ActiveTrajectory active_;
+  std::shared_ptr<const Scene> scene_;
+  std::shared_ptr<const HumanState> people_;
+};
+
+}  // namespace handsel::collision_checker
