@@ -162,6 +162,7 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   command_ = command;
   command_.trajectory = {};
   runner_.start(path, of_axes(robot_->guard_limits(), command.axes));
+  path_ = runner_.state();
   arm_ = Arm::running;
   motion_ = MotionState::running;
   cancelled_ = off_path_ = false;
