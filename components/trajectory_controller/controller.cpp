@@ -134,9 +134,9 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
     motion_ = MotionState::refused;
     return reason;
   }
-  accepted_trajectory_ = command.id;
-  refusal_.clear();
   if (command.axes.empty()) {
+    accepted_trajectory_ = command.id;
+    refusal_.clear();
     cancelled_ = arm_ == Arm::running;
     motion_ = MotionState::stopped;
     return {};
@@ -158,14 +158,21 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   } else {
     for (std::size_t i = 0; i < path.axes.size(); ++i) path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
   }
+  cancelled_ = off_path_ = false;
+  const double factor = std::max(0.0, wanted_factor(now));
+  if (const std::string why = runner_.start(path, of_axes(robot_->guard_limits(), command.axes), factor); !why.empty()) {
+    motion_ = MotionState::refused;
+    refusal_ = "trajectory " + std::to_string(command.id) + ": " + why;
+    return why;
+  }
+  accepted_trajectory_ = command.id;
+  refusal_.clear();
   stand_arm();
   command_ = command;
   command_.trajectory = {};
-  runner_.start(path, of_axes(robot_->guard_limits(), command.axes));
   path_ = runner_.state();
   arm_ = Arm::running;
   motion_ = MotionState::running;
-  cancelled_ = off_path_ = false;
   started_ = now;
   too_near_for_ = 0.0;
   verdict_now_ = verdict_ahead_ = {};
@@ -447,7 +454,7 @@ void Controller::resync(TimePoint now) noexcept {
   constexpr double kDeadBand = 0.002;
   for (int axis : arm_axes_) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    if (mover.at_rest() && std::abs(state_.position[axis] - set_point_.position[axis]) > kDeadBand)
+    if (std::abs(state_.position[axis] - mover.target()) > kDeadBand)
       mover.go_to(state_.position[axis], limits_of(robot_->comfort_limits(), axis));
   }
   if (hand_.size() > 0) hand_.follow(state_.position);
