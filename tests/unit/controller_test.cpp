@@ -262,7 +262,7 @@ TEST(Controller, drive_off_stops_follows_the_robot_and_waits_for_permission) {
   EXPECT_EQ(b.core.mode(), Mode::stop);
   EXPECT_TRUE(has(b, Cause::drive_not_enabled));
   b.measured[0] += 0.1;
-  b.run(1.5);
+  b.run(3.0);
   EXPECT_NEAR(b.core.set_point().position[0], b.measured[0], 0.003);
   b.drive = DriveMode::enabled;
   b.run(0.2);
