@@ -206,11 +206,12 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
   // The posture of a robot side that has just come up is the first set-point.
   ready_ = true;
   set_point_ = rest_state(state.position);
+  for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), state.position[i]);
   next_ = set_point_;
   if (arm_ == Arm::running) motion_ = MotionState::stopped;
   stand_arm();
-  hand_.reset(state.position);
-  for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(state.position[axis]);
+  hand_.reset(set_point_.position);
+  for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
   head_wanted_ = false;
 }
 
@@ -261,6 +262,15 @@ void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   gaze_aimed_ = advice.gaze_target;
   head_target_ = aim(*robot_, *robot_->group("head"), set_point_.position, state_.T_world_base.inverse() * advice.gaze_target);
   head_wanted_ = true;
+}
+
+/// Measured positions are noisy; set-points never leave the bounds because of that.
+double Controller::inside(int axis, double position) const noexcept {
+  constexpr double kNoise = 0.02;
+  const Axis& bounds = robot_->axes()[static_cast<std::size_t>(axis)];
+  if (!(bounds.lower < bounds.upper)) return position;
+  const double within = std::clamp(position, bounds.lower, bounds.upper);
+  return std::abs(within - position) <= kNoise ? within : position;
 }
 
 void Controller::stand_arm() noexcept {
@@ -454,8 +464,8 @@ void Controller::resync(TimePoint now) noexcept {
   constexpr double kDeadBand = 0.002;
   for (int axis : arm_axes_) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    if (std::abs(state_.position[axis] - mover.target()) > kDeadBand)
-      mover.go_to(state_.position[axis], limits_of(robot_->comfort_limits(), axis));
+    const double measured = inside(axis, state_.position[axis]);
+    if (std::abs(measured - mover.target()) > kDeadBand) mover.go_to(measured, limits_of(robot_->comfort_limits(), axis));
   }
   if (hand_.size() > 0) hand_.follow(state_.position);
 }

@@ -196,7 +196,7 @@ TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous
     ASSERT_LE(story.bench.worst_velocity, 1 + 1e-6) << "step " << k;
     ASSERT_LE(story.bench.worst_acceleration, 1 + 1e-6) << "step " << k;
     ASSERT_LE(story.bench.worst_jerk, 1 + 1e-6) << "step " << k;
-    ASSERT_LE(story.bench.worst_jump, 1 + 1e-3) << "step " << k;
+    ASSERT_LE(story.bench.worst_jump, 1 + 1e-6) << "step " << k;
   }
   std::printf("moving in %d of %d steps; %d of %d calm trajectories finished; shares v %.6f a %.6f j %.6f\n", moved, steps_wanted(),
               calm_finished, story.sent, story.bench.worst_velocity, story.bench.worst_acceleration, story.bench.worst_jerk);

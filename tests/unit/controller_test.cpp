@@ -120,7 +120,7 @@ TEST(Controller, a_start_slightly_off_is_bridged_softly) {
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
   EXPECT_NEAR(b.core.set_point().position[0], goal()[0] + 0.02, 1e-6);
   EXPECT_LE(b.worst_jerk, 1 + 1e-6);
-  EXPECT_LE(b.worst_jump, 1 + 1e-3);
+  EXPECT_LE(b.worst_jump, 1 + 1e-6);
 }
 
 TEST(Controller, a_command_without_axes_stops_softly_along_the_path) {
@@ -270,7 +270,7 @@ TEST(Controller, drive_off_stops_follows_the_robot_and_waits_for_permission) {
   ++b.go.epoch;
   b.run(0.2);
   EXPECT_EQ(b.core.mode(), Mode::normal);
-  EXPECT_LE(b.worst_jump, 1 + 1e-3);
+  EXPECT_LE(b.worst_jump, 1 + 1e-6);
 }
 
 TEST(Controller, a_robot_that_does_not_follow_is_a_fault_until_a_person_says_so) {
