@@ -1,8 +1,5 @@
 #include "sim/robot_side.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace handsel::sim {
 
 RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSideSettings& settings)
@@ -71,9 +68,7 @@ void RobotSide::step(double now, double dt, bool holding_object) {
   fresh_ = false;
   if (!settings_.never_releases) return;
   if (holding_object && !clenched_) {
-    double moving = 0;
-    for (int axis : hand_axes_) moving = std::max(moving, std::abs(velocity_[axis]));
-    clenched_ = moving < 1e-6;
+    clenched_ = true;
     closed_ = position_;
   }
   if (clenched_) {

@@ -3,7 +3,6 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -19,14 +18,10 @@ namespace {
 
 constexpr Duration kTwinWait = std::chrono::milliseconds(400);
 
-constexpr Duration kJobsEnd = std::chrono::milliseconds(600);
-
-std::atomic<DdsBus*> stopped_by_signal{nullptr};
-std::atomic<bool> asked_to_end{false};
+DdsBus* stopped_by_signal = nullptr;
 
 void on_signal(int) {
-  asked_to_end = true;
-  if (DdsBus* bus = stopped_by_signal) bus->stop();
+  if (stopped_by_signal) stopped_by_signal->stop();
 }
 
 std::uint32_t default_domain() {
@@ -70,7 +65,6 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   const NodeContext context = load_context(robot, scenario, config, seed);
   DdsBus bus(settings);
   stopped_by_signal = &bus;
-  if (asked_to_end) return 0;
   if (!standby && bus.has_twin(kTwinWait))
     throw ConfigError("domain " + std::to_string(settings.domain) + " already has a " + component + "; --standby starts one more");
   {
@@ -84,10 +78,6 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
     std::fflush(stdout);
     bus.run();
     bus.set_stopping();
-    if (!bus.end_jobs(kJobsEnd)) {
-      std::fprintf(stderr, "handsel_%s: a job did not stop when asked; ending without it\n", component);
-      std::_Exit(0);
-    }
   }
   stopped_by_signal = nullptr;
   return 0;

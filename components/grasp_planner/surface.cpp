@@ -171,6 +171,25 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
 
 double normalised_curvature(double mean_curvature, double radius) { return std::clamp(2 * mean_curvature * radius, 0.0, 1.0); }
 
+Vector3 mass_centre(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vector3& v : mesh.vertices) box.extend(v);
+  const Vector3 o = box.center();
+  double volume = 0, area = 0;
+  Vector3 by_volume = Vector3::Zero(), by_area = Vector3::Zero();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Corners k = corners(mesh, t);
+    const double part = (k.a - o).dot((k.b - o).cross(k.c - o)) / 6, face = area_vector(k).norm();
+    volume += part;
+    area += face;
+    by_volume += part * (k.a + k.b + k.c - 3 * o) / 4;
+    by_area += face * (k.a + k.b + k.c - 3 * o) / 3;
+  }
+  if (!(area > 0)) return o;
+  const Vector3 inside = volume > 0.02 * box.volume() ? Vector3(by_volume / volume) : Vector3(by_area / area);
+  return o + inside.cwiseMax(-0.5 * box.sizes()).cwiseMin(0.5 * box.sizes());
+}
+
 MeshFindings orient(TriangleMesh& mesh) {
   MeshFindings findings;
   const EdgeMap edges = edges_of(mesh);

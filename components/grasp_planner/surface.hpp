@@ -34,6 +34,9 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
 /// 0 flat ... 1 at least as sharp as a right-angled edge under the ball: min(1, 2 |H| radius).
 double normalised_curvature(double mean_curvature, double radius);
 
+/// Centre of the enclosed volume; of the area when the mesh encloses none (open, or inside out).
+Vector3 mass_centre(const TriangleMesh& mesh);
+
 struct MeshFindings {
   std::uint32_t components{};
   std::uint32_t open_edges{};     ///< borders of holes

@@ -1,0 +1,206 @@
+#include "deploy/handsel/grasp_command.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+
+#include "common/config/resources.hpp"
+#include "components/grasp_planner/epsilon.hpp"
+#include "components/grasp_planner/grasp_list.hpp"
+#include "deploy/handsel/json_lines.hpp"
+
+namespace handsel {
+namespace {
+
+using nlohmann::json;
+using namespace command;
+using namespace grasp_planner;
+
+json numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+
+// ---- score
+
+std::vector<Vector3> triples(const json& item, const char* name) {
+  const json& list = field(item, name);
+  if (!list.is_array() || list.empty()) throw LineError(std::string("\"") + name + "\" must be a list of points, at least one");
+  std::vector<Vector3> out;
+  for (const json& p : list) out.push_back(vector3(json{{name, p}}, name));
+  return out;
+}
+
+WrenchMatrix wrenches_of(const json& item) {
+  if (item.is_object() && item.contains("wrenches")) {
+    const json& list = item["wrenches"];
+    if (!list.is_array() || list.empty()) throw LineError("\"wrenches\" must be a list of wrenches, at least one");
+    WrenchMatrix w;
+    for (std::size_t i = 0; i < list.size(); ++i) {
+      const Vector v = vector_of(json{{"wrenches", list[i]}}, "wrenches");
+      if (i == 0) w.resize(v.size(), static_cast<Eigen::Index>(list.size()));
+      if (v.size() != w.rows()) throw LineError("wrench " + std::to_string(i) + " has another dimension than the first");
+      w.col(static_cast<Eigen::Index>(i)) = v;
+    }
+    return w;
+  }
+  const std::vector<Vector3> points = triples(item, "points"), normals = triples(item, "inward_normals");
+  if (points.size() != normals.size()) throw LineError("\"points\" and \"inward_normals\" must be equally long");
+  const double mu = number(item, "mu"), edges = number(item, "edges");
+  if (mu < 0) throw LineError("\"mu\" must not be negative");
+  if (edges < 3 || edges > 1000 || edges != std::floor(edges)) throw LineError("\"edges\" must be a whole number from 3 to 1000");
+  std::vector<PointContact> contacts;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!(normals[i].norm() > 1e-9)) throw LineError("inward normal " + std::to_string(i) + " is zero");
+    contacts.push_back({points[i], normals[i].normalized(), mu});
+  }
+  const Vector3 com = item.contains("com") ? vector3(item, "com") : Vector3::Zero().eval();
+  const double scale = item.contains("torque_scale") ? positive(item, "torque_scale") : 1.0;
+  return contact_wrenches(contacts, static_cast<int>(edges), com, scale);
+}
+
+json score(const json& item) {
+  const WrenchMatrix w = wrenches_of(item);
+  if (w.rows() > kMaxWrenchDimension) throw LineError("wrenches may have at most " + std::to_string(kMaxWrenchDimension) + " dimensions");
+  return {{"force_closure", force_closure(w)}, {"epsilon", epsilon(w)}};
+}
+
+// ---- list
+
+struct ListOptions {
+  std::string hand{"sah"}, object;
+  double scale{1}, friction{0};
+  std::uint32_t positions{GraspListSettings{}.positions}, orientations{GraspListSettings{}.orientations};
+  std::uint64_t seed{1};
+  bool as_json{};
+};
+
+/// A mesh file, or the name or file of an object description.
+ObjectModel object_of(const ListOptions& o) {
+  ObjectModel object;
+  const std::filesystem::path path(o.object);
+  const std::string kind = path.extension().string();
+  if (kind.empty() || kind == ".txtpb") {
+    object = ObjectModel::load(object_description(o.object));
+    for (Vector3& v : object.mesh.vertices) v *= o.scale;
+    if (o.scale != 1) object.parts.clear();
+    object.com *= o.scale;
+    return object;
+  }
+  object.name = path.stem().string();
+  object.mesh = load_mesh(path, Vector3::Constant(o.scale));
+  orient(object.mesh);
+  object.com = mass_centre(object.mesh);
+  object.friction = 0.5;
+  return object;
+}
+
+json line_of(const ListedGrasp& listed, const HandModel& hand) {
+  const Grasp& g = listed.grasp;
+  const Eigen::Quaterniond q(g.T_object_hand.linear());
+  json joints = json::object(), open = json::object(), contacts = json::array();
+  for (std::size_t i = 0; i < hand.model().axes().size(); ++i) {
+    joints[hand.model().axes()[i].name] = g.hand_joints[static_cast<Eigen::Index>(i)];
+    open[hand.model().axes()[i].name] = g.pregrasp_joints[static_cast<Eigen::Index>(i)];
+  }
+  for (const Contact& c : g.contacts) {
+    contacts.push_back({{"finger", hand.fingers()[c.finger].name},
+                        {"p", numbers(c.position)},
+                        {"n", numbers(c.normal)},
+                        {"triangle", c.triangle},
+                        {"barycentric", numbers(c.barycentric)},
+                        {"curvature", c.curvature},
+                        {"mu", c.friction}});
+  }
+  return {{"id", g.id},
+          {"T_object_hand", {{"p", numbers(g.T_object_hand.translation())}, {"q", {q.x(), q.y(), q.z(), q.w()}}}},
+          {"joints", joints},
+          {"pregrasp", open},
+          {"contacts", contacts},
+          {"epsilon", g.epsilon},
+          {"scores",
+           {{"stability", listed.scores.stability},
+            {"centre", listed.scores.centre},
+            {"force", listed.scores.force},
+            {"curvature", listed.scores.curvature}}},
+          {"room", listed.room},
+          {"quality", g.quality}};
+}
+
+void report_mesh(const Graspable& object) {
+  const MeshFindings& f = object.findings();
+  if (f.open_edges > 0) std::fprintf(stderr, "mesh: %u open edges; its holes are left open\n", f.open_edges);
+  if (f.crowded_edges > 0) std::fprintf(stderr, "mesh: %u edges shared by more than two triangles\n", f.crowded_edges);
+  if (f.components > 1) std::fprintf(stderr, "mesh: %u separate parts\n", f.components);
+  if (f.turned > 0) std::fprintf(stderr, "mesh: %u triangles faced the wrong way and were turned\n", f.turned);
+}
+
+int list(const ListOptions& o) {
+  const auto kit = std::make_shared<const HandKit>(HandModel::load(hand_description(o.hand)));
+  GraspListSettings settings;
+  settings.positions = o.positions;
+  settings.orientations = o.orientations;
+  settings.friction = o.friction;
+  settings.seed = o.seed;
+  const auto object = std::make_shared<const Graspable>(object_of(o), kit->tip_radius(), settings.step_share, o.seed);
+  report_mesh(*object);
+  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
+  const auto start = std::chrono::steady_clock::now();
+  GraspLister lister(kit, workspaces, object, settings);
+  const bool bar = isatty(STDERR_FILENO) != 0;
+  std::uint64_t done = 0;
+  while (lister.advance(256)) {
+    done += 256;
+    if (bar)
+      std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * done / lister.frames()),
+                   static_cast<unsigned long long>(lister.frames()));
+  }
+  if (bar) std::fprintf(stderr, "\r\033[K");
+  const GraspList list = lister.list();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const bool table = !o.as_json && isatty(STDOUT_FILENO) != 0;
+  if (table)
+    std::printf("%8s %8s %8s %10s %7s %7s %9s %6s\n", "id", "quality", "epsilon", "stability", "centre", "force", "curvature", "room");
+  for (const ListedGrasp& g : list.grasps) {
+    if (table) {
+      std::printf("%8llu %8.3f %8.4f %10.3f %7.3f %7.3f %9.3f %6.2f\n", static_cast<unsigned long long>(g.grasp.id), g.grasp.quality,
+                  g.grasp.epsilon, g.scores.stability, g.scores.centre, g.scores.force, g.scores.curvature, g.room);
+    } else {
+      std::cout << line_of(g, kit->hand).dump() << '\n';
+    }
+  }
+  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", list.grasps.size(), list.hand.c_str(),
+               list.object.c_str(), static_cast<unsigned long long>(list.frames), seconds, static_cast<unsigned long long>(o.seed));
+  for (const Refusal& r : list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
+  return list.grasps.empty() ? 1 : 0;
+}
+
+}  // namespace
+
+void add_grasp_commands(CLI::App& app, int& exit_code) {
+  CLI::App* grasp = app.add_subcommand("grasp", "Grasps of a hand on an object");
+  grasp->require_subcommand(1);
+
+  CLI::App* scoring = grasp->add_subcommand("score", "Force closure and epsilon of sets of contacts, one JSON line a set on stdin");
+  scoring->footer(
+      R"(A line: {"points": [[3]...], "inward_normals": [[3]...], "mu", "edges", "com", "torque_scale"} or {"wrenches": [[...]...]})");
+  scoring->add_flag("--json")->description("JSON Lines (always so)");
+  scoring->callback([&exit_code] { exit_code = for_each_line(std::cin, std::cout, score); });
+
+  CLI::App* listing = grasp->add_subcommand("list", "All grasps found, best first; what was rejected and why goes to stderr");
+  auto o = std::make_shared<ListOptions>();
+  listing->add_option("--hand", o->hand, "hand description: name or file")->capture_default_str();
+  listing->add_option("--object", o->object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
+  listing->add_option("--scale", o->scale, "factor on the object's size")->check(CLI::PositiveNumber)->capture_default_str();
+  listing->add_option("--positions", o->positions, "grasp frames: positions in the object's box")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  listing->add_option("--orientations", o->orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
+  listing->add_option("--mu", o->friction, "Coulomb friction; the object's when left out")->check(CLI::PositiveNumber);
+  listing->add_option("--seed", o->seed, "of the contact points")->capture_default_str();
+  listing->add_flag("--json", o->as_json, "JSON Lines also on a terminal");
+  listing->callback([o, &exit_code] { exit_code = list(*o); });
+}
+
+}  // namespace handsel

@@ -1,0 +1,10 @@
+// `handsel grasp ...`: lists of grasps and the stability of contacts, without DDS.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace handsel {
+
+void add_grasp_commands(CLI::App& app, int& exit_code);
+
+}  // namespace handsel
