@@ -12,11 +12,11 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 // Where 12 x^4 + 12 x^2 = 1: the valley, over sqrt(C), at which the gain is least.
 constexpr double kInflexion = 0.27811916365;
 
-double lobe(double v, double a, double a1, double hold, double J) noexcept {
-  const double t = (a1 - a) / J;
-  const double v1 = v + (a1 - a) * (a1 + a) / (2 * J);
+double lobe(double v, double a, double a1, double hold, double J, double over_J) noexcept {
+  const double t = (a1 - a) * over_J;
+  const double v1 = v + 0.5 * t * (a1 + a);
   const double v2 = v1 + a1 * hold;
-  return t * (v + t * (a / 2 + J * t / 6)) + hold * (v1 + v2) / 2 + a1 / J * (v2 + a1 * a1 / (3 * J));
+  return t * (v + t * (a / 2 + J * t * (1.0 / 6))) + hold * (v1 + v2) * 0.5 + a1 * over_J * (v2 + a1 * a1 * over_J * (1.0 / 3));
 }
 
 bool finite(const AxisState& s) noexcept { return std::isfinite(s.position) && std::isfinite(s.velocity) && std::isfinite(s.acceleration); }
@@ -43,9 +43,9 @@ const char* reason(AxisOutcome outcome) noexcept {
 namespace detail {
 
 MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const AxisLimits& limits, bool mirrored) noexcept
-    : V_(limits.velocity), A_(limits.acceleration), J_(limits.jerk), mirrored_(mirrored) {
+    : V_(limits.velocity), A_(limits.acceleration), J_(limits.jerk), over_J_(1 / J_), over_JA_(over_J_ / A_), mirrored_(mirrored) {
   if (mirrored) v0 = -v0, a0 = -a0, vf = -vf, af = -af;
-  const double tolerance = 64 * kEps * (a0 * a0 + af * af + J_ * (std::abs(v0) + std::abs(vf)));
+  const double tolerance = 256 * kEps * (a0 * a0 + af * af + J_ * (std::abs(v0) + std::abs(vf)));
   C_ = J_ * (vf - v0) + (a0 - af) * (a0 + af) / 2;
   if (std::abs(C_) <= tolerance) {
     C_ = 0;
@@ -74,34 +74,35 @@ MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const Axi
   }
   if (C_ == 0) s_lo = std::max(s_lo, 0.0);
   s_hi = std::max(s_lo, std::sqrt(std::max(0.0, J_ * (V_ - vf) + af * af / 2)));
+  at_limit_ = duration(s_hi);
 }
 
 double MotionFamily::duration(double s) const noexcept {
   const double R = s * s + C_, A2 = A_ * A_;
   const double a1 = R < A2 ? std::sqrt(R) : A_;
-  double t = std::max(0.0, a1 - a0_) + std::max(0.0, a1 + std::min(s, A_)) + std::max(0.0, af_ + std::min(s, A_));
-  if (R > A2) t += (R - A2) / A_;
-  if (s > A_) t += (s * s - A2) / A_;
-  return t / J_;
+  const double changes = std::max(0.0, a1 - a0_) + std::max(0.0, a1 + std::min(s, A_)) + std::max(0.0, af_ + std::min(s, A_));
+  double t = changes * over_J_;
+  if (R > A2) t += (R - A2) * over_JA_;
+  if (s > A_) t += (s * s - A2) * over_JA_;
+  return t;
 }
 
 double MotionFamily::displacement(double s, double* slope) const noexcept {
   const double R = s * s + C_, A2 = A_ * A_;
-  const double a1 = R < A2 ? std::sqrt(R) : A_, h1 = R > A2 ? (R - A2) / (J_ * A_) : 0.0;
-  const double a2 = std::min(s, A_), h2 = s > A_ ? (s * s - A2) / (J_ * A_) : 0.0;
+  const double a1 = R < A2 ? std::sqrt(R) : A_, h1 = R > A2 ? (R - A2) * over_JA_ : 0.0;
+  const double a2 = std::min(s, A_), h2 = s > A_ ? (s * s - A2) * over_JA_ : 0.0;
   if (slope) {
-    const double peak = vf_ + (s * s - af_ * af_ / 2) / J_;
+    const double peak = vf_ + (s * s - af_ * af_ / 2) * over_J_;
     const double factor = a1 > 0 ? 1 + s / a1 : 2.0;
-    *slope = 2 / J_ * factor * (peak + s * a1 / (2 * J_));
+    *slope = 2 * over_J_ * factor * (peak + s * a1 * 0.5 * over_J_);
   }
-  return lobe(v0_, a0_, a1, h1, J_) + lobe(vf_, -af_, a2, h2, J_);
+  return lobe(v0_, a0_, a1, h1, J_, over_J_) + lobe(vf_, -af_, a2, h2, J_, over_J_);
 }
 
 double MotionFamily::parameter(double T, double* cruise) const noexcept {
   *cruise = 0;
-  const double at_limit = duration(s_hi);
-  if (T >= at_limit) {
-    *cruise = T - at_limit;
+  if (T >= at_limit_) {
+    *cruise = T - at_limit_;
     return s_hi;
   }
   const double A2 = A_ * A_, JT = J_ * T;
@@ -210,11 +211,11 @@ double MotionFamily::root(double D, double from, double* cruise) const noexcept 
   return std::clamp(std::sqrt(base * base + J_ * std::max(0.0, step)), base, s_hi);
 }
 
-void MotionFamily::emit(double s, double cruise, AxisProfile& out) const noexcept {
-  const double R = s * s + C_, A2 = A_ * A_, j = mirrored_ ? -J_ : J_;
+void MotionFamily::emit(double s, double cruise, AxisProfile& out, double share) const noexcept {
+  const double R = s * s + C_, A2 = A_ * A_, j = share * (mirrored_ ? -J_ : J_);
   const double a1 = R < A2 ? std::sqrt(R) : A_, a2 = std::min(s, A_);
-  const double t1 = (a1 - a0_) / J_, h1 = R > A2 ? (R - A2) / (J_ * A_) : 0.0, h2 = s > A_ ? (s * s - A2) / (J_ * A_) : 0.0,
-               t5 = (a2 + af_) / J_;
+  const double t1 = (a1 - a0_) * over_J_, h1 = R > A2 ? (R - A2) * over_JA_ : 0.0, h2 = s > A_ ? (s * s - A2) * over_JA_ : 0.0,
+               t5 = (a2 + af_) * over_J_;
   if (reversed_) {
     out.push(t5, j);
     out.push(h2, 0);
@@ -223,11 +224,11 @@ void MotionFamily::emit(double s, double cruise, AxisProfile& out) const noexcep
     out.push(h1, 0);
   }
   if (cruise > 0) {
-    out.push((reversed_ ? a2 : a1) / J_, -j);
+    out.push((reversed_ ? a2 : a1) * over_J_, -j);
     out.push(cruise, 0);
-    out.push((reversed_ ? a1 : a2) / J_, -j);
+    out.push((reversed_ ? a1 : a2) * over_J_, -j);
   } else {
-    out.push((a1 + a2) / J_, -j);
+    out.push((a1 + a2) * over_J_, -j);
   }
   if (reversed_) {
     out.push(h1, 0);
@@ -324,13 +325,21 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
   distance_ = to.position - start.position;
   scale_ = std::abs(to.position) + std::abs(start.position);
   still_ = distance_ == 0 && start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
+  rest_ = start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
   up_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, false);
-  down_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, true);
   if (still_) {
     best_ = {0, 0, 0, false};
     minimum_ = brake_time_;
     return AxisOutcome::ok;
   }
+  if (rest_) {
+    best_ = {0, 0, 0, distance_ < 0};
+    best_.s = up_.root(std::abs(distance_), 0, &best_.cruise);
+    best_.duration = up_.duration(best_.s) + best_.cruise;
+    minimum_ = brake_time_ + best_.duration;
+    return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
+  }
+  down_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, true);
   best_ = first_from(0);
   minimum_ = brake_time_ + best_.duration;
   return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
@@ -382,7 +391,7 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
 }
 
 double AxisProblem::earliest(double duration) const noexcept {
-  if (still_ || duration <= minimum_) return std::max(duration, minimum_);
+  if (still_ || rest_ || duration <= minimum_) return std::max(duration, minimum_);
   const double T = duration - brake_time_;
   const double found = first_from(T).duration;
   return found <= T ? duration : brake_time_ + found;
@@ -390,7 +399,11 @@ double AxisProblem::earliest(double duration) const noexcept {
 
 void AxisProblem::minimum_profile(AxisProfile& out) const noexcept {
   out = brake_;
-  if (!still_) (best_.mirrored ? down_ : up_).emit(best_.s, best_.cruise, out);
+  if (rest_) {
+    up_.emit(best_.s, best_.cruise, out, best_.mirrored ? -1 : 1);
+  } else if (!still_) {
+    (best_.mirrored ? down_ : up_).emit(best_.s, best_.cruise, out);
+  }
 }
 
 AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexcept {
@@ -407,6 +420,12 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
   }
   const double T = duration - brake_time_, D = distance_;
   double s_up, s_down, cruise_up = 0, cruise_down = 0;
+  if (rest_) {
+    s_up = up_.parameter(T, &cruise_up);
+    out = brake_;
+    up_.emit(s_up, cruise_up, out, D / (up_.displacement(s_up) + cruise_up * up_.cruise_velocity()));
+    return AxisOutcome::ok;
+  }
   if (up_.island && down_.island && T <= up_.duration(up_.island_hi)) {
     s_up = up_.parameter_in_island(T);
     s_down = down_.parameter_in_island(T);

@@ -82,7 +82,8 @@ class MotionFamily {
   /// Change of displacement per change of duration.
   double gain(double s) const noexcept;
   double cruise_velocity() const noexcept { return V_; }
-  void emit(double s, double cruise, AxisProfile& out) const noexcept;
+  /// Jerks times `share`.
+  void emit(double s, double cruise, AxisProfile& out, double share = 1) const noexcept;
 
   bool island{};                    ///< short durations form a component of their own
   double island_lo{}, island_hi{};  ///< parameter range of that component
@@ -91,7 +92,7 @@ class MotionFamily {
  private:
   double least_gain() const noexcept;
   double bracketed(double D, double lo, double hi, double f_lo) const noexcept;
-  double v0_{}, a0_{}, vf_{}, af_{}, V_{}, A_{}, J_{}, C_{};
+  double v0_{}, a0_{}, vf_{}, af_{}, V_{}, A_{}, J_{}, over_J_{}, over_JA_{}, C_{}, at_limit_{};
   bool mirrored_{}, reversed_{};
 };
 }  // namespace detail
@@ -122,7 +123,7 @@ class AxisProblem {
   double brake_time_{};
   detail::MotionFamily up_, down_;
   double distance_{}, scale_{}, minimum_{};
-  bool still_{};
+  bool still_{}, rest_{};
   Choice best_{};
 };
 
