@@ -15,6 +15,9 @@ struct AxisExtremes {
 AxisExtremes extremes(const AxisState& start, const Segment* segments, int count) noexcept;
 AxisExtremes extremes(const AxisTrajectory&) noexcept;
 
+/// Largest magnitudes only, positions untouched: cheaper.
+AxisExtremes rate_extremes(const AxisState& start, const Segment* segments, int count) noexcept;
+
 /// Largest of |v|/V, |a|/A, |j|/J over all axes; 1 = a limit is met.
 double limit_share(const Trajectory&, const KinematicLimits&);
 

@@ -370,24 +370,33 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
     }
   }
   const double first = up_.duration(up_.s_lo);
-  double s_up = up_.s_lo, s_down = down_.s_lo, cruise_up = 0, cruise_down = 0;
-  if (T > first) {
-    s_up = up_.parameter(T, &cruise_up);
-    s_down = down_.parameter(T, &cruise_down);
-  }
-  const double largest = up_.displacement(s_up) + cruise_up * up_.cruise_velocity();
+  const Span at = T > first ? span_at(T) : span_at(-1);
+  const double tolerance = slack(at.least, at.largest);
   double cruise;
-  const double least = -(down_.displacement(s_down) + cruise_down * down_.cruise_velocity());
-  const double tolerance = slack(least, largest);
-  if (D > largest && (D > largest + tolerance || (s_up >= 0 && up_.gain(s_up) >= 0))) {
-    const double s = up_.root(D, s_up, &cruise);
+  if (D > at.largest && (D > at.largest + tolerance || (at.s_up >= 0 && up_.gain(at.s_up) >= 0))) {
+    const double s = up_.root(D, at.s_up, &cruise);
     return {up_.duration(s) + cruise, s, cruise, false};
   }
-  if (D < least && (D < least - tolerance || (s_down >= 0 && down_.gain(s_down) >= 0))) {
-    const double s = down_.root(-D, s_down, &cruise);
+  if (D < at.least && (D < at.least - tolerance || (at.s_down >= 0 && down_.gain(at.s_down) >= 0))) {
+    const double s = down_.root(-D, at.s_down, &cruise);
     return {down_.duration(s) + cruise, s, cruise, true};
   }
-  return {std::max(T, first), s_up, cruise_up, false};
+  return {std::max(T, first), at.s_up, at.cruise_up, false};
+}
+
+AxisProblem::Span AxisProblem::span_at(double T) const noexcept {
+  Span at;
+  at.T = T;
+  if (T < 0) {
+    at.s_up = up_.s_lo;
+    at.s_down = down_.s_lo;
+  } else {
+    at.s_up = up_.parameter(T, &at.cruise_up);
+    at.s_down = down_.parameter(T, &at.cruise_down);
+  }
+  at.largest = up_.displacement(at.s_up) + at.cruise_up * up_.cruise_velocity();
+  at.least = -(down_.displacement(at.s_down) + at.cruise_down * down_.cruise_velocity());
+  return at;
 }
 
 double AxisProblem::earliest(double duration) const noexcept {
@@ -418,37 +427,40 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
     minimum_profile(out);
     return AxisOutcome::ok;
   }
-  const double T = duration - brake_time_, D = distance_;
-  double s_up, s_down, cruise_up = 0, cruise_down = 0;
+  const double T = duration - brake_time_;
   if (rest_) {
-    s_up = up_.parameter(T, &cruise_up);
+    double cruise;
+    const double s = up_.parameter(T, &cruise);
     out = brake_;
-    up_.emit(s_up, cruise_up, out, D / (up_.displacement(s_up) + cruise_up * up_.cruise_velocity()));
+    up_.emit(s, cruise, out, distance_ / (up_.displacement(s) + cruise * up_.cruise_velocity()));
     return AxisOutcome::ok;
   }
+  Span at;
   if (up_.island && down_.island && T <= up_.duration(up_.island_hi)) {
-    s_up = up_.parameter_in_island(T);
-    s_down = down_.parameter_in_island(T);
+    at.s_up = up_.parameter_in_island(T);
+    at.s_down = down_.parameter_in_island(T);
+    at.largest = up_.displacement(at.s_up);
+    at.least = -down_.displacement(at.s_down);
   } else {
     if (T < up_.duration(up_.s_lo) * (1 - 1e-14)) return AxisOutcome::blocked;
-    s_up = up_.parameter(T, &cruise_up);
-    s_down = down_.parameter(T, &cruise_down);
+    at = span_at(T);
   }
-  const double largest = up_.displacement(s_up) + cruise_up * up_.cruise_velocity();
-  const double least = -(down_.displacement(s_down) + cruise_down * down_.cruise_velocity());
-  const double tolerance = slack(least, largest);
-  if (D > largest + 2 * tolerance || D < least - 2 * tolerance) return AxisOutcome::blocked;
-  const double width = largest - least;
-  const double weight = width > 0 ? std::clamp((D - least) / width, 0.0, 1.0) : 0.5;
-  AxisProfile high, low;
-  up_.emit(s_up, cruise_up, high);
-  down_.emit(s_down, cruise_down, low);
+  return profile_in(at, out);
+}
+
+AxisOutcome AxisProblem::profile_in(const Span& at, AxisProfile& out) const noexcept {
+  const double D = distance_, tolerance = slack(at.least, at.largest), width = at.largest - at.least;
+  if (D > at.largest + 2 * tolerance || D < at.least - 2 * tolerance) return AxisOutcome::blocked;
+  const double weight = width > 0 ? std::clamp((D - at.least) / width, 0.0, 1.0) : 0.5;
   out = brake_;
   if (weight == 1.0) {
-    for (int k = 0; k < high.count; ++k) out.push(high.segments[k].duration, high.segments[k].jerk);
+    up_.emit(at.s_up, at.cruise_up, out);
   } else if (weight == 0.0) {
-    for (int k = 0; k < low.count; ++k) out.push(low.segments[k].duration, low.segments[k].jerk);
+    down_.emit(at.s_down, at.cruise_down, out);
   } else {
+    AxisProfile high, low;
+    up_.emit(at.s_up, at.cruise_up, high);
+    down_.emit(at.s_down, at.cruise_down, low);
     blend(high, weight, low, 1 - weight, out);
   }
   return AxisOutcome::ok;

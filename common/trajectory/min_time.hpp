@@ -24,8 +24,15 @@ inline AxisLimits limits_of(const KinematicLimits& limits, Eigen::Index axis) {
 struct AxisProfile {
   static constexpr int kCapacity = 20;
   int count{};
-  std::array<Segment, kCapacity> segments;
+  std::array<Segment, kCapacity> segments;  // the first `count`
 
+  AxisProfile() = default;
+  AxisProfile(const AxisProfile& other) noexcept { *this = other; }
+  AxisProfile& operator=(const AxisProfile& other) noexcept {
+    count = other.count;
+    for (int k = 0; k < count; ++k) segments[k] = other.segments[k];
+    return *this;
+  }
   void clear() noexcept { count = 0; }
   /// Drops empty segments, joins equal neighbours.
   void push(double duration, double jerk) noexcept {
@@ -116,8 +123,14 @@ class AxisProblem {
     double duration, s, cruise;
     bool mirrored;
   };
+  /// What is possible at a duration of the main component.
+  struct Span {
+    double T{-1}, s_up{}, s_down{}, cruise_up{}, cruise_down{}, largest{}, least{};
+  };
+  Span span_at(double T) const noexcept;
   double slack(double least, double largest) const noexcept;
   Choice first_from(double duration) const noexcept;
+  AxisOutcome profile_in(const Span& span, AxisProfile& out) const noexcept;
 
   AxisProfile brake_;
   double brake_time_{};

@@ -14,7 +14,7 @@ std::array<Segment, 3> three_segment(const AxisState& from, const AxisState& to,
 }
 
 double excess(const AxisState& from, const Segment* segments, int count, const AxisLimits& limits) noexcept {
-  const AxisExtremes e = extremes(from, segments, count);
+  const AxisExtremes e = rate_extremes(from, segments, count);
   return std::max({e.velocity / limits.velocity, e.acceleration / limits.acceleration, e.jerk / limits.jerk}) - 1;
 }
 
