@@ -82,7 +82,10 @@ struct SimWorld::Impl {
     robot = std::make_unique<RobotBody>(model, setup.T_world_base, setup.start, settings.servo, dynamics, shapes, kRobot,
                                         kObject | kFixed | kPerson);
     for (int i = 0; i < robot->bodies(); ++i) {
-      if (btMultiBodyLinkCollider* collider = robot->collider(i)) own(*collider, Owner::robot, i);
+      btMultiBodyLinkCollider* collider = robot->collider(i);
+      if (collider == nullptr) continue;
+      own(*collider, Owner::robot, i);
+      collider->setContactProcessingThreshold(kReach);
     }
     grasp = std::make_unique<RobotGrasp>(model, *robot, settings.touch_force, settings.grasp_time, settings.lose_time);
     robot_grip = Grip(settings.robot_grip);
