@@ -44,6 +44,8 @@ struct PersonBody {
   Pose T_world_shape;
   Vector3 a, b;
   double radius{};
+  Vector3 middle;
+  double reach{};       ///< of the whole capsule from its middle [m]
   bool obstacle{true};  ///< as set_people asked
   bool allowed{};
 };
@@ -251,17 +253,28 @@ struct CollisionWorld::Impl {
     return false;
   }
 
-  /// Whether any robot capsule comes near a person who is an obstacle: the capsules hold the links.
-  bool near_people() const {
+  /// Distance of capsules around the robot to those of people, found by `counts`; stops below `enough`. At most `cap`.
+  template <class F>
+  double people_distance(F&& counts, double cap, double enough) const {
+    double least = cap;
     for (const LinkCapsule& capsule : capsules) {
-      const Pose T_world_link = T_world_base * T_root_link[capsule.link];
-      const Vector3 a = T_world_link * capsule.a, b = T_world_link * capsule.b;
+      const Pose& T_root = T_root_link[capsule.link];
+      const Vector3 a = T_world_base * (T_root * capsule.a), b = T_world_base * (T_root * capsule.b), middle = 0.5 * (a + b);
+      const double reach = 0.5 * (b - a).norm() + capsule.radius;
       for (const PersonBody& person : people) {
-        if (!person.obstacle || (person.allowed && person.arm)) continue;
-        if (segment_distance(a, b, person.a, person.b) <= capsule.radius + person.radius) return true;
+        if (!counts(person)) continue;
+        const double bound = least + reach + person.reach;
+        if (bound > 0 && (middle - person.middle).squaredNorm() >= bound * bound) continue;
+        least = std::min(least, segment_distance(a, b, person.a, person.b) - capsule.radius - person.radius);
+        if (least <= enough) return least;
       }
     }
-    return false;
+    return least;
+  }
+
+  /// Whether any robot capsule comes near a person who is an obstacle: the capsules hold the links.
+  bool near_people() const {
+    return people_distance([](const PersonBody& p) { return p.obstacle && !(p.allowed && p.arm); }, 1e-6, 0.0) <= 0.0;
   }
 
   bool people_touch(CollisionVerdict* verdict) const {
@@ -321,6 +334,8 @@ void CollisionWorld::set_people(const HumanState& state, PeopleParts parts) {
       body.a = capsule.a;
       body.b = capsule.b;
       body.radius = capsule.radius;
+      body.middle = 0.5 * (capsule.a + capsule.b);
+      body.reach = 0.5 * (capsule.b - capsule.a).norm() + capsule.radius;
       body.allowed = impl_->allowed.count(person.id) > 0;
       impl_->people.push_back(std::move(body));
     }
@@ -371,16 +386,10 @@ CollisionVerdict CollisionWorld::check_motion(const Vector& from, const Vector& 
 
 double CollisionWorld::distance_to_people(const Vector& q) {
   Impl& w = *impl_;
-  double least = std::numeric_limits<double>::infinity();
-  if (w.people.empty()) return least;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (w.people.empty()) return kInfinity;
   w.robot.forward(q, w.T_root_link);
-  for (const LinkCapsule& capsule : w.capsules) {
-    const Pose T_world_link = w.T_world_base * w.T_root_link[capsule.link];
-    const Vector3 a = T_world_link * capsule.a, b = T_world_link * capsule.b;
-    for (const PersonBody& person : w.people)
-      least = std::min(least, segment_distance(a, b, person.a, person.b) - capsule.radius - person.radius);
-  }
-  return least;
+  return w.people_distance([](const PersonBody&) { return true; }, kInfinity, -kInfinity);
 }
 
 double CollisionWorld::distance_to_scene(const Vector& q, double cap) {

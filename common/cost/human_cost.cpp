@@ -97,22 +97,43 @@ double HumanCost::weighted(const CostParts& parts) const {
   return (settings_.w_safety * parts.safety + settings_.w_visibility * parts.visibility + settings_.w_comfort * parts.comfort) / sum;
 }
 
+/// Bounds from the capsules' middles first, then exactly those that can be nearest.
+double HumanCost::distance_to(const SimplifiedBody& body) const {
+  double least = std::numeric_limits<double>::infinity();
+  bounds_.resize(placed_.size());
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const PlacedCapsule& capsule = placed_[i];
+    const Vector3 middle = 0.5 * (capsule.a + capsule.b);
+    const double d = std::min(point_to_cylinder(body, middle), (middle - body.head).norm() - body.head_radius) - capsule.radius;
+    least = std::min(least, d);
+    bounds_[i] = d - 0.5 * (capsule.b - capsule.a).norm();
+  }
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const PlacedCapsule& capsule = placed_[i];
+    if (bounds_[i] >= least) continue;
+    least = std::min(least, head_distance(body, capsule.a, capsule.b) - capsule.radius);
+    if (cylinder_bound(body, capsule.a, capsule.b) - capsule.radius < least)
+      least = std::min(least, segment_to_cylinder(body, capsule.a, capsule.b) - capsule.radius);
+  }
+  return least;
+}
+
 CostParts HumanCost::parts(const Vector& q) const {
   CostParts worst;
   worst.distance = std::numeric_limits<double>::infinity();
   if (people_.people.empty()) return worst;
   robot_->forward(q, links_);
   const Vector3 p_tool = T_world_base_ * links_[tool_].translation();
+  placed_.resize(capsules_.size());
+  for (std::size_t i = 0; i < capsules_.size(); ++i) {
+    const LinkCapsule& capsule = capsules_[i];
+    const Pose& T_root_link = links_[capsule.link];
+    placed_[i] = {T_world_base_ * (T_root_link * capsule.a), T_world_base_ * (T_root_link * capsule.b), capsule.radius};
+  }
   double most = -1;
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     const SimplifiedBody& body = bodies_[i];
-    double least = std::numeric_limits<double>::infinity();
-    for (const LinkCapsule& capsule : capsules_) {
-      const Pose T_world_link = T_world_base_ * links_[capsule.link];
-      const Vector3 a = T_world_link * capsule.a, b = T_world_link * capsule.b;
-      least = std::min(least, head_distance(body, a, b) - capsule.radius);
-      if (cylinder_bound(body, a, b) - capsule.radius < least) least = std::min(least, segment_to_cylinder(body, a, b) - capsule.radius);
-    }
+    const double least = distance_to(body);
     CostParts now;
     now.distance = least;
     now.safety = safety_cost(least, settings_.safety_radius);

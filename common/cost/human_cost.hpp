@@ -47,7 +47,12 @@ class HumanCost {
   CostParts parts(const Vector& q) const;    ///< of the person it is worst for
 
  private:
+  struct PlacedCapsule {
+    Vector3 a, b;
+    double radius{};
+  };
   double weighted(const CostParts&) const;
+  double distance_to(const SimplifiedBody&) const;
   const RobotModel* robot_;
   CostSettings settings_;
   std::vector<LinkCapsule> capsules_;
@@ -56,6 +61,8 @@ class HumanCost {
   Pose T_world_base_{Pose::Identity()};
   int tool_{-1};
   mutable std::vector<Pose> links_;
+  mutable std::vector<PlacedCapsule> placed_;
+  mutable std::vector<double> bounds_;
 };
 
 /// Distance of a capsule (segment and radius) to the simplified body [m]; negative when they overlap.
