@@ -38,7 +38,7 @@ struct Finding {
 
 Finding check_processes() {
   try {
-    system_processes({});
+    system_processes({.robot = "jido"});
     return {"processes", Result::good, "all " + std::to_string(kProcesses.size()) + " are built"};
   } catch (const std::exception& error) {
     return {"processes", Result::bad, error.what()};
@@ -48,7 +48,7 @@ Finding check_processes() {
 Finding check_models(const std::string& robot, const std::string& scenario) {
   try {
     check_system({.robot = robot, .scenario = scenario});
-    const NodeContext context = load_context(robot.empty() ? "jido" : robot, scenario);
+    const NodeContext context = load_context(robot_of({.robot = robot, .scenario = scenario}), scenario);
     if (!context.robot->hand().empty()) HandModel::load(hand_description(context.robot->hand()));
     return {"models", Result::good,
             context.robot->name() + " with " + std::to_string(context.robot->dof()) + " axes, its hand and the objects of " + scenario};

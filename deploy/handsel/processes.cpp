@@ -25,6 +25,7 @@ int default_domain() {
 
 std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
+  const std::string robot = robot_of(options);
   std::vector<ProcessSpec> specs;
   for (const char* process : kProcesses) {
     const std::filesystem::path binary = folder / ("handsel_" + std::string(process));
@@ -33,18 +34,24 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
     ProcessSpec spec{process,
                      binary,
                      {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
-    if (!options.robot.empty()) spec.arguments.insert(spec.arguments.end(), {"--robot", options.robot});
+    spec.arguments.insert(spec.arguments.end(), {"--robot", robot});
     specs.push_back(std::move(spec));
   }
   return specs;
+}
+
+std::string robot_of(const SystemOptions& options) {
+  if (!options.robot.empty()) return options.robot;
+  config::Scenario scenario;
+  load_text_proto(scenario_file(options.scenario), scenario);
+  return scenario.robot().empty() ? "jido" : scenario.robot();
 }
 
 void check_system(const SystemOptions& options) {
   config::Scenario scenario;
   const std::filesystem::path file = scenario_file(options.scenario);
   load_text_proto(file, scenario);
-  const std::string robot = !options.robot.empty() ? options.robot : scenario.robot().empty() ? "jido" : scenario.robot();
-  const RobotModel model = RobotModel::load(robot_description(robot));
+  const RobotModel model = RobotModel::load(robot_description(robot_of(options)));
   for (const auto& [joint, position] : scenario.start()) {
     bool known = false;
     for (const Axis& axis : model.axes()) known = known || axis.name == joint;

@@ -34,6 +34,8 @@ struct SystemOptions {
 int default_domain();
 /// One ProcessSpec for each of kProcesses; throws MissingError naming the first binary that is not beside this one.
 std::vector<ProcessSpec> system_processes(const SystemOptions&);
+/// The robot asked for, else the scenario's, else jido. Throws as check_system().
+std::string robot_of(const SystemOptions&);
 /// Reads the scenario, the robot and every object it names, as the processes will. Throws ConfigError / MissingError.
 void check_system(const SystemOptions&);
 

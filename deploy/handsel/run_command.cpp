@@ -77,12 +77,10 @@ int run(RunOptions& options) {
   std::fprintf(stderr, "ready after %.1f s\n", to_seconds(*ready));
   announce_page(system, options.headless);
 
-  ReportInputs inputs{
-      .scenario = shown, .robot = options.system.robot.empty() ? scenario.robot() : options.system.robot, .seed = options.system.seed};
+  ReportInputs inputs{.scenario = shown, .robot = robot_of(options.system), .seed = options.system.seed};
   inputs.ready = to_seconds(*ready);
   inputs.before = counters(session.snapshot());
   inputs.truth_before = session.snapshot().truth.sample;
-  if (inputs.robot.empty()) inputs.robot = "jido";
   session.observer().on_event([&](const TimelineEvent& event) {
     std::fprintf(stderr, "%7.2f s  %s\n", performer.started() ? to_seconds(event.at - performer.begin()) : 0.0, event.text.c_str());
   });

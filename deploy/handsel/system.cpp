@@ -29,9 +29,10 @@ std::string join(const std::vector<std::string>& items) {
 
 }  // namespace
 
-std::vector<std::string> not_ready(const Snapshot& snapshot) {
+std::vector<std::string> not_ready(const Snapshot& snapshot, bool with_bridge) {
   std::vector<std::string> missing;
   for (const std::string process : kProcesses) {
+    if (process == "bridge" && !with_bridge) continue;
     const auto found = snapshot.health.find(process);
     if (found == snapshot.health.end()) {
       missing.push_back(process + " (not heard yet)");

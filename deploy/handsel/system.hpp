@@ -13,8 +13,8 @@
 namespace handsel {
 
 /// Components that are not there or not ready, each with why: "path_planner (not heard yet)". Empty: the system is ready. The bridge
-/// may be degraded: nothing depends on it.
-std::vector<std::string> not_ready(const Snapshot&);
+/// may be degraded: nothing depends on it; without `with_bridge` it is not asked for.
+std::vector<std::string> not_ready(const Snapshot&, bool with_bridge = true);
 
 class System {
  public:

@@ -1,0 +1,38 @@
+// One randomised performance of a scenario in lock-step, and many of them side by side.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "common/bus/node_context.hpp"
+
+namespace handsel {
+
+struct TrialOptions {
+  std::string scenario;
+  std::string attention{"adaptive"}, law{"linear"};
+  double timeout{};                                          ///< [s] of virtual time; 0: the scenario's
+  std::function<void(double, const std::string&)> on_event;  ///< time [s] and text of each event; may be empty
+};
+
+/// Performs the scenario of `context` with its seed. The line of `handsel eval`: scenario, seed, success, failure, reason, duration_s, …
+nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options);
+
+/// A trial to be done.
+struct Trial {
+  NodeContext context;
+  TrialOptions options;
+};
+
+/// Each trial in an operating-system process of its own, `jobs` at a time, so that no state is carried over and a crash is one failed
+/// trial (failure "crash"). Calls on_line in the order of the trials. False when one crashed.
+bool run_trials(const std::vector<Trial>& trials, int jobs, const std::function<void(const nlohmann::json&)>& on_line);
+
+/// 95 % score interval of a share (Wilson 1927): low, high.
+std::pair<double, double> wilson_interval(int successes, int trials);
+
+}  // namespace handsel
