@@ -6,6 +6,7 @@
 
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/setpoint_filter.hpp"
+#include "common/trajectory/smooth.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 
@@ -63,6 +64,35 @@ TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
     }
   }
   RecordProperty("largest_share", std::to_string(largest));
+}
+
+TEST(TimeLaw, CornersThatUseTheWholeGuardAreKeptToo) {
+  const std::uint64_t seed = 34;
+  Draw draw{std::mt19937_64(seed)};
+  for (int k = 0; k < 25; ++k) {
+    const int n = 7;
+    const KinematicLimits guard{draw.vector(n, 0.3, 2), draw.vector(n, 0.6, 4), draw.vector(n, 2, 16)};
+    std::vector<VectorXd> nodes;
+    for (int i = 0; i < 4; ++i) nodes.push_back(draw.vector(n, -1, 1));
+    const SmoothResult smoothed = smooth(nodes, scaled(guard, 1 / 1.1));
+    ASSERT_TRUE(smoothed.ok()) << smoothed.reason;
+    TimeLaw law;
+    ASSERT_EQ(law.init(smoothed.trajectory, guard), "");
+    double until = 0;
+    for (int i = 0; i < 6000 && !law.finished(); ++i) {
+      if (i * 0.001 >= until) {
+        until += draw(0.0, 1.0) * draw(0, 1);
+        law.set_target(draw(0, 1) < 0.3 ? 0 : draw(-1, 1));
+      }
+      law.advance(0.001);
+      for (int a = 0; a < n; ++a) {
+        ASSERT_LE(std::abs(law.state().velocity[a]), guard.velocity[a] * (1 + 1e-6)) << "seed " << seed << " run " << k << " step " << i;
+        ASSERT_LE(std::abs(law.state().acceleration[a]), guard.acceleration[a] * (1 + 1e-6))
+            << "seed " << seed << " run " << k << " step " << i;
+        ASSERT_LE(std::abs(law.jerk()[a]), guard.jerk[a] * (1 + 1e-6)) << "seed " << seed << " run " << k << " step " << i << " axis " << a;
+      }
+    }
+  }
 }
 
 TEST(TimeLaw, StopsNearlyAsFastAsTheAxesCould) {
