@@ -1,5 +1,8 @@
 #include "sim/robot_side.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace handsel::sim {
 
 RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSideSettings& settings)
@@ -68,7 +71,9 @@ void RobotSide::step(double now, double dt, bool holding_object) {
   fresh_ = false;
   if (!settings_.never_releases) return;
   if (holding_object && !clenched_) {
-    clenched_ = true;
+    double moving = 0;
+    for (int axis : hand_axes_) moving = std::max(moving, std::abs(velocity_[axis]));
+    clenched_ = moving < 1e-6;
     closed_ = position_;
   }
   if (clenched_) {

@@ -13,7 +13,7 @@ struct RobotSideSettings {
   double max_gap{0.020};          ///< without set-points for this long while enabled: soft stop [s]
   double resume_tolerance{0.02};  ///< set-points this near the held posture, at rest, end a protective stop [rad]
   int resume_count{10};           ///< that many of them in a row
-  bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something
+  bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has come to rest
 };
 
 /// Starts enabled, holding `start`; the watch begins with the first set-point. A protective stop ends by itself when set-points come

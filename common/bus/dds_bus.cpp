@@ -301,6 +301,7 @@ DdsBus::~DdsBus() {
 
 void DdsBus::run() { impl_->executor.run(); }
 void DdsBus::stop() noexcept { impl_->executor.stop(); }
+bool DdsBus::end_jobs(Duration limit) { return impl_->executor.end_jobs(limit); }
 bool DdsBus::run_until(const std::function<bool()>& done, Duration limit) { return impl_->executor.run_until(done, limit); }
 const std::string& DdsBus::realtime_note() const { return impl_->realtime_note; }
 std::uint64_t DdsBus::incarnation() const { return impl_->incarnation; }

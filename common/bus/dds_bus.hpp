@@ -30,6 +30,8 @@ class DdsBus : public Bus {
   /// Runs callbacks on the calling thread until stop() (any thread, or a signal handler).
   void run();
   void stop() noexcept;
+  /// Cancels every job and waits for the running one, so that the node may be destroyed; false if it is still at work after `limit`.
+  bool end_jobs(Duration limit);
   /// Runs callbacks until `done` holds (asked after each wake-up) or the time is over; true if it held.
   bool run_until(const std::function<bool()>& done, Duration limit);
   /// Empty, or why real-time scheduling is not in force.

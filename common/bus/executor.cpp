@@ -52,19 +52,29 @@ Executor::Executor(Log log) : log_(std::move(log)) {
 }
 
 Executor::~Executor() {
-  if (worker_.joinable()) {
-    {
-      const std::lock_guard lock(jobs_mutex_);
-      worker_ends_ = true;
-      for (Job& job : queued_) job.token.cancel();
-      running_token_.cancel();
-    }
-    jobs_waiting_.notify_all();
-    worker_.join();
-  }
+  end_jobs(Duration::max());
   timers_.clear();
   if (wake_fd_ >= 0) close(wake_fd_);
   if (epoll_ >= 0) close(epoll_);
+}
+
+bool Executor::end_jobs(Duration limit) {
+  if (!worker_.joinable()) return true;
+  {
+    std::unique_lock lock(jobs_mutex_);
+    worker_ends_ = true;
+    queued_.clear();
+    running_token_.cancel();
+    jobs_waiting_.notify_all();
+    const auto gone = [this] { return worker_gone_; };
+    if (limit == Duration::max())
+      worker_ended_.wait(lock, gone);
+    else if (!worker_ended_.wait_for(lock, limit, gone))
+      return false;
+    finished_.clear();
+  }
+  worker_.join();
+  return true;
 }
 
 Executor::Timer& Executor::add_timer(Duration first, Duration period, std::function<void(TimePoint)> on_tick) {
@@ -159,6 +169,7 @@ CancelToken Executor::run_job(std::function<Duration(const CancelToken&)> work, 
   CancelToken token;
   {
     const std::lock_guard lock(jobs_mutex_);
+    if (worker_ends_) return token;
     queued_.push_back({std::move(work), std::move(done), token});
     if (!worker_.joinable()) worker_ = std::thread([this] { work_loop(); });
   }
@@ -177,7 +188,11 @@ void Executor::work_loop() {
   std::unique_lock lock(jobs_mutex_);
   while (true) {
     jobs_waiting_.wait(lock, [this] { return worker_ends_ || !queued_.empty(); });
-    if (worker_ends_) return;
+    if (worker_ends_) {
+      worker_gone_ = true;
+      worker_ended_.notify_all();
+      return;
+    }
     Job job = std::move(queued_.front());
     queued_.pop_front();
     running_token_ = job.token;

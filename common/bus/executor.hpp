@@ -42,6 +42,8 @@ class Executor {
   void run();
   bool run_until(const std::function<bool()>& done, Duration limit);
   void stop() noexcept;
+  /// Cancels all jobs, drops those that wait, and waits for the running one; false if it is still at work after `limit`.
+  bool end_jobs(Duration limit);
 
   /// Empty, or which job has given no sign of life for two seconds.
   std::string silent_job(TimePoint now);
@@ -71,11 +73,12 @@ class Executor {
 
   std::thread worker_;
   std::mutex jobs_mutex_;
-  std::condition_variable jobs_waiting_;
+  std::condition_variable jobs_waiting_, worker_ended_;
   std::deque<Job> queued_, finished_;
   CancelToken running_token_;
   bool running_{false};
   bool worker_ends_{false};
+  bool worker_gone_{false};
   std::uint64_t seen_beats_{0};
   TimePoint seen_at_{};
 };

@@ -389,6 +389,14 @@ Bus& LocalNetwork::add(const std::string& component) {
 TimePoint LocalNetwork::now() const { return impl_->now; }
 std::uint64_t LocalNetwork::events() const { return impl_->handled; }
 
+std::vector<LocalNetwork::Endpoint> LocalNetwork::endpoints() const {
+  std::vector<Endpoint> out;
+  for (const auto& writer : impl_->writers) out.push_back({writer->bus->component_, writer->type->row().type, true});
+  for (const auto& bus : impl_->buses)
+    for (const auto& s : bus->subscriptions_) out.push_back({bus->component_, s->intake.type().row().type, false});
+  return out;
+}
+
 void LocalNetwork::run_until(TimePoint t) {
   if (t < impl_->now) throw std::logic_error("LocalNetwork: time does not run backwards");
   while (impl_->step(t)) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 
@@ -38,6 +39,14 @@ class LocalNetwork {
   /// Handles events until `done` holds (asked after each event) or `limit` is reached; true if it held.
   bool run_until(const std::function<bool()>& done, TimePoint limit);
   std::uint64_t events() const;  ///< handled so far
+
+  /// Who talks about what: every writer and reader there is or was.
+  struct Endpoint {
+    std::string component;
+    std::string type;  ///< message type, as in the table of topics
+    bool writes{};
+  };
+  std::vector<Endpoint> endpoints() const;
 
   /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after the lease.
   void kill(const std::string& component);

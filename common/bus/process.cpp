@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -18,10 +19,14 @@ namespace {
 
 constexpr Duration kTwinWait = std::chrono::milliseconds(400);
 
-DdsBus* stopped_by_signal = nullptr;
+constexpr Duration kJobsEnd = std::chrono::milliseconds(600);
+
+std::atomic<DdsBus*> stopped_by_signal{nullptr};
+std::atomic<bool> asked_to_end{false};
 
 void on_signal(int) {
-  if (stopped_by_signal) stopped_by_signal->stop();
+  asked_to_end = true;
+  if (DdsBus* bus = stopped_by_signal) bus->stop();
 }
 
 std::uint32_t default_domain() {
@@ -65,6 +70,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   const NodeContext context = load_context(robot, scenario, config, seed);
   DdsBus bus(settings);
   stopped_by_signal = &bus;
+  if (asked_to_end) return 0;
   if (!standby && bus.has_twin(kTwinWait))
     throw ConfigError("domain " + std::to_string(settings.domain) + " already has a " + component + "; --standby starts one more");
   {
@@ -78,6 +84,10 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
     std::fflush(stdout);
     bus.run();
     bus.set_stopping();
+    if (!bus.end_jobs(kJobsEnd)) {
+      std::fprintf(stderr, "handsel_%s: a job did not stop when asked; ending without it\n", component);
+      std::_Exit(0);
+    }
   }
   stopped_by_signal = nullptr;
   return 0;

@@ -1,6 +1,6 @@
 // What each QoS profile of the table of topics means to Cyclone DDS. Nowhere else is a QoS set.
-// Exclusive ownership: a spare must keep silent until it has seen the owner's silence. Cyclone 0.10.2 renews the deadline of an instance with
-// every sample, also those it turns down, so a spare that talks all the time never takes over from an owner that lives but is silent.
+// Exclusive ownership: a spare must keep silent until it has seen the owner's silence. Cyclone 0.10.2 renews the deadline of an instance
+// with every sample, also those it turns down, so a spare that talks all the time never takes over from an owner that lives but is silent.
 #pragma once
 
 #include <memory>

@@ -17,31 +17,13 @@ constexpr std::array<double, 7> kSwivels = {-20 * kDegree, 0, 15 * kDegree, 30 *
 constexpr double kDisplacementWeight = 0.4, kEffortWeight = 0.4, kLimitWeight = 0.2;
 constexpr double kUpperArmMass = 2.1, kForearmMass = 1.7;  // of 75 kg
 
-struct Arm {
-  Vector3 shoulder;
-  double upper{}, fore{};  // forearm with the hand
-};
-
-bool arm_of(const Person& person, Side side, Arm& arm) {
-  const bool left = side == Side::left;
-  const BodyJoint* shoulder = find_joint(person, left ? "l_shoulder" : "r_shoulder");
-  const BodyJoint* elbow = find_joint(person, left ? "l_elbow" : "r_elbow");
-  const BodyJoint* wrist = find_joint(person, left ? "l_wrist" : "r_wrist");
-  const BodyJoint* hand = find_joint(person, left ? "l_hand" : "r_hand");
-  if (!shoulder || !elbow || !wrist) return false;
-  arm.shoulder = shoulder->position;
-  arm.upper = (elbow->position - shoulder->position).norm();
-  arm.fore = (wrist->position - elbow->position).norm() + (hand ? (hand->position - wrist->position).norm() : 0.0);
-  return arm.upper > 1e-3 && arm.fore > 1e-3;
-}
-
 double near_limit(double ratio) {
   const double base = 0.5 * (std::sin(5.0 * ratio + 1.571) + 1.0);
   return base < 0.85 ? 0.0 : std::pow(base, 100);
 }
 
 /// Cost of a posture with upper arm direction u and forearm direction f (forward, outward, up); 1 outside the joint limits.
-double posture_cost(const Arm& arm, const Vector3& u, const Vector3& f) {
+double posture_cost(const ArmSize& arm, const Vector3& u, const Vector3& f) {
   const double flexion = std::atan2(u.x(), -u.z()), abduction = std::asin(std::clamp(u.y(), -1.0, 1.0));
   const Vector3 forward(std::cos(flexion), 0, std::sin(flexion));
   const Vector3 outward(-std::sin(flexion) * std::sin(abduction), std::cos(abduction), std::cos(flexion) * std::sin(abduction));
@@ -65,12 +47,20 @@ double posture_cost(const Arm& arm, const Vector3& u, const Vector3& f) {
 
 }  // namespace
 
-double arm_comfort_cost(const Person& person, Side side, const Vector3& p) {
-  Arm arm;
-  if (!arm_of(person, side, arm)) return 1.0;
-  const Eigen::Matrix3d axes = torso_axes(person);
-  Vector3 target = axes.transpose() * (p - arm.shoulder);
-  if (side == Side::right) target.y() = -target.y();  // second component is outward
+std::optional<ArmSize> arm_size(const Person& person, Side side) {
+  const bool left = side == Side::left;
+  const BodyJoint* shoulder = find_joint(person, left ? "l_shoulder" : "r_shoulder");
+  const BodyJoint* elbow = find_joint(person, left ? "l_elbow" : "r_elbow");
+  const BodyJoint* wrist = find_joint(person, left ? "l_wrist" : "r_wrist");
+  const BodyJoint* hand = find_joint(person, left ? "l_hand" : "r_hand");
+  if (!shoulder || !elbow || !wrist) return std::nullopt;
+  const ArmSize arm{(elbow->position - shoulder->position).norm(),
+                    (wrist->position - elbow->position).norm() + (hand ? (hand->position - wrist->position).norm() : 0.0)};
+  if (arm.upper < 1e-3 || arm.fore < 1e-3) return std::nullopt;
+  return arm;
+}
+
+double arm_comfort_cost(const ArmSize& arm, const Vector3& target) {
   const double d = target.norm();
   if (d >= arm.upper + arm.fore || d <= std::abs(arm.upper - arm.fore) + 1e-3) return 1.0;
   const Vector3 to_target = target / d;
@@ -89,6 +79,15 @@ double arm_comfort_cost(const Person& person, Side side, const Vector3& p) {
   return best;
 }
 
+double arm_comfort_cost(const Person& person, Side side, const Vector3& p) {
+  const std::optional<ArmSize> arm = arm_size(person, side);
+  if (!arm) return 1.0;
+  const Vector3& shoulder = find_joint(person, side == Side::left ? "l_shoulder" : "r_shoulder")->position;
+  Vector3 target = torso_axes(person).transpose() * (p - shoulder);
+  if (side == Side::right) target.y() = -target.y();  // second component is outward
+  return arm_comfort_cost(*arm, target);
+}
+
 double arm_comfort_cost(const Person& person, const Vector3& p) {
   return std::min(arm_comfort_cost(person, Side::left, p), arm_comfort_cost(person, Side::right, p));
 }
@@ -96,10 +95,8 @@ double arm_comfort_cost(const Person& person, const Vector3& p) {
 bool within_reach(const Person& person, const Vector3& p) { return arm_comfort_cost(person, p) < 1.0; }
 
 double arm_length(const Person& person) {
-  Arm left, right;
-  const double l = arm_of(person, Side::left, left) ? left.upper + left.fore : 0.0;
-  const double r = arm_of(person, Side::right, right) ? right.upper + right.fore : 0.0;
-  return std::max(l, r);
+  const std::optional<ArmSize> left = arm_size(person, Side::left), right = arm_size(person, Side::right);
+  return std::max(left ? left->upper + left->fore : 0.0, right ? right->upper + right->fore : 0.0);
 }
 
 }  // namespace handsel

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/messages/world.hpp"
@@ -24,6 +25,15 @@ double visibility_cost(const Person&, const Vector3& p, double cutoff);
 /// limits, weighted to [0, 1] (the arm's joints, limits and weights are ours); 1 when out of reach.
 double arm_comfort_cost(const Person&, const Vector3& p);
 double arm_comfort_cost(const Person&, Side side, const Vector3& p);
+/// A person's arm by its lengths.
+struct ArmSize {
+  double upper{};  ///< shoulder to elbow [m]
+  double fore{};   ///< elbow to wrist to hand [m]
+};
+/// nullopt when the joints of that arm are not all there.
+std::optional<ArmSize> arm_size(const Person&, Side side);
+/// arm_comfort_cost of an arm alone: p from the shoulder, along (forward, outward, up) of the torso [m].
+double arm_comfort_cost(const ArmSize& arm, const Vector3& p_arm);
 /// Some arm reaches p with the torso where it is.
 bool within_reach(const Person&, const Vector3& p);
 /// Shoulder to hand, the longer arm [m].

@@ -62,14 +62,21 @@ struct Document {
         joints.push_back(own);
         const auto* child = e->FirstChildElement("child");
         const std::string link = child != nullptr && child->Attribute("link") != nullptr ? child->Attribute("link") : "";
+        const auto* above = e->FirstChildElement("parent");
+        parents[link] = {above->Attribute("link") != nullptr ? above->Attribute("link") : "", where};
         if (!children.insert(link).second) throw ConfigError(where + ": link " + link + " has more than one parent joint");
       }
     }
     if (links.empty()) throw ConfigError(file.string() + ": has no link");
-    if (children.size() == links.size()) throw ConfigError(file.string() + ": the joints form a cycle, no link is the root");
+    for (const auto& [start, joint] : parents) {
+      std::size_t steps = 0;
+      for (auto up = parents.find(start); up != parents.end(); up = parents.find(up->second.first))
+        if (++steps > parents.size()) throw ConfigError(joint.second + ": the joints above link " + start + " form a cycle");
+    }
   }
   std::vector<std::string> joints;
   std::set<std::string> names;
+  std::map<std::string, std::pair<std::string, std::string>> parents;  // of each child link: parent link, file and line
 };
 
 /// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are searched too.

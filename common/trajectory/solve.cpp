@@ -21,6 +21,41 @@ std::string axis_reason(Eigen::Index axis, const std::string& what) { return "ax
 
 }  // namespace
 
+bool SynchronisedAxes::read(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept {
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const AxisState a{from.position[i], from.velocity[i], from.acceleration[i]}, b{to.position[i], to.velocity[i], to.acceleration[i]};
+    outcome_ = problems_[k].init(a, b, limits_of(limits, i));
+    axis_ = static_cast<int>(k);
+    if (outcome_ != AxisOutcome::ok) return false;
+  }
+  return true;
+}
+
+double SynchronisedAxes::least_common() const noexcept {
+  double common = 0;
+  for (const AxisProblem& p : problems_) common = std::max(common, p.minimum());
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (const AxisProblem& p : problems_) {
+      const double next = p.earliest(common);
+      if (next > common) common = next, grown = true;
+    }
+  }
+  return common;
+}
+
+bool SynchronisedAxes::solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept {
+  if (!read(from, to, limits)) return false;
+  duration_ = least_common();
+  for (std::size_t k = 0; k < problems_.size(); ++k) {
+    axis_ = static_cast<int>(k);
+    outcome_ = problems_[k].profile(duration_, profiles_[k]);
+    if (outcome_ != AxisOutcome::ok) return false;
+  }
+  return true;
+}
+
 Solution solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits, Sync sync, std::optional<double> imposed) {
   Solution out;
   const Eigen::Index n = from.position.size();
@@ -34,17 +69,15 @@ Solution solve(const MotionState3& from, const MotionState3& to, const Kinematic
     out.reason = "the imposed duration must be finite and not negative";
     return out;
   }
-  std::vector<AxisProblem> problems(n);
+  SynchronisedAxes axes(static_cast<int>(n));
+  if (!axes.read(from, to, limits)) {
+    out.reason = axis_reason(axes.axis(), reason(axes.outcome()));
+    return out;
+  }
   double common = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const AxisState a{from.position[i], from.velocity[i], from.acceleration[i]}, b{to.position[i], to.velocity[i], to.acceleration[i]};
-    const AxisOutcome outcome = problems[i].init(a, b, limits_of(limits, i));
-    if (outcome != AxisOutcome::ok) {
-      out.reason = axis_reason(i, reason(outcome));
-      return out;
-    }
-    out.min_durations.push_back(problems[i].minimum());
-    common = std::max(common, problems[i].minimum());
+  for (int i = 0; i < n; ++i) {
+    out.min_durations.push_back(axes.minimum(i));
+    common = std::max(common, axes.minimum(i));
   }
   if (imposed) {
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -55,30 +88,24 @@ Solution solve(const MotionState3& from, const MotionState3& to, const Kinematic
     }
     common = *imposed;
   } else if (sync == Sync::time) {
-    for (bool grown = true; grown;) {
-      grown = false;
-      for (const AxisProblem& p : problems) {
-        const double next = p.earliest(common);
-        if (next > common) common = next, grown = true;
-      }
-    }
+    common = axes.least_common();
   }
   out.trajectory.axes.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i) {
     AxisProfile profile;
     const AxisState start{from.position[i], from.velocity[i], from.acceleration[i]};
     const bool own = sync == Sync::none && !imposed;
     if (own) {
-      problems[i].minimum_profile(profile);
-      if (problems[i].minimum() < common) {
+      axes.problem(i).minimum_profile(profile);
+      if (axes.minimum(i) < common) {
         if (to.velocity[i] != 0 || to.acceleration[i] != 0) {
           out.reason = axis_reason(i, "ends early and moving, so it cannot wait for the others");
           out.trajectory.axes.clear();
           return out;
         }
-        profile.push(common - problems[i].minimum(), 0);
+        profile.push(common - axes.minimum(i), 0);
       }
-    } else if (problems[i].profile(common, profile) != AxisOutcome::ok) {
+    } else if (axes.problem(i).profile(common, profile) != AxisOutcome::ok) {
       const auto three = three_segment(start, {to.position[i], to.velocity[i], to.acceleration[i]}, common);
       out.excess = std::max(out.excess, excess(start, three.data(), 3, limits_of(limits, i)));
       profile.clear();

@@ -15,7 +15,7 @@ void critical_movement(double v, double a, double v_end, double a_end, double A,
   }
   a_end = std::clamp(a_end, -A, A);
   const double change = v_end - v;
-  const double direct = (a_end - a) * std::abs(a_end - a) / (2 * J) + (a_end > a ? a : a_end) * std::abs(a_end - a) / J;
+  const double direct = (a + a_end) / 2 * std::abs(a_end - a) / J;
   const double side = change >= direct ? 1.0 : -1.0;
   const double a0 = side * a, af = side * a_end, dv = side * change;
   const double square = J * dv + (a0 * a0 + af * af) / 2;

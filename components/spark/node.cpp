@@ -17,9 +17,10 @@ config::SparkSettings load_settings(const NodeContext& context) {
 }
 
 std::vector<SceneBox> boxes_of(const NodeContext& context) {
+  std::vector<SceneBox> boxes;
+  if (context.scenario.empty()) return boxes;
   config::Scenario scenario;
   load_text_proto(context.scenario, scenario);
-  std::vector<SceneBox> boxes;
   for (const auto& box : scenario.boxes()) {
     const auto& xyz = box.pose().xyz();
     const auto& rpy = box.pose().rpy();

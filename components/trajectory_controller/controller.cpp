@@ -134,9 +134,9 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
     motion_ = MotionState::refused;
     return reason;
   }
-  accepted_trajectory_ = command.id;
-  refusal_.clear();
   if (command.axes.empty()) {
+    accepted_trajectory_ = command.id;
+    refusal_.clear();
     cancelled_ = arm_ == Arm::running;
     motion_ = MotionState::stopped;
     return {};
@@ -158,13 +158,21 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   } else {
     for (std::size_t i = 0; i < path.axes.size(); ++i) path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
   }
+  cancelled_ = off_path_ = false;
+  const double factor = std::max(0.0, wanted_factor(now));
+  if (const std::string why = runner_.start(path, of_axes(robot_->guard_limits(), command.axes), factor); !why.empty()) {
+    motion_ = MotionState::refused;
+    refusal_ = "trajectory " + std::to_string(command.id) + ": " + why;
+    return why;
+  }
+  accepted_trajectory_ = command.id;
+  refusal_.clear();
   stand_arm();
   command_ = command;
   command_.trajectory = {};
-  runner_.start(path, of_axes(robot_->guard_limits(), command.axes));
+  path_ = runner_.state();
   arm_ = Arm::running;
   motion_ = MotionState::running;
-  cancelled_ = off_path_ = false;
   started_ = now;
   too_near_for_ = 0.0;
   verdict_now_ = verdict_ahead_ = {};
@@ -198,11 +206,12 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
   // The posture of a robot side that has just come up is the first set-point.
   ready_ = true;
   set_point_ = rest_state(state.position);
+  for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), state.position[i]);
   next_ = set_point_;
   if (arm_ == Arm::running) motion_ = MotionState::stopped;
   stand_arm();
-  hand_.reset(state.position);
-  for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(state.position[axis]);
+  hand_.reset(set_point_.position);
+  for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
   head_wanted_ = false;
 }
 
@@ -253,6 +262,15 @@ void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   gaze_aimed_ = advice.gaze_target;
   head_target_ = aim(*robot_, *robot_->group("head"), set_point_.position, state_.T_world_base.inverse() * advice.gaze_target);
   head_wanted_ = true;
+}
+
+/// Measured positions are noisy; set-points never leave the bounds because of that.
+double Controller::inside(int axis, double position) const noexcept {
+  constexpr double kNoise = 0.02;
+  const Axis& bounds = robot_->axes()[static_cast<std::size_t>(axis)];
+  if (!(bounds.lower < bounds.upper)) return position;
+  const double within = std::clamp(position, bounds.lower, bounds.upper);
+  return std::abs(within - position) <= kNoise ? within : position;
 }
 
 void Controller::stand_arm() noexcept {
@@ -446,8 +464,8 @@ void Controller::resync(TimePoint now) noexcept {
   constexpr double kDeadBand = 0.002;
   for (int axis : arm_axes_) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    if (mover.at_rest() && std::abs(state_.position[axis] - set_point_.position[axis]) > kDeadBand)
-      mover.go_to(state_.position[axis], limits_of(robot_->comfort_limits(), axis));
+    const double measured = inside(axis, state_.position[axis]);
+    if (std::abs(measured - mover.target()) > kDeadBand) mover.go_to(measured, limits_of(robot_->comfort_limits(), axis));
   }
   if (hand_.size() > 0) hand_.follow(state_.position);
 }

@@ -97,6 +97,7 @@ class Controller {
   std::string why_not(const TrajectoryCommand& command, Duration age) const;
   std::string why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const;
   KinematicLimits of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const;
+  double inside(int axis, double position) const noexcept;
   void stop_arm() noexcept;
   void stand_arm() noexcept;
   void run_guard(TimePoint now) noexcept;

@@ -45,12 +45,11 @@ void HandExecutor::stop_from(const MotionState3& from) noexcept {
 }
 
 void HandExecutor::follow(const Vector& robot_position) noexcept {
-  if (!at_rest()) return;
   constexpr double kDeadBand = 0.002;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
-    f.target = f.final = robot_position[axes_[i]];
-    if (std::abs(f.target - f.mover.state().position) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0));
+    f.target = f.final = std::clamp(robot_position[axes_[i]], lower_[i], upper_[i]);
+    if (std::abs(f.target - f.mover.target()) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0));
   }
   phase_ = Phase::hold;
   pull_.disarm();

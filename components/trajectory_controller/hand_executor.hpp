@@ -61,7 +61,7 @@ class HandExecutor {
   bool at_rest() const;
   /// The set-points before the last step were `from`: every axis stops from there as fast as it can.
   void stop_from(const MotionState3& from) noexcept;
-  /// At rest: moves the set-points to the measured positions.
+  /// Moves the set-points to the measured positions.
   void follow(const Vector& robot_position) noexcept;
 
  private:

@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "common/bus/intake.hpp"
 #include "common/messages/execution.hpp"
+#include "common/messages/planning.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
@@ -255,6 +257,60 @@ TYPED_TEST(BusRules, HealthTellsRatesAgesAndDegradation) {
   EXPECT_EQ(health.topics[0].topic, "handsel/human_state");
   EXPECT_LT(health.topics[0].age, 1.0);
   EXPECT_LT(health.topics[1].age, 0.0) << "never seen";
+}
+
+TYPED_TEST(BusRules, RequestsWaitForABusyReaderWithoutBlockingTheWriter) {
+  Bus& a = this->stage.add("a");
+  Bus& b = this->stage.add("b");
+  auto requests = a.advertise<GraspRequest>();
+  std::vector<std::uint64_t> numbers, sent;
+  const auto& status = b.subscribe<GraspRequest>([&](const GraspRequest& m, const Receipt&) { numbers.push_back(m.id.number); });
+  ASSERT_TRUE(this->matched(requests, status));
+  this->stage.pause("b");
+  for (std::uint64_t i = 1; i <= 60; ++i) {
+    GraspRequest request;
+    request.object = "mug";
+    request.id.number = i;
+    ASSERT_TRUE(requests->publish(request));
+    sent.push_back(i);
+  }
+  this->stage.pass(0.05);
+  this->stage.resume("b");
+  ASSERT_TRUE(this->stage.until([&] { return numbers.size() >= 60; }));
+  EXPECT_EQ(numbers, sent);
+}
+
+class Ages : public testing::Test {
+ protected:
+  AgeEstimator estimator;
+  Stamp clock_offset{1'700'000'000'000'000'000};
+  /// A sample stamped at `sent` that arrives at `arrived` [s] of the receiver's time.
+  double age(double sent, double arrived) {
+    return to_seconds(estimator.update(clock_offset + from_seconds(sent).count(), TimePoint(from_seconds(arrived))));
+  }
+};
+
+TEST_F(Ages, AreOverTheFastestSampleSoFar) {
+  EXPECT_NEAR(age(0.0, 0.010), 0.0, 1e-9);
+  EXPECT_NEAR(age(0.1, 0.105), 0.0, 1e-9);
+  EXPECT_NEAR(age(0.2, 0.235), 0.030, 1e-3);
+  EXPECT_NEAR(age(0.3, 1.305), 1.000, 2e-3) << "held back for a second";
+  EXPECT_NEAR(age(0.3, 2.305), 2.000, 4e-3) << "frozen data grows old";
+}
+
+TEST_F(Ages, SurviveAStepOfTheWritersClockEitherWay) {
+  for (int i = 0; i < 100; ++i) age(0.01 * i, 0.01 * i + 0.002);
+  clock_offset -= from_seconds(30).count();
+  for (int i = 100; i < 200; ++i) EXPECT_LT(age(0.01 * i, 0.01 * i + 0.002), 0.001) << i;
+  clock_offset += from_seconds(3600).count();
+  for (int i = 200; i < 300; ++i) EXPECT_LT(age(0.01 * i, 0.01 * i + 0.002), 0.001) << i;
+  EXPECT_NEAR(age(3.0, 3.052), 0.05, 1e-3) << "a late sample is still seen as late";
+}
+
+TEST_F(Ages, FollowClocksThatDriftApart) {
+  double worst = 0;
+  for (int i = 0; i < 60000; ++i) worst = std::max(worst, age(0.01 * i, 0.01 * i * 1.0005));
+  EXPECT_LT(worst, 1e-4) << "500 ppm over ten minutes";
 }
 
 TEST(LocalNetwork, SameSeedSameHistory) {

@@ -127,6 +127,20 @@ TEST(SoftStop, ComesToRestInTheMeasuredTime) {
   }
 }
 
+TEST(SoftStop, CriticalMovementEndsAtItsEndForSmallSpeedsToo) {
+  Draw draw{std::mt19937_64(26)};
+  for (int k = 0; k < 100000; ++k) {
+    const double A = draw(0.5, 4), J = draw(1, 20);
+    AxisState s{0, draw(-1, 1) * std::pow(10, draw(-4, 0)), draw(-1, 1) * A * std::pow(10, draw(-4, 0))};
+    AxisProfile p;
+    critical_movement(s.velocity, s.acceleration, 0, 0, A, J, p);
+    for (int i = 0; i < p.count; ++i)
+      s = advanced(s, p.segments[static_cast<std::size_t>(i)].duration, p.segments[static_cast<std::size_t>(i)].jerk);
+    ASSERT_NEAR(s.velocity, 0, 1e-9);
+    ASSERT_NEAR(s.acceleration, 0, 1e-9);
+  }
+}
+
 TEST(Limits, ExtremesAreExact) {
   Draw draw{std::mt19937_64(25)};
   for (int k = 0; k < 300; ++k) {

@@ -1,0 +1,36 @@
+// The cost map on a Bus.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/process.hpp"
+#include "common/messages/world.hpp"
+#include "components/costmap/comfort_map.hpp"
+
+namespace handsel::costmap {
+
+class Node {
+ public:
+  Node(Bus& bus, const NodeContext& context);
+
+ private:
+  void step(TimePoint now);
+  void make(TimePoint now, const Person& person);
+
+  Bus& bus_;
+  Duration repeat_{};
+  double cell_time_{};
+  MapMaker maker_;  // used by jobs only
+  Watch watch_;
+  std::unique_ptr<Publisher<Costmap>> map_out_;
+  std::optional<Scene> scene_;
+  HumanState people_;
+  Costmap map_;
+  TimePoint sent_{};
+  std::uint64_t revision_{0};
+  bool making_{false};
+};
+
+}  // namespace handsel::costmap

@@ -1,0 +1,5 @@
+find_package(benchmark QUIET)
+if(benchmark_FOUND)
+  add_executable(bench_trajectory ${CMAKE_CURRENT_LIST_DIR}/trajectory_bench.cpp)
+  target_link_libraries(bench_trajectory PRIVATE handsel_trajectory benchmark::benchmark_main)
+endif()

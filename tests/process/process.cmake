@@ -1,0 +1,5 @@
+add_executable(test_probe ${CMAKE_CURRENT_LIST_DIR}/probe.cpp)
+target_link_libraries(test_probe PRIVATE handsel_bus)
+handsel_test(process SOURCES ${CMAKE_CURRENT_LIST_DIR}/process_test.cpp LINK handsel_bus LABEL system)
+target_compile_definitions(test_process PRIVATE HANDSEL_PROBE="$<TARGET_FILE:test_probe>")
+add_dependencies(test_process test_probe)

@@ -1,0 +1,163 @@
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "components/collision_checker/forecaster.hpp"
+#include "tests/support/planar_arm.hpp"
+
+namespace handsel::collision_checker {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// The first axis from -1 to 1 rad at 0.5 rad/s.
+ActiveTrajectory sweep(double time, double speed_factor) {
+  ActiveTrajectory active;
+  active.trajectory = 7;
+  active.time = time;
+  active.speed_factor = speed_factor;
+  active.position = Vector3(-1 + 0.5 * time, 0, 0);
+  active.axes = {0};
+  active.rest.axes = {{{-1, 0.5, 0}, {{4.0, 0.0}}}};
+  return active;
+}
+
+Scene wall(double angle) {
+  Scene scene;
+  scene.revision = 1;
+  scene.boxes.push_back({"wall", make_pose({std::cos(angle), std::sin(angle), 0}), {0.02, 0.02, 0.2}, false});
+  return scene;
+}
+
+HumanState person(const Vector3& feet) {
+  HumanState people;
+  Person one;
+  one.id = "anna";
+  one.joints = standing_body(feet, M_PI, 1.75);
+  people.people.push_back(one);
+  return people;
+}
+
+class Forecast : public ::testing::Test {
+ protected:
+  RobotModel robot_{test::planar_arm()};
+  Forecaster forecaster_{robot_, nullptr, {}, {}};
+};
+
+TEST_F(Forecast, sees_a_wall_within_the_horizon_and_says_when) {
+  forecaster_.set_scene(wall(0.0));
+  const TrajectoryForecast near = forecaster_.forecast(sweep(1.0, 1.0));
+  EXPECT_TRUE(near.collides);
+  EXPECT_EQ(near.trajectory, 7u);
+  EXPECT_GT(near.time_to_collision, 0.75);
+  EXPECT_LT(near.time_to_collision, 1.05);
+  EXPECT_THAT(near.reason, HasSubstr("box wall"));
+  const TrajectoryForecast far = forecaster_.forecast(sweep(0.0, 1.0));
+  EXPECT_FALSE(far.collides);
+  EXPECT_TRUE(std::isinf(far.time_to_collision));
+  EXPECT_TRUE(std::isinf(far.clearance));
+  EXPECT_EQ(far.cost, 0.0);
+}
+
+TEST_F(Forecast, time_counts_at_present_speed_and_a_held_trajectory_is_still_looked_at) {
+  forecaster_.set_scene(wall(0.0));
+  const double full = forecaster_.forecast(sweep(1.6, 1.0)).time_to_collision;
+  EXPECT_NEAR(forecaster_.forecast(sweep(1.6, 0.5)).time_to_collision, 2 * full, 0.01);
+  EXPECT_TRUE(forecaster_.forecast(sweep(1.7, 0.0)).collides);
+}
+
+TEST_F(Forecast, running_backward_looks_back) {
+  forecaster_.set_scene(wall(0.0));
+  EXPECT_FALSE(forecaster_.forecast(sweep(1.5, -1.0)).collides);
+  EXPECT_TRUE(forecaster_.forecast(sweep(2.8, -1.0)).collides);
+}
+
+TEST_F(Forecast, notices_a_wall_that_appears_and_one_that_goes) {
+  forecaster_.set_scene({});
+  EXPECT_FALSE(forecaster_.forecast(sweep(1.0, 1.0)).collides);
+  forecaster_.set_scene(wall(0.0));
+  EXPECT_TRUE(forecaster_.forecast(sweep(1.0, 1.0)).collides);
+  Scene gone;
+  gone.revision = 2;
+  forecaster_.set_scene(gone);
+  EXPECT_FALSE(forecaster_.forecast(sweep(1.0, 1.0)).collides);
+}
+
+TEST_F(Forecast, judges_the_scene_once_a_state_while_nothing_changes) {
+  forecaster_.set_scene(wall(0.9));
+  forecaster_.forecast(sweep(0.5, 1.0));
+  const std::uint64_t before = forecaster_.checks();
+  forecaster_.forecast(sweep(0.5, 1.0));
+  const std::uint64_t again = forecaster_.checks() - before;
+  EXPECT_LE(again, 33u) << "people only";
+}
+
+TEST_F(Forecast, a_torso_in_the_way_is_a_collision_a_hand_only_lowers_the_clearance) {
+  Scene scene;
+  scene.robot_known = true;
+  scene.T_world_base = make_pose({0, 0, 1.2});
+  forecaster_.set_scene(scene);
+  forecaster_.set_people(person({1.1, 0, 0}));
+  const TrajectoryForecast torso = forecaster_.forecast(sweep(1.0, 1.0));
+  EXPECT_TRUE(torso.collides);
+  EXPECT_THAT(torso.reason, HasSubstr("person anna"));
+  HumanState reaching = person({3, 0, 0});
+  for (BodyJoint& joint : reaching.people[0].joints)
+    if (joint.name == "r_hand" || joint.name == "r_wrist") joint.position = {1.1, 0, 1.2};
+  forecaster_.set_people(reaching);
+  const TrajectoryForecast hand = forecaster_.forecast(sweep(1.0, 1.0));
+  EXPECT_FALSE(hand.collides);
+  EXPECT_LT(hand.clearance, 0.0);
+  EXPECT_GE(hand.cost, 0.0);
+  EXPECT_LE(hand.cost, 1.0);
+}
+
+TEST_F(Forecast, at_rest_reports_clearance_and_no_collision) {
+  Scene scene = wall(0.0);
+  forecaster_.set_scene(scene);
+  forecaster_.set_people(person({3, 0, 0}));
+  ActiveTrajectory rest;
+  rest.position = Vector::Zero(3);
+  const TrajectoryForecast forecast = forecaster_.forecast(rest);
+  EXPECT_FALSE(forecast.collides);
+  EXPECT_GT(forecast.clearance, 0.5);
+  EXPECT_LT(forecast.clearance, 3.0);
+  const std::uint64_t before = forecaster_.checks();
+  forecaster_.forecast(rest);
+  EXPECT_EQ(forecaster_.checks(), before);
+}
+
+TEST_F(Forecast, a_trajectory_for_another_robot_is_a_collision_now) {
+  forecaster_.set_scene({});
+  ActiveTrajectory wrong = sweep(1.0, 1.0);
+  wrong.position = Vector::Zero(5);
+  EXPECT_TRUE(forecaster_.forecast(wrong).collides);
+  wrong = sweep(1.0, 1.0);
+  wrong.axes = {9};
+  EXPECT_TRUE(forecaster_.forecast(wrong).collides);
+}
+
+TEST_F(Forecast, the_end_of_the_trajectory_ends_the_look) {
+  forecaster_.set_scene(wall(1.2));
+  EXPECT_FALSE(forecaster_.forecast(sweep(3.8, 1.0)).collides);
+  EXPECT_FALSE(forecaster_.forecast(sweep(4.0, 1.0)).collides);
+}
+
+TEST(Judge, answers_each_state_and_names_the_first_contact) {
+  const RobotModel robot = test::planar_arm();
+  CollisionWorld world(robot, nullptr);
+  world.set_scene(wall(0.0));
+  StateQuery query;
+  query.id = {3, 4};
+  query.states = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector::Zero(2)};
+  const StateVerdict verdict = judge(robot, world, query);
+  EXPECT_EQ(verdict.id, query.id);
+  EXPECT_EQ(verdict.free, (std::vector<std::uint8_t>{0, 1, 0}));
+  EXPECT_THAT(verdict.reason, HasSubstr("box wall"));
+  EXPECT_GT(verdict.clearance, 0.1);
+  EXPECT_LT(verdict.clearance, 1.0);
+}
+
+}  // namespace
+}  // namespace handsel::collision_checker

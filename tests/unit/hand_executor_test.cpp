@@ -1,0 +1,223 @@
+#include "components/trajectory_controller/hand_executor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "common/trajectory/edit.hpp"
+
+namespace handsel::trajectory_controller {
+namespace {
+
+constexpr double kDt = 0.001;
+
+KinematicLimits limits(int n, double v, double a, double j) {
+  return {Eigen::VectorXd::Constant(n, v), Eigen::VectorXd::Constant(n, a), Eigen::VectorXd::Constant(n, j)};
+}
+
+/// A hand of four axes whose servos follow the set-point until something blocks them.
+class HandTest : public testing::Test {
+ protected:
+  HandTest()
+      : hand_(HandSettings{}, {0, 1, 2, 3}, {-0.2, -0.2, -0.2, -0.2}, {1.4, 1.4, 1.4, 1.4}, limits(4, 2.5, 12, 90),
+              limits(4, 2.8, 14, 100)) {
+    out_ = rest_state(Vector::Zero(4));
+    robot_.position = robot_.velocity = robot_.effort = Vector::Zero(4);
+    block_.assign(4, 10.0);
+    hand_.reset(robot_.position);
+  }
+  void command(HandAction action, double position) {
+    HandCommand c;
+    c.action = action;
+    c.position = Vector::Constant(4, position);
+    c.pull_force = 4.0;
+    ASSERT_EQ(hand_.accept(c), "");
+  }
+  void run(double seconds) {
+    for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
+      for (int i = 0; i < 4; ++i) {
+        const double before = robot_.position[i];
+        robot_.position[i] = std::min(out_.position[i], block_[static_cast<std::size_t>(i)]);
+        robot_.velocity[i] = (robot_.position[i] - before) / kDt;
+        robot_.effort[i] = 5.0 * (out_.position[i] - robot_.position[i]);
+      }
+      HandInputs in;
+      in.robot = &robot_;
+      in.new_state = true;
+      in.force = force_ + noise(k);
+      in.toward = Vector3::UnitX();
+      in.person_distance = person_distance_;
+      in.may_move = may_move_;
+      hand_.step(in, kDt, now_, out_);
+      now_ += from_seconds(kDt);
+    }
+  }
+  Vector3 noise(int) {
+    std::normal_distribution<double> n(0.0, 0.5);
+    return Vector3(n(random_), n(random_), n(random_));
+  }
+
+  HandExecutor hand_;
+  MotionState3 out_;
+  RobotState robot_;
+  std::vector<double> block_;
+  Vector3 force_{0, 0, -3.0};
+  double person_distance_{0.1};
+  bool may_move_{true};
+  TimePoint now_{from_seconds(10)};
+  std::mt19937 random_{7};
+};
+
+TEST_F(HandTest, moves_to_a_position_and_says_idle) {
+  command(HandAction::move, 0.8);
+  EXPECT_EQ(hand_.state(), HandState::moving);
+  run(1.5);
+  EXPECT_EQ(hand_.state(), HandState::idle);
+  EXPECT_NEAR(out_.position[2], 0.8, 1e-9);
+}
+
+TEST_F(HandTest, grasps_what_is_in_the_way_and_keeps_squeezing) {
+  block_ = {0.5, 0.55, 0.6, 10.0};
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  for (int i : {0, 1, 2}) EXPECT_NEAR(out_.position[i] - robot_.position[i], HandSettings{}.squeeze, 0.02) << i;
+}
+
+TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
+  block_ = {0.75, 0.75, 0.8, 0.8};
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+}
+
+TEST_F(HandTest, closing_on_nothing_is_empty) {
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  EXPECT_EQ(hand_.state(), HandState::empty);
+}
+
+TEST_F(HandTest, an_object_lost_from_the_grasp_is_noticed) {
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  command(HandAction::grasp, 0.7);
+  run(2.5);
+  robot_.payload = 0.3;
+  run(0.5);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  robot_.payload = 0.0;
+  run(0.5);
+  EXPECT_EQ(hand_.state(), HandState::empty);
+}
+
+TEST_F(HandTest, hold_pauses_and_resuming_finishes) {
+  command(HandAction::move, 1.2);
+  run(0.1);
+  may_move_ = false;
+  run(0.5);
+  const double held = out_.position[0];
+  EXPECT_LT(held, 1.0);
+  EXPECT_EQ(out_.velocity[0], 0.0);
+  run(0.5);
+  EXPECT_EQ(out_.position[0], held);
+  may_move_ = true;
+  run(1.0);
+  EXPECT_NEAR(out_.position[0], 1.2, 1e-9);
+  EXPECT_EQ(hand_.state(), HandState::idle);
+}
+
+TEST_F(HandTest, opens_when_the_person_pulls) {
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  command(HandAction::grasp, 0.7);
+  run(2.5);
+  command(HandAction::release_on_pull, 0.0);
+  run(2.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  force_ += Vector3(8.0, 0, 2.0);
+  run(0.25);
+  EXPECT_EQ(hand_.state(), HandState::moving);
+  run(1.5);
+  EXPECT_EQ(hand_.state(), HandState::released);
+}
+
+TEST_F(HandTest, does_not_open_for_bumps_tremor_pushes_or_without_a_hand) {
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  command(HandAction::grasp, 0.7);
+  run(2.5);
+  command(HandAction::release_on_pull, 0.0);
+  run(1.0);
+  const Vector3 rest = force_;
+  for (int bump = 0; bump < 10; ++bump) {
+    force_ = rest + Vector3(25.0, 0, 0);
+    run(0.03);
+    force_ = rest;
+    run(0.3);
+  }
+  EXPECT_EQ(hand_.state(), HandState::grasped) << "bump";
+  for (int k = 0; k < 2000; ++k) {
+    force_ = rest + Vector3(6.0 * std::sin(2 * M_PI * 8.0 * k * kDt), 0, 0);
+    run(kDt * 1.5);
+  }
+  force_ = rest;
+  run(0.3);
+  EXPECT_EQ(hand_.state(), HandState::grasped) << "tremor";
+  force_ = rest + Vector3(-10.0, 0, 0);
+  run(0.5);
+  EXPECT_EQ(hand_.state(), HandState::grasped) << "push";
+  force_ = rest;
+  run(0.3);
+  person_distance_ = 1.0;
+  force_ = rest + Vector3(10.0, 0, 0);
+  run(0.5);
+  EXPECT_EQ(hand_.state(), HandState::grasped) << "nobody's hand there";
+}
+
+TEST_F(HandTest, refuses_what_it_cannot_do) {
+  HandCommand c;
+  c.position = Vector::Zero(3);
+  EXPECT_NE(hand_.accept(c), "");
+  c.position = Vector::Constant(4, 5.0);
+  EXPECT_NE(hand_.accept(c), "");
+  c.position = Vector::Constant(4, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_NE(hand_.accept(c), "");
+  c.position = Vector::Zero(4);
+  c.action = HandAction::release_on_pull;
+  c.pull_force = 0.0;
+  EXPECT_NE(hand_.accept(c), "");
+}
+
+TEST(PullDetector, two_hundred_pulls_of_all_strengths_and_no_false_release) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> noise(0.0, 0.4);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int strong = 0, opened = 0, weak_opened = 0;
+  double worst = 0.0;
+  for (int trial = 0; trial < 200; ++trial) {
+    PullDetector detector{PullSettings{}};
+    detector.arm(4.0);
+    const double pull = 2.0 + 18.0 * unit(random), rise = 0.05 + 0.3 * unit(random);
+    const Vector3 load(0, 0, -9.81 * 0.3), direction = Vector3(1.0, 0.5 * (unit(random) - 0.5), 0.8 * unit(random)).normalized();
+    double seen = -1.0;
+    for (int k = 0; k < 1500 && seen < 0; ++k) {
+      const double t = k * 0.002, along = std::clamp((t - 1.0) / rise, 0.0, 1.0);
+      const Vector3 f = load + along * pull * direction + Vector3(noise(random), noise(random), noise(random));
+      if (detector.update(f, Vector3::UnitX(), TimePoint(from_seconds(t)))) seen = t - 1.0;
+    }
+    if (seen >= 0) {
+      EXPECT_GT(seen, 0.0) << "before the pull";
+      worst = std::max(worst, seen);
+    }
+    if (pull > 5.0) {
+      ++strong;
+      opened += seen >= 0 ? 1 : 0;
+    } else if (pull < 3.0 && seen >= 0) {
+      ++weak_opened;
+    }
+  }
+  EXPECT_EQ(opened, strong);
+  EXPECT_EQ(weak_opened, 0);
+  EXPECT_LT(worst, 0.7);
+}
+
+}  // namespace
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "common/trajectory/stop.hpp"
+#include "sim/handover_oracle.hpp"
+#include "sim/limits_oracle.hpp"
+#include "tests/unit/sim_fixture.hpp"
+
+namespace handsel::sim {
+namespace {
+
+using namespace test;
+
+/// A legal stream: one axis back and forth by segments of constant jerk at 90 % of the guard limits, exact at every tick.
+class Stream {
+ public:
+  explicit Stream(double share = 0.9) : share_(share) {
+    command_.robot = "jido";
+    command_.position = jido().rest_posture();
+    command_.velocity = command_.acceleration = Vector::Zero(jido().dof());
+  }
+  const JointCommand& next() {
+    const double J = share_ * jido().guard_limits().jerk[0], A = share_ * jido().guard_limits().acceleration[0], h = 0.001;
+    const int third = static_cast<int>(A / (J * h));
+    const int phase = (tick_++ / third) % 4;
+    const double j = phase == 0 || phase == 3 ? J : -J;
+    command_.position[0] += h * (command_.velocity[0] + h * (command_.acceleration[0] / 2 + h * j / 6));
+    command_.velocity[0] += h * (command_.acceleration[0] + h * j / 2);
+    command_.acceleration[0] += h * j;
+    ++command_.sequence;
+    return command_;
+  }
+  JointCommand& last() { return command_; }
+
+ private:
+  double share_;
+  JointCommand command_;
+  int tick_{0};
+};
+
+struct Judge {
+  LimitsOracle oracle{jido(), 0.02};
+  double now{0};
+  void see(const JointCommand& c, std::uint64_t writer = 1) { oracle.observe(c, writer, now += 0.001, c.position); }
+};
+
+TEST(LimitsOracleTest, ALegalStreamHasNoViolationAndItsTrueShares) {
+  Judge judge;
+  Stream stream(0.9);
+  for (int i = 0; i < 2000; ++i) judge.see(stream.next());
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  EXPECT_NEAR(judge.oracle.share_jerk(), 0.9, 1e-6);
+  EXPECT_NEAR(judge.oracle.share_acceleration(), 0.9, 1e-2);
+  EXPECT_DOUBLE_EQ(judge.oracle.period(), 0.001);
+  EXPECT_EQ(judge.oracle.count(), 2000u);
+  EXPECT_EQ(judge.oracle.writers(), 1u);
+}
+
+TEST(LimitsOracleTest, LostSetPointsAreNoViolation) {
+  Judge judge;
+  Stream stream(0.99);
+  for (int i = 0; i < 2000; ++i) {
+    const JointCommand& c = stream.next();
+    if (i % 7 == 3 || i % 11 == 5) {
+      judge.now += 0.001;
+    } else {
+      judge.see(c);
+    }
+  }
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  EXPECT_LE(judge.oracle.share_jerk(), 1 + 1e-6);
+}
+
+TEST(LimitsOracleTest, ShareIsJustAboveOneWhenJerkIs) {
+  Judge judge;
+  Stream stream(1.0 + 1e-5);
+  for (int i = 0; i < 200; ++i) judge.see(stream.next());
+  EXPECT_GT(judge.oracle.violations(), 0u);
+  EXPECT_NEAR(judge.oracle.share_jerk(), 1 + 1e-5, 2e-6);
+}
+
+using Break = std::function<void(JointCommand&)>;
+
+std::string broken_by(const Break& mutate, int at = 500) {
+  Judge judge;
+  Stream stream(0.5);
+  for (int i = 0; i < at; ++i) judge.see(stream.next());
+  EXPECT_EQ(judge.oracle.violations(), 0u);
+  JointCommand bad = stream.next();
+  mutate(bad);
+  judge.see(bad);
+  return judge.oracle.violations() == 1 ? judge.oracle.last_violation() : "not caught";
+}
+
+TEST(LimitsOracleTest, EveryMutantIsCaughtByName) {
+  const KinematicLimits& limits = jido().guard_limits();
+  EXPECT_EQ(broken_by([](JointCommand& c) { c.position[0] += 1e-6; }).substr(0, 13), "position step");
+  EXPECT_NE(broken_by([](JointCommand& c) { c.velocity[0] += 1e-3; }), "not caught");
+  EXPECT_EQ(broken_by([&](JointCommand& c) { c.acceleration[2] = 1.01 * limits.jerk[2] * 0.001; }).substr(0, 4), "jerk");
+  EXPECT_NE(broken_by([&](JointCommand& c) { c.acceleration[3] = 1.01 * limits.acceleration[3]; }), "not caught");
+  EXPECT_NE(broken_by([&](JointCommand& c) { c.velocity[4] = -1.01 * limits.velocity[4]; }), "not caught");
+  EXPECT_NE(broken_by([](JointCommand& c) { c.position[5] = 9; }), "not caught");
+}
+
+TEST(LimitsOracleTest, TheFirstHundredAreJudgedToo) {
+  Judge judge;
+  Stream stream(0.5);
+  for (int i = 0; i < 300; ++i) {
+    JointCommand c = stream.next();
+    if (i == 20) c.position[1] += 1e-4;
+    judge.see(c);
+  }
+  EXPECT_GT(judge.oracle.violations(), 0u);
+}
+
+TEST(LimitsOracleTest, ASecondWriterAndALongGapAreSeen) {
+  Judge judge;
+  Stream stream(0.5);
+  for (int i = 0; i < 300; ++i) judge.see(stream.next());
+  judge.now += 0.5;
+  judge.see(stream.next(), 2);
+  EXPECT_EQ(judge.oracle.writers(), 2u);
+  EXPECT_NEAR(judge.oracle.longest_gap(), 0.501, 1e-9);
+  EXPECT_EQ(judge.oracle.violations(), 0u) << "a new start at the robot's posture is legal";
+  judge.now += 0.5;
+  JointCommand far = stream.next();
+  const Vector actual = far.position;
+  far.position[0] += 0.2;
+  judge.oracle.observe(far, 2, judge.now, actual);
+  EXPECT_EQ(judge.oracle.violations(), 1u) << "a new start elsewhere is a jump";
+}
+
+TEST(SeparationOracleTest, ItsStopAgreesWithTheStopOfTheTrajectoryRoom) {
+  std::mt19937_64 random(20240607);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  for (int i = 0; i < 20000; ++i) {
+    const double A = uniform(0.2, 10), J = uniform(1, 100), v = uniform(-3, 3), a = uniform(-A, A);
+    double time = 0, distance = 0;
+    SeparationOracle::stop_measure(v, a, A, J, time, distance);
+    const StopMeasure other = measure_stop(v, a, A, J);
+    ASSERT_NEAR(time, other.duration, 1e-9 * (1 + time))
+        << "seed 20240607 case " << i << " v " << v << " a " << a << " A " << A << " J " << J;
+    ASSERT_NEAR(distance, other.distance, 1e-9 * (1 + std::abs(distance))) << "case " << i;
+  }
+}
+
+TEST(SeparationOracleTest, ApproachingFastIsAViolationStandingIsNot) {
+  config::Scenario scenario;
+  scenario.set_name("near");
+  auto* person = add_person(scenario, config::STILL);
+  person->set_x(in_hand().x() + 0.45);
+  SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
+  Driver driver(world, jido().rest_posture());
+  driver.hold(0.5);
+  EXPECT_EQ(truth_of(world).ssm_violations, 0u);
+  const Group& arm = jido().require_group("arm");
+  Pose T = jido().link_pose(driver.q(), arm.tip);
+  T.translation().x() += 0.1;
+  const auto nearer = jido().inverse(arm, T, driver.q());
+  ASSERT_TRUE(nearer.has_value());
+  const double before = truth_of(world).separation;
+  driver.move(RobotModel::with(driver.q(), arm, *nearer), 0.25);
+  EXPECT_LT(truth_of(world).separation, before);
+  EXPECT_GT(truth_of(world).ssm_violations, 0u);
+}
+
+TEST(HandoverOracleTest, DemandsLiftContactAndASecondAlone) {
+  const auto run = [](double lift, double contact, double alone, bool floor) {
+    HandoverOracle oracle(0.8);
+    const auto pass = [&](const ObjectSituation& s, double seconds) {
+      for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i) oracle.observe(s, 0.001);
+    };
+    ObjectSituation s;
+    s.height = 0.8, s.on_surface = true;
+    pass(s, 0.1);
+    s = {}, s.height = 0.8 + lift, s.robot_grips = s.robot_touches = true;
+    pass(s, 1.0);
+    s.human_touches = s.human_grips = true;
+    pass(s, contact);
+    s.robot_grips = s.robot_touches = false, s.on_floor = floor;
+    pass(s, alone);
+    GroundTruth truth;
+    oracle.write(truth);
+    return truth.handover_done;
+  };
+  EXPECT_TRUE(run(0.12, 0.3, 1.0, false));
+  EXPECT_FALSE(run(0.09, 0.3, 1.0, false));
+  EXPECT_FALSE(run(0.12, 0.19, 1.0, false));
+  EXPECT_FALSE(run(0.12, 0.3, 0.9, false));
+  EXPECT_FALSE(run(0.12, 0.3, 1.0, true));
+}
+
+}  // namespace
+}  // namespace handsel::sim

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "sim/object_surface.hpp"
+#include "tests/unit/sim_fixture.hpp"
+
+namespace handsel::sim {
+namespace {
+
+using namespace test;
+
+std::filesystem::path recording_folder() {
+  const char* data = std::getenv("HANDSEL_DATA");
+  return data == nullptr ? std::filesystem::path() : std::filesystem::path(data) / "motion/kth_handover/handover_sample";
+}
+
+PersonView offer(const Vector3& where) {
+  PersonView view;
+  view.object = library()("mug");
+  view.T_world_object = make_pose(where);
+  view.robot_hand = where + Vector3(-0.2, 0, 0);
+  view.held_by_robot = true;
+  return view;
+}
+
+int joint(const char* name) { return body_joint_index(name); }
+
+TEST(SimPerson, ReachesSmoothlyAndItsHandEndsAtTheMug) {
+  PersonSettings settings;
+  settings.id = "anna";
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  const PersonView view = offer({0.95, 0.05, 1.05});
+  double fastest = 0, clock = 0;
+  Vector3 before = person.hand().T_world_body.translation();
+  while (person.phase() != PersonPhase::pulling && clock < 5) {
+    person.step(0.001, view);
+    clock += 0.001;
+    const Vector3 hand = person.hand().T_world_body.translation();
+    fastest = std::max(fastest, (hand - before).norm() / 0.001);
+    before = hand;
+    for (const auto& [a, b] : {std::pair{"r_shoulder", "r_elbow"}, {"r_elbow", "r_wrist"}}) {
+      const double length = (person.body().joints[joint(a)].position - person.body().joints[joint(b)].position).norm();
+      ASSERT_GT(length, 0.15);
+      ASSERT_LT(length, 0.40);
+    }
+  }
+  EXPECT_EQ(person.phase(), PersonPhase::pulling);
+  EXPECT_GT(clock, settings.reaction + 0.8) << "not before the reaction and the reach";
+  EXPECT_LT(clock, settings.reaction + 1.2 + 0.5);
+  EXPECT_GT(fastest, 0.3);
+  EXPECT_LT(fastest, 2.5);
+  const double gap = surface_distance(*view.object, view.T_world_object.inverse() * person.hand().T_world_body.translation());
+  EXPECT_NEAR(gap, PersonModel::kPalm, 0.013);
+}
+
+TEST(SimPerson, DoesNotReachForWhatMovesOrIsOutOfReach) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  PersonView moving = offer({0.95, 0.05, 1.05});
+  moving.object_velocity = Vector3(0.1, 0, 0);
+  for (int i = 0; i < 2000; ++i) person.step(0.001, moving);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+  for (int i = 0; i < 2000; ++i) person.step(0.001, offer({0.3, 0, 1.05}));
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+  person.refuse();
+  for (int i = 0; i < 2000; ++i) person.step(0.001, offer({0.95, 0.05, 1.05}));
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, LooksAtWhatTheRobotHolds) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  const PersonView view = offer({0.3, 0.2, 1.05});
+  for (int i = 0; i < 1500; ++i) person.step(0.001, view);
+  const Person& body = person.body();
+  const Vector3 want = (view.T_world_object.translation() - body.gaze_origin).normalized();
+  EXPECT_GT(body.gaze_direction.dot(want), 0.98);
+}
+
+TEST(SimPerson, WalksInFromBehindItsPlace) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.approach_from = 1.2;
+  PersonModel person(settings);
+  EXPECT_NEAR(person.body().joints[joint("waist")].position.x(), 2.7, 0.05);
+  for (int i = 0; i < 2500; ++i) person.step(0.001, PersonView{});
+  EXPECT_NEAR(person.body().joints[joint("waist")].position.x(), 1.5, 0.05);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimRecording, TheTakerOfTheKthSampleFacesForwardAndReachesWithTheRightHand) {
+  if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  const Recording recording = load_recording(recording_folder());
+  EXPECT_EQ(recording.frames.size(), 801u);
+  EXPECT_EQ(recording.taking, Side::right);
+  EXPECT_NEAR(recording.contact, 3.05, 0.25);
+  const BodyPoints& first = recording.frames.front();
+  EXPECT_GT(first[joint("l_shoulder")].y(), first[joint("r_shoulder")].y()) << "left is left of someone who faces +x";
+  EXPECT_LT(std::abs(first[joint("l_shoulder")].x() - first[joint("r_shoulder")].x()), 0.02);
+  EXPECT_NEAR(first[joint("waist")].head<2>().norm(), 0, 1e-9);
+  EXPECT_GT(first[joint("head")].z(), 1.3);
+  BodyPoints reaching;
+  recording.sample(recording.contact, reaching);
+  EXPECT_GT(reaching[joint("r_hand")].x(), 0.45);
+}
+
+TEST(SimRecording, TheWarpStaysWithinTenCentimetres) {
+  if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.kind = PersonKind::recording;
+  settings.recording = std::make_shared<const Recording>(load_recording(recording_folder()));
+  const auto recorded_at = [&](double t) {
+    BodyPoints points;
+    settings.recording->sample(t, points);
+    return Vector3(settings.feet + Eigen::AngleAxisd(M_PI, Vector3::UnitZ()) * points[joint("r_hand")]);
+  };
+  for (const Vector3& off : {Vector3(0.02, 0.03, -0.04), Vector3(0.2, 0.2, 0.2)}) {
+    PersonModel person(settings);
+    const Vector3 at_contact = recorded_at(settings.recording->contact);
+    const PersonView view = offer(at_contact + Vector3(-0.07, 0, 0) + off);
+    double clock = 0, t = 0, worst = 0;
+    while (clock < 6 && person.phase() != PersonPhase::closing) {
+      person.step(0.001, view);
+      clock += 0.001;
+      if (person.phase() != PersonPhase::reaching) continue;
+      t = std::min(t + 0.001, settings.recording->contact);
+      const double warp = (person.hand().T_world_body.translation() - recorded_at(t)).norm();
+      worst = std::max(worst, warp);
+      if (t < settings.recording->contact - settings.warp_time - 0.002) {
+        ASSERT_LT(warp, 0.005) << "at " << t;
+      }
+    }
+    EXPECT_LT(worst, settings.max_warp + 0.005);
+    EXPECT_EQ(person.phase() == PersonPhase::closing, off.norm() < 0.1);
+  }
+}
+
+class BadRecording : public ::testing::Test {
+ protected:
+  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("recording_" + std::to_string(getpid()));
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    for (const char* part : {"hip", "chest", "neck", "head", "LUArm", "RUArm", "LFArm", "RFArm", "LHand", "RHand"}) {
+      const bool left = part[0] == 'L';
+      write(part,
+            std::string("x,y,z,q0,q1,q2,q3\n0,") + (left ? "0.2" : "-0.2") + ",1,0,0,0,1\n0," + (left ? "0.2" : "-0.2") + ",1,0,0,0,1\n");
+    }
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& part, const std::string& text) { std::ofstream(folder_ / ("taker_" + part + "_pose_saved.csv")) << text; }
+  std::string sentence() {
+    try {
+      load_recording(folder_);
+    } catch (const std::runtime_error& error) {
+      const std::string text = error.what();
+      return text.substr(text.rfind('/') == std::string::npos ? 0 : text.rfind('/') + 1);
+    }
+    return "accepted";
+  }
+};
+
+TEST_F(BadRecording, NamesFileLineAndFault) {
+  EXPECT_EQ(sentence(), "accepted");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n0,0,oops,0,0,0,1\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:3: column 3 is not a finite number");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,nan,0,0,0,1\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: column 3 is not a finite number");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,2\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: the quaternion's length is 2.000000, must be 1");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: expected 7 numbers separated by commas");
+  write("neck", "a,b\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:1: the first line must be x,y,z,q0,q1,q2,q3");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: needs at least two rows");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n0,0,1,0,0,0,1\n0,0,1,0,0,0,1\n");
+  EXPECT_NE(sentence().find("rows, they must agree"), std::string::npos);
+  std::filesystem::remove(folder_ / "taker_neck_pose_saved.csv");
+  EXPECT_NE(sentence().find("cannot be opened"), std::string::npos);
+}
+
+TEST(SimRecording, AMissingFolderIsMissing) { EXPECT_THROW(load_recording("no/such/folder"), MissingError); }
+
+}  // namespace
+}  // namespace handsel::sim
