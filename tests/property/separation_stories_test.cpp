@@ -1,0 +1,98 @@
+// A person darts in from anywhere at up to 2.2 m/s while the arm works: the arm stands or moves away before they meet.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <random>
+
+#include "tests/support/controller_bench.hpp"
+
+namespace handsel::trajectory_controller {
+namespace {
+
+class Watch {
+ public:
+  explicit Watch(const test::ControllerBench& bench) : bench_(bench), capsules_(robot_capsules(*bench.robot)) {}
+  Separation separation_now() {
+    bench_.robot->forward(bench_.core.set_point().position, links_);
+    return separation(capsules_, links_, Pose::Identity(), bench_.people);
+  }
+  /// Speed of the robot toward the person at the nearest points [m/s], from the set-points sent.
+  double speed_toward(const Separation& s) {
+    constexpr double kStep = 1e-4;
+    if (s.link < 0) return 0.0;
+    const Pose T = links_[static_cast<std::size_t>(s.link)];
+    bench_.robot->forward(bench_.core.set_point().position + kStep * bench_.core.set_point().velocity, links_);
+    const Vector3 p = links_[static_cast<std::size_t>(s.link)] * (T.inverse() * s.on_robot);
+    const Vector3 way = (s.distance < 0 ? -1.0 : 1.0) * (s.on_person - s.on_robot);
+    return way.norm() < 1e-9 ? 0.0 : (p - s.on_robot).dot(way.normalized()) / kStep;
+  }
+
+ private:
+  const test::ControllerBench& bench_;
+  std::vector<LinkCapsule> capsules_;
+  std::vector<Pose> links_;
+};
+
+TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) {
+  const std::uint64_t seed = 77;
+  std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  int met = 0, was_moving = 0;
+  for (int trial = 0; trial < 100; ++trial) {
+    test::ControllerBench b;
+    b.start();
+    Watch watch(b);
+    const double angle = 2.0 * M_PI * unit(random), speed = 0.3 + 1.9 * unit(random), from = 3.2;
+    const Vector3 away(std::cos(angle), std::sin(angle), 0.0), velocity = -speed * away;
+    const double begin = 0.2 + 2.0 * unit(random);
+    Person person = b.standing(from * away.x(), from * away.y());
+    for (BodyJoint& j : person.joints) j.velocity.setZero();
+    b.people.people = {person};
+    std::uint64_t id = 0;
+    bool moved = false;
+    for (int k = 0; k < 6000; ++k) {
+      if (b.core.status_key().motion != MotionState::running && b.core.mode() < Mode::hold) {
+        ++id;
+        b.go_to(test::ControllerBench::arm(id % 2 ? -1.2 : 1.2, 0.2, -0.3), id);
+      }
+      if (k * 0.001 >= begin)
+        for (BodyJoint& j : b.people.people[0].joints) {
+          j.position += 0.001 * velocity;
+          j.velocity = velocity;
+        }
+      b.tick();
+      moved = moved || !b.at_rest();
+      const Separation s = watch.separation_now();
+      if (s.distance > 0.0) continue;
+      ++met;
+      EXPECT_LE(watch.speed_toward(s), 0.02) << "trial " << trial << ", person at " << speed << " m/s";
+      break;
+    }
+    was_moving += moved ? 1 : 0;
+  }
+  std::printf("%d of 100 reached the robot; the arm had been moving in %d\n", met, was_moving);
+  EXPECT_GT(met, 60);
+  EXPECT_GT(was_moving, 80);
+}
+
+TEST(SeparationStories, a_person_standing_still_leaves_most_of_the_time_productive) {
+  test::ControllerBench b;
+  b.people.people = {b.standing(1.5, 0.0)};
+  b.start();
+  std::uint64_t id = 0;
+  int productive = 0, steps = 20000;
+  for (int k = 0; k < steps; ++k) {
+    if (b.core.status_key().motion != MotionState::running) {
+      ++id;
+      ASSERT_EQ(b.go_to(test::ControllerBench::arm(id % 2 ? -1.2 : 1.2, 0.2, -0.3), id), "");
+    }
+    b.tick();
+    productive += b.core.speed_factor() > 0.5 ? 1 : 0;
+  }
+  std::printf("productive %.1f %% of the time with a person standing at 1.5 m\n", 100.0 * productive / steps);
+  EXPECT_GT(productive, 0.6 * steps);
+}
+
+}  // namespace
+}  // namespace handsel::trajectory_controller
