@@ -1,4 +1,4 @@
-// Counts heap allocations of the calling thread while one is alive. Link allocation_counter.cpp into the test binary.
+// Counts heap allocations (operator new and malloc). Link allocation_counter.cpp into the test binary.
 #pragma once
 
 #include <cstdint>
