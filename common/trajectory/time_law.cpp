@@ -10,8 +10,8 @@
 namespace handsel {
 
 namespace {
-constexpr double kMargin = 0.995;   // of the guard, for what happens between two steps
-constexpr double kMaxPush = 400.0;  // [1/s^2]
+constexpr double kMargin = 0.99;    // of the guard, for what happens between two steps
+constexpr double kMaxPush = 100.0;  // [1/s^2]
 constexpr double kMaxRate = 20.0;   // [1/s]
 constexpr int kHorizon = 600;       // steps of a way back to constant alpha
 constexpr double kLanded = 1e-9;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "common/trajectory/edit.hpp"
@@ -25,13 +26,16 @@ struct Draw {
   }
 };
 
+/// Random runs of a property test: few in the suite, as many as HANDSEL_RUNS says on demand.
+int runs(int in_suite) { return std::getenv("HANDSEL_RUNS") ? std::atoi(std::getenv("HANDSEL_RUNS")) : in_suite; }
+
 KinematicLimits scaled(const KinematicLimits& l, double k) { return {l.velocity * k, l.acceleration * k, l.jerk * k}; }
 
 TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
   const std::uint64_t seed = 31;
   Draw draw{std::mt19937_64(seed)};
   double largest = 0;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < runs(40); ++k) {
     const int n = 7;
     const KinematicLimits guard{draw.vector(n, 0.3, 2), draw.vector(n, 0.6, 4), draw.vector(n, 2, 16)};
     Trajectory t = solve(rest_state(draw.vector(n, -1, 1)), rest_state(draw.vector(n, -1, 1)), scaled(guard, 1 / 1.1)).trajectory;
@@ -69,7 +73,7 @@ TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
 TEST(TimeLaw, CornersThatUseTheWholeGuardAreKeptToo) {
   const std::uint64_t seed = 34;
   Draw draw{std::mt19937_64(seed)};
-  for (int k = 0; k < 25; ++k) {
+  for (int k = 0; k < runs(25); ++k) {
     const int n = 7;
     const KinematicLimits guard{draw.vector(n, 0.3, 2), draw.vector(n, 0.6, 4), draw.vector(n, 2, 16)};
     std::vector<VectorXd> nodes;
