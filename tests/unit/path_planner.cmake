@@ -1,3 +1,5 @@
 handsel_test(path_planner SOURCES ${CMAKE_CURRENT_LIST_DIR}/path_planner_test.cpp LINK handsel_path_planner_core LABEL unit)
 handsel_test(path_planner_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/path_planner_property_test.cpp LINK handsel_path_planner_core
-             LABEL property)
+             LABEL unit)
+handsel_test(planning_nodes SOURCES ${CMAKE_CURRENT_LIST_DIR}/planning_nodes_test.cpp LINK handsel_path_planner handsel_collision_checker
+             handsel_costmap LABEL unit)
