@@ -83,7 +83,14 @@ void HandExecutor::retarget(std::size_t i, double target) {
   Finger& f = fingers_[i];
   f.target = std::clamp(target, lower_[i], upper_[i]);
   const bool gently = phase_ == Phase::closing || phase_ == Phase::squeezing;
-  if (!paused_) f.mover.go_to(f.target, limits(i, comfort_, gently ? settings_.grasp_speed : 1.0));
+  if (paused_) return;
+  AxisLimits l = limits(i, comfort_, gently ? settings_.grasp_speed : 1.0);
+  if (gently) {
+    l.velocity *= f.share;
+    l.acceleration *= f.share;
+    l.jerk *= f.share;
+  }
+  f.mover.go_to(f.target, l);
 }
 
 void HandExecutor::start(Phase phase) {
@@ -91,9 +98,12 @@ void HandExecutor::start(Phase phase) {
   state_ = HandState::moving;
   settled_for_ = lost_for_ = 0.0;
   payload_felt_ = false;
+  double longest = 0.0;
+  for (const Finger& f : fingers_) longest = std::max(longest, std::abs(f.final - f.mover.state().position));
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     const double way = f.final - f.mover.state().position;
+    f.share = longest > 0.0 ? std::max(0.05, std::abs(way) / longest) : 1.0;
     f.direction = phase == Phase::closing && std::abs(way) >= settings_.closing_least ? std::copysign(1.0, way) : 0.0;
     f.contact = f.beyond = false;
     f.pressed_for = 0.0;
@@ -102,6 +112,9 @@ void HandExecutor::start(Phase phase) {
 }
 
 void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
+  // The axes look for contact beyond the command together: a finger that were first would only push the object away.
+  const bool together =
+      std::all_of(fingers_.begin(), fingers_.end(), [](const Finger& f) { return f.contact || f.beyond || f.mover.at_rest(); });
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     if (f.direction == 0.0 || f.contact) continue;
@@ -114,11 +127,11 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
     f.pressed_for = pressed ? f.pressed_for + dt : 0.0;
     if (f.pressed_for >= settings_.contact_time) {
       f.contact = true;
-      retarget(i, robot.position[axis] + f.direction * settings_.squeeze);
-    } else if (f.mover.at_rest() && !f.beyond) {
+      retarget(i, robot.position[axis] + f.direction * f.share * settings_.squeeze);
+    } else if (together && !f.beyond) {
       f.beyond = true;
       phase_ = Phase::squeezing;
-      retarget(i, f.final + f.direction * settings_.squeeze_travel);
+      retarget(i, f.final + f.direction * f.share * settings_.squeeze_travel);
     }
   }
 }

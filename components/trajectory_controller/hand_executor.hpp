@@ -18,8 +18,8 @@ struct HandSettings {
   double contact_effort{0.5};   ///< or effort beyond this while it hardly moves [Nm]
   double contact_speed{0.05};   ///< "hardly moves" [rad/s]
   double contact_time{0.02};    ///< for this long [s]
-  double squeeze{0.15};         ///< set-point beyond the measured position once in contact [rad]
-  double squeeze_travel{0.35};  ///< how far beyond the commanded position contact is sought [rad]
+  double squeeze{0.15};         ///< set-point beyond the measured position once in contact, axis with the longest way [rad]
+  double squeeze_travel{0.35};  ///< how far beyond the commanded position contact is sought, axis with the longest way [rad]
   double settle_time{0.15};     ///< at rest for this long before the outcome is told [s]
   int least_contacts{2};        ///< axes in contact that make a grasp
   double grasp_lag{0.03};       ///< an axis this far from its set-point presses on something [rad]
@@ -71,6 +71,7 @@ class HandExecutor {
     double target{};       // wanted now
     double final{};        // of the command, clamped to the bounds
     double direction{};    // of closing: -1, 0, +1
+    double share{1.0};     // of the longest way of all axes: speed and squeeze go with it, so that a finger keeps its way, (0, 1]
     double pressed_for{};  // [s]
     bool contact{}, beyond{};
   };

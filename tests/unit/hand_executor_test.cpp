@@ -92,6 +92,21 @@ TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
   EXPECT_EQ(hand_.state(), HandState::grasped);
 }
 
+TEST_F(HandTest, fingers_arrive_together_and_squeeze_along_the_way_they_came) {
+  HandCommand c;
+  c.action = HandAction::grasp;
+  c.position = Eigen::Vector4d(0.2, 0.4, 0.1, 0.6);
+  ASSERT_EQ(hand_.accept(c), "");
+  bool together = true;
+  for (int k = 0; k < 2500; ++k) {
+    run(kDt);
+    for (int i = 0; i < 4; ++i) together = together && std::abs(out_.position[i] / c.position[i] - out_.position[3] / c.position[3]) < 0.02;
+  }
+  EXPECT_TRUE(together) << "an axis ran ahead of the others";
+  EXPECT_NEAR(out_.position[3], 0.6 + HandSettings{}.squeeze_travel, 1e-6);
+  EXPECT_NEAR(out_.position[0], 0.2 + HandSettings{}.squeeze_travel / 3, 1e-6);
+}
+
 TEST_F(HandTest, closing_on_nothing_is_empty) {
   command(HandAction::grasp, 0.7);
   run(3.0);
