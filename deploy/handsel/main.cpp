@@ -16,24 +16,14 @@ int main(int argc, char** argv) {
   handsel::add_status_command(app, exit_code);
   handsel::add_topic_commands(app, exit_code);
   handsel::add_doctor_command(app, exit_code);
-#ifdef HANDSEL_EVAL_COMMAND
   handsel::add_eval_command(app, exit_code);
-#endif
-#ifdef HANDSEL_TRAJECTORY_COMMAND
   handsel::add_trajectory_commands(app, exit_code);
-#endif
-#ifdef HANDSEL_MODEL_COMMAND
   handsel::add_model_commands(app, exit_code);
-#endif
-#ifdef HANDSEL_DISTANCE_COMMAND
   handsel::add_distance_command(app, exit_code);
-#endif
 #ifdef HANDSEL_PLAN_COMMAND
   handsel::add_plan_command(app, exit_code);
 #endif
-#ifdef HANDSEL_GRASP_COMMAND
   handsel::add_grasp_commands(app, exit_code);
-#endif
   try {
     app.parse(argc, argv);
     return exit_code;

@@ -1,7 +1,4 @@
 # Stories and command-line tests over real processes: one at a time, each on a DDS domain of its own.
-if(NOT TARGET handsel)
-  return()
-endif()
 set(story_domain 40)
 foreach(kind system fault)
   file(GLOB stories CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/../${kind}/*.story)
@@ -19,3 +16,6 @@ target_compile_definitions(test_command PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:h
 add_dependencies(test_command product)
 add_test(NAME command COMMAND test_command)
 set_tests_properties(command PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 300)
+
+handsel_test(lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/lockstep_test.cpp LINK handsel_lockstep LABEL system)
+set_tests_properties(lockstep PROPERTIES TIMEOUT 120)
