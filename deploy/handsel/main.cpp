@@ -1,8 +1,26 @@
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "common/base/errors.hpp"
 #include "deploy/handsel/commands.hpp"
+
+namespace {
+
+/// Follows the words that name commands; throws ConfigError at one that names none.
+void require_known(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = &app;
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+    const std::string word = argv[i];
+    const auto all = command->get_subcommands([](const CLI::App*) { return true; });
+    if (all.empty()) return;
+    const auto found = command->get_subcommands([&](const CLI::App* candidate) { return candidate->get_name() == word; });
+    if (found.empty()) throw handsel::ConfigError("there is no command \"" + word + "\" here; --help names those there are");
+    command = found.front();
+  }
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{"Handsel lets a robot arm hand things to people. `handsel COMMAND --help` explains a command."};
@@ -25,6 +43,7 @@ int main(int argc, char** argv) {
 #endif
   handsel::add_grasp_commands(app, exit_code);
   try {
+    require_known(app, argc, argv);
     app.parse(argc, argv);
     return exit_code;
   } catch (const CLI::CallForHelp& help) {

@@ -33,14 +33,20 @@ TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id) {
                     "\"; it must be give, receive, pick, place, clear, tidy, regrasp, lift or go_to");
 }
 
+std::vector<TaskGoal> scenario_goals(const config::Scenario& scenario) {
+  if (scenario.tasks().empty()) throw ConfigError("the scenario " + scenario.name() + " has no tasks to perform");
+  std::vector<TaskGoal> goals;
+  for (const config::TaskDescription& task : scenario.tasks()) goals.push_back(make_goal(task, goals.size() + 1));
+  return goals;
+}
+
 bool is_over(TaskState state) {
   return state == TaskState::succeeded || state == TaskState::failed || state == TaskState::cancelled || state == TaskState::refused;
 }
 
 Performer::Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout, std::function<bool()> ready)
     : bus_(bus), observer_(observer), publisher_(bus.advertise<TaskGoal>()), ready_(std::move(ready)) {
-  if (scenario.tasks().empty()) throw ConfigError("the scenario " + scenario.name() + " has no tasks to perform");
-  for (const config::TaskDescription& task : scenario.tasks()) goals_.push_back(make_goal(task, goals_.size() + 1));
+  goals_ = scenario_goals(scenario);
   timeout_ = from_seconds(timeout > 0 ? timeout : scenario.timeout() > 0 ? scenario.timeout() : kDefaultTimeout);
   bus.every(kTick, [this](TimePoint now) { tick(now); });
 }

@@ -14,6 +14,8 @@ namespace handsel {
 std::string describe(const TaskGoal& goal);
 /// The scenario's task as a goal; throws ConfigError for a kind that is none.
 TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id);
+/// All of them, in order, with ids from 1; throws ConfigError also when there is none.
+std::vector<TaskGoal> scenario_goals(const config::Scenario& scenario);
 bool is_over(TaskState state);
 
 struct StepOutcome {
@@ -33,7 +35,7 @@ struct TaskOutcome {
 
 class Performer {
  public:
-  /// Begins as soon as `ready` holds. Throws ConfigError when the scenario has no task or one of unknown kind.
+  /// Begins as soon as `ready` holds. Throws as scenario_goals().
   Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout, std::function<bool()> ready);
 
   bool finished() const { return phase_ == Phase::finished; }

@@ -59,6 +59,7 @@ void write_report(const std::string& file, const nlohmann::json& report) {
 int run(RunOptions& options) {
   catch_interrupts();
   const config::Scenario scenario = read_scenario(options.system.scenario);
+  scenario_goals(scenario);  // a scenario that cannot be performed starts nothing
   const std::string shown = options.system.scenario;
   if (!options.report.empty()) write_report(options.report, nlohmann::json{{"success", false}, {"failure", "did not end"}});
   TemporaryFile derived;

@@ -21,7 +21,7 @@ struct Outcome {
 inline Outcome shell(const std::string& command) {
   const std::filesystem::path errors = std::filesystem::temp_directory_path() / ("handsel-err-" + std::to_string(getpid()));
   Outcome outcome;
-  std::FILE* pipe = popen((command + " 2>" + errors.string()).c_str(), "r");
+  std::FILE* pipe = popen(("{ " + command + "; } 2>" + errors.string()).c_str(), "r");
   char bytes[4096];
   for (std::size_t n; (n = std::fread(bytes, 1, sizeof bytes, pipe)) > 0;) outcome.out.append(bytes, n);
   const int status = pclose(pipe);

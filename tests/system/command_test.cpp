@@ -36,6 +36,7 @@ struct TemporaryFile {
 TEST(Command, wrong_usage_is_one_sentence) {
   expect_refusal("", 2, "subcommand");
   expect_refusal("dance", 2, "dance");
+  expect_refusal("task dance mug", 2, "dance");
   expect_refusal("run --scenario give_mug --sed 3", 2, "--sed");
   expect_refusal("up --domain 300", 2, "300");
   expect_refusal("task give", 2, "object");
