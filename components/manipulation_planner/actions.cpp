@@ -17,6 +17,10 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
       last = list.outcome;
       continue;
     }
+    if (person(for_human) != nullptr && !for_human.empty()) {
+      last = co_await keep_givable(list.grasps, object_id, for_human);
+      if (!last.good) continue;
+    }
     int executed = 0;
     for (const Grasp& grasp : list.grasps) {
       last = co_await try_grasp(object_id, grasp);
@@ -27,6 +31,29 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
     }
   }
   co_return last;
+}
+
+Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, const std::string& object_id, const std::string& human) {
+  status_.phase = "looking ahead to the exchange";
+  auto searches = std::make_shared<std::vector<ExchangeSearch>>();
+  const std::function<void()> job = [this, searches, grasps, scene = scene_, who = *person(human), q = set_point_,
+                                     T_world_object = object(object_id)->T_world_object] {
+    for (const Grasp& grasp : grasps)
+      searches->push_back(find_exchange(*robot_, scene, who, q, T_world_object, grasp.T_object_hand.inverse(), settings_));
+  };
+  Outcome worked = co_await work(job);
+  if (!worked.good) co_return worked;
+  std::vector<Grasp> givable;
+  for (std::size_t i = 0; i < grasps.size(); ++i) {
+    if (!(*searches)[i].poses.empty())
+      givable.push_back(grasps[i]);
+    else
+      refuse("grasp " + std::to_string(grasps[i].id), (*searches)[i].reason);
+  }
+  if (givable.empty())
+    co_return Outcome::failure("no grasp of " + object_id + " can be handed to " + human + ": " + searches->front().reason);
+  grasps = std::move(givable);
+  co_return Outcome{};
 }
 
 Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, const Grasp& grasp) {
@@ -115,8 +142,9 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     const Person* whom = person(receiver);
     if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
     auto search = std::make_shared<ExchangeSearch>();
-    const std::function<void()> job = [this, search, scene = scene_, who = *whom, q = set_point_, T = attachment_.T_tool_object] {
-      *search = find_exchange(*robot_, scene, who, q, T, settings_);
+    const std::function<void()> job = [this, search, scene = scene_, who = *whom, q = set_point_, T = attachment_.T_tool_object,
+                                       T_world_object = T_world_tool() * attachment_.T_tool_object] {
+      *search = find_exchange(*robot_, scene, who, q, T_world_object, T, settings_);
     };
     last = co_await work(job);
     if (!last.good) continue;

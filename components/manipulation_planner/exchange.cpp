@@ -30,12 +30,11 @@ double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
 
 }  // namespace
 
-ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q, const Pose& T_tool_object,
+ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q,
+                             const Pose& T_world_object_now, const Pose& T_tool_object,
                              const config::ManipulationPlannerSettings& settings) {
   ExchangeSearch out;
   const Group& arm = robot.require_group("arm");
-  const Pose T_root_tool = robot.link_pose(q, robot.tool_link());
-  const Pose T_world_object_now = scene.T_world_base * T_root_tool * T_tool_object;
   const Vector3 torso = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   const double shoulder_z = person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
   Vector3 toward_robot = scene.T_world_base.translation() - torso;
@@ -53,7 +52,7 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
   int out_of_reach = 0, blocked = 0;
   for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74}) {
     for (const double aside : {-0.24, -0.12, 0.0, 0.12, 0.24}) {
-      for (const double below : {0.05, 0.15, 0.25, 0.35}) {
+      for (const double below : {0.05, 0.15, 0.25, 0.35, 0.45, 0.55}) {
         Vector3 p = torso + ahead * toward_robot + aside * across;
         p.z() = shoulder_z - below;
         if (!within_reach(person, p)) {
@@ -83,9 +82,13 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
 
   IkOptions options;
-  options.restarts = 3;
+  options.restarts = 0;
   int unreachable = 0;
   for (const auto& place : places) {
+    const bool offered = std::any_of(out.poses.begin(), out.poses.end(), [&](const ExchangePose& pose) {
+      return (pose.T_world_object.translation() - place.T_world_object.translation()).norm() < 0.05;
+    });
+    if (offered) continue;
     if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.exchange_tries()) break;
     ++out.tried;
     const Pose T_root_tip = scene.T_world_base.inverse() * place.T_world_object * T_tool_object.inverse();

@@ -25,8 +25,10 @@ struct ExchangeSearch {
   std::uint32_t tried{};            ///< inverse kinematics solved for
 };
 
-/// `q`: all axes now. The object keeps its tilt; only its place and heading change.
-ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q, const Pose& T_tool_object,
+/// `q`: all axes, near which postures are sought; `T_world_object_now`: where the object is. The object keeps its tilt; only its place and
+/// heading change.
+ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q,
+                             const Pose& T_world_object_now, const Pose& T_tool_object,
                              const config::ManipulationPlannerSettings& settings);
 
 }  // namespace handsel::manipulation_planner

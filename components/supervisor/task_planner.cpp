@@ -11,6 +11,14 @@ const Fact* find(const Facts& facts, FactKind kind, const std::string& subject) 
   return it == facts.facts.end() ? nullptr : &*it;
 }
 
+// Who to give to when nobody is named: an attentive person, else whoever is near; empty if nobody is.
+std::string someone(const Facts& facts) {
+  for (const FactKind kind : {FactKind::attentive, FactKind::in_interaction_zone, FactKind::in_social_zone})
+    for (const auto& fact : facts.facts)
+      if (fact.kind == kind) return fact.subject;
+  return "";
+}
+
 const PlannedAction kRest{ActionKind::go_to, "", "", ""};
 
 }  // namespace
@@ -35,11 +43,13 @@ TaskPlan plan_task(const TaskGoal& goal, const Facts& facts) {
     return plan;
   }
   switch (goal.kind) {
-    case TaskKind::give:
-      if (!held) plan.actions.push_back({ActionKind::pick, goal.object, goal.human, ""});
-      plan.actions.push_back({ActionKind::give, goal.object, goal.human, ""});
+    case TaskKind::give: {
+      const std::string human = goal.human.empty() ? someone(facts) : goal.human;
+      if (!held) plan.actions.push_back({ActionKind::pick, goal.object, human, ""});
+      plan.actions.push_back({ActionKind::give, goal.object, human, ""});
       plan.actions.push_back(kRest);
       break;
+    }
     case TaskKind::pick:
       plan.actions.push_back({ActionKind::pick, goal.object, "", ""});
       break;
