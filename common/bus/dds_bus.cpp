@@ -23,7 +23,7 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kHealthPeriod = std::chrono::milliseconds(200);
+constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
 constexpr Duration kRetryPeriod = std::chrono::milliseconds(5);
 constexpr std::size_t kQueueBound = 64;  // requests and replies that wait for room in the transport
 constexpr int kSamplesPerTurn = 64;      // then other topics have their turn
@@ -283,11 +283,11 @@ void DdsBus::Impl::enter_realtime() {
 
 DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   use_default_dds_configuration();
+  impl_->enter_realtime();  // first: the transport's own threads inherit the priority
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_entity_name(qos.get(), settings.component.c_str());
   impl_->participant = need(dds_create_participant(settings.domain, qos.get(), nullptr), "domain " + std::to_string(settings.domain));
   impl_->executor.on_wake([this] { impl_->drain(); });
-  impl_->enter_realtime();
   if (settings.health) {
     impl_->health = advertise<ComponentHealth>();
     impl_->executor.every(kHealthPeriod, [this](TimePoint now) { impl_->publish_health(now); });

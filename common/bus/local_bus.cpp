@@ -17,7 +17,7 @@ class LocalBus;
 namespace {
 
 constexpr Stamp kVirtualEpoch = 1'700'000'000'000'000'000;  // where the virtual system clock starts [ns]
-constexpr Duration kHealthPeriod = std::chrono::milliseconds(200);
+constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
 constexpr std::size_t kKeepAllBound = 64;
 
 bool transient_local(Profile p) { return p == Profile::state || p == Profile::latch; }

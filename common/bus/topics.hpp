@@ -72,7 +72,7 @@ struct TopicRow {
   X(GraspCandidates, "grasp_candidates", advice, 2, 0, 1048576, "grasp_planner", "bridge") \
   X(StateQuery, "state_query", request, 0, 0, 2097152, "handsel", "collision_checker") \
   X(StateVerdict, "state_verdict", reply, 0, 0, 6144, "collision_checker", "handsel") \
-  X(ComponentHealth, "component_health", health, 5, 0.6, 32768, \
+  X(ComponentHealth, "component_health", health, 10, 0.3, 32768,\
     "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller bridge sim", \
     "supervisor handsel") \

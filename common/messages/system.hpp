@@ -23,7 +23,7 @@ struct TopicHealth {
   std::string last_rejection;       ///< one sentence
 };
 
-/// Topic ComponentHealth, profile health, 5 Hz, keyed by component.
+/// Topic ComponentHealth, profile health, 10 Hz, keyed by component.
 struct ComponentHealth {
   Stamp stamp{};
   std::string component;

@@ -23,6 +23,9 @@ int default_domain() {
   return domain;
 }
 
+// The safety lane: observation, occupied volume, guard, set-points, robot side.
+bool is_realtime(std::string_view process) { return process == "sim" || process == "spark" || process == "trajectory_controller"; }
+
 std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
   const std::string robot = robot_of(options);
@@ -35,6 +38,7 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
                      binary,
                      {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
     spec.arguments.insert(spec.arguments.end(), {"--robot", robot});
+    if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
     specs.push_back(std::move(spec));
   }
   return specs;
