@@ -58,8 +58,9 @@ class WireIo {
   template <class E, class W>
   void choice(const char* field, E& m, W& w, std::span<const char* const> names) {
     std::uint32_t mi = static_cast<std::uint32_t>(m);
-    std::uint32_t wi = static_cast<std::uint32_t>(w);
     static_assert(sizeof(W) == sizeof(std::uint32_t));
+    std::uint32_t wi = 0;
+    std::memcpy(&wi, &w, sizeof wi);  // what came may be no enumerator at all
     choice_field(field, mi, wi, &w, names);
     if (mode_ == Mode::to_wire || mode_ == Mode::fill) w = static_cast<W>(wi);
     if (mode_ == Mode::from_wire) m = static_cast<E>(mi);
