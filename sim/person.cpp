@@ -12,6 +12,7 @@ constexpr double kStill = 0.05;      // an object slower than this is offered [m
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
 constexpr double kSoreForce = 30.0;  // beyond this the person lets go [N]
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
+constexpr double kStepBack = 0.2;         // with what it took [m]
 constexpr double kWalkSpeed = 0.6;   // mean [m/s]
 
 double min_jerk(double s) {
@@ -189,9 +190,20 @@ bool PersonModel::offered(const PersonView& view) const {
   return (object_centre(view) - shoulder(index())).norm() < reach_ + kLeanReach;
 }
 
+// The better hand, unless the other is clearly nearer or the only one that reaches.
+void PersonModel::choose_hand(const PersonView& view) {
+  if (settings_.recording || view.object == nullptr) return;
+  const Side better = settings_.left_handed ? Side::left : Side::right;
+  const double right = (object_centre(view) - shoulder(1)).norm(), left_distance = (object_centre(view) - shoulder(0)).norm();
+  const double own = better == Side::right ? right : left_distance, other = better == Side::right ? left_distance : right;
+  const bool change = own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own);
+  side_ = change == (better == Side::right) ? Side::left : Side::right;
+}
+
 void PersonModel::watch(double dt, const PersonView& view) {
   cooldown_ = std::max(0.0, cooldown_ - dt);
   const bool takes = settings_.kind == PersonKind::taker || settings_.kind == PersonKind::recording;
+  if (offer_time_ <= 0) choose_hand(view);
   offer_time_ = takes && cooldown_ <= 0 && offered(view) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
   offer_time_ = 0;
@@ -275,6 +287,7 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
+  if (!settings_.recording) feet_ = home_ - s * kStepBack * forward();
   hand_target_ = from_ + s * (keep_point() - from_);
   if (progress_ >= 1) enter(PersonPhase::keeping);
 }
@@ -313,7 +326,7 @@ void PersonModel::dart_on(double dt, const PersonView& view) {
 }
 
 Vector3 PersonModel::keep_point() const {
-  return points_[kTorso] + 0.28 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() - Vector3(0, 0, 0.05);
+  return points_[kTorso] + 0.22 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() - Vector3(0, 0, 0.05);
 }
 
 Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }

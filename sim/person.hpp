@@ -79,6 +79,7 @@ class PersonModel {
   void dart_on(double dt, const PersonView&);
   void give_up();
   bool offered(const PersonView&) const;
+  void choose_hand(const PersonView&);
   Vector3 grasp_point(const PersonView&) const;
   Vector3 shoulder(int side) const;
   Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
