@@ -10,8 +10,11 @@ namespace {
 constexpr double kSweepStep = 0.008;      // [m] between two tests along an approach
 constexpr double kLargestApproach = 0.9;  // [rad] an arm axis moves less on the straight approach
 constexpr double kLargestLift = 1.4;      // [rad] and on the lift
-constexpr double kSameDistance = 0.02;    // [m] grasps nearer than this ...
-constexpr double kSameAngle = 0.35;       // [rad] ... and less turned count as one variant
+constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
+constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
+constexpr int kExchangeHeadings = 8;
+constexpr double kSameDistance = 0.02;  // [m] grasps nearer than this ...
+constexpr double kSameAngle = 0.35;     // [rad] ... and less turned count as one variant
 
 Vector with_hand(const RobotModel&, const Vector& q, const Group& arm, const Vector& arm_q, const Group& hand, const Vector& hand_q) {
   return RobotModel::with(RobotModel::with(q, arm, arm_q), hand, hand_q);
@@ -104,18 +107,44 @@ struct GraspChooser::Search {
     world.set_scene(scene);
     world.set_people(people);
     world.set_attachment({}, {request.object});
-    for (const Person& p : people.people) {
-      if (p.id != request.for_human) continue;
-      for (const BodyJoint& j : p.joints) {
-        if (j.name == "torso") to_person = j.position - T_world_object.translation();
-      }
-    }
-    to_person.z() = 0;
-    if (to_person.norm() > 1e-6) to_person.normalize();
+    const auto person =
+        std::find_if(people.people.begin(), people.people.end(), [&](const Person& p) { return p.id == request.for_human; });
+    if (person != people.people.end()) plan_exchange(*person);
   }
 
   const RobotModel& robot() const { return *self.robot_; }
   const ChoiceSettings& settings() const { return self.settings_; }
+
+  /// A middle place for the exchange: before the person's chest, on the side of the robot. Whoever carries the task out chooses the real
+  /// one.
+  void plan_exchange(const Person& person) {
+    const int torso = body_joint_index("torso"), shoulder = body_joint_index("r_shoulder");
+    if (static_cast<int>(person.joints.size()) <= std::max(torso, shoulder)) return;
+    exchange_place = person.joints[static_cast<std::size_t>(torso)].position;
+    Vector3 to_robot = scene.T_world_base.translation() - exchange_place;
+    to_robot.z() = 0;
+    if (to_robot.norm() < 0.3) return;
+    to_robot.normalize();
+    exchange_place += kExchangeAhead * to_robot;
+    exchange_place.z() = person.joints[static_cast<std::size_t>(shoulder)].position.z() - kExchangeBelow;
+    to_person = -to_robot;
+    exchange_known = true;
+  }
+
+  /// How well the hand stays behind the object, [0, 1], in the best heading the arm can hold it out in; -1 when it cannot.
+  double exchange(const Grasp& g, const Vector& arm_q) {
+    double best = -1;
+    for (int k = 0; k < kExchangeHeadings; ++k) {
+      Pose T_world_held = Pose::Identity();
+      T_world_held.linear() = Eigen::AngleAxisd(2 * std::numbers::pi * k / kExchangeHeadings, Vector3::UnitZ()) * T_world_object.linear();
+      T_world_held.translation() = exchange_place;
+      const Pose T_world_hand = T_world_held * g.T_object_hand;
+      const double behind = (exchange_place - T_world_hand.translation()).normalized().dot(to_person);
+      if (behind < 0 || behind <= best) continue;
+      if (reach(T_world_hand, RobotModel::with(request.start, *self.arm_, arm_q), 1)) best = behind;
+    }
+    return best;
+  }
 
   bool below_support(const Pose& T_world_hand, const Grasp& g) {
     self.kit_->forward(g.hand_joints, T_closed);
@@ -213,10 +242,9 @@ struct GraspChooser::Search {
     const double fingers = static_cast<double>(self.kit_->chains.size());
     double sum = settings().rank_quality * listed.grasp.quality +
                  settings().rank_contacts * static_cast<double>(listed.grasp.contacts.size()) / fingers;
+    sum += settings().rank_sturdy * std::min(1.0, listed.grasp.epsilon / settings().sturdy_epsilon);
     if (request.for_human.empty()) return sum;
-    sum += settings().rank_room * listed.room;
-    const Vector3 to_hand = T_world_object.linear() * listed.grasp.T_object_hand.translation();
-    return sum - settings().rank_side * std::max(0.0, to_hand.normalized().dot(to_person));
+    return sum + settings().rank_room * listed.room;
   }
 
   double posture(const Vector& arm_q) const {
@@ -236,7 +264,8 @@ struct GraspChooser::Search {
   const Scene& scene;
   CollisionWorld world;
   Pose T_world_object{Pose::Identity()}, T_root_world{Pose::Identity()};
-  Vector3 to_person{Vector3::Zero()};
+  Vector3 to_person{Vector3::Zero()}, exchange_place{Vector3::Zero()};
+  bool exchange_known{};
   std::vector<std::vector<Pose>> T_closed, T_open;
   Choice out;
 };
@@ -259,8 +288,10 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
     Grasp grasp;
     const ChoiceReason reason = stop ? ChoiceReason::not_considered : search.consider(list.grasps[index], grasp);
     ++search.out.reasons[static_cast<std::size_t>(reason)];
-    if (reason == ChoiceReason::chosen)
-      found.push_back({rank + settings_.rank_posture * search.posture(grasp.arm_joints), std::move(grasp)});
+    if (reason != ChoiceReason::chosen) continue;
+    double whole = rank + settings_.rank_posture * search.posture(grasp.arm_joints);
+    if (search.exchange_known) whole += settings_.rank_exchange * search.exchange(grasp, grasp.arm_joints);
+    found.push_back({whole, std::move(grasp)});
   }
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.rank > b.rank; });
   // One of each kind first: when the best fails, the next should be different.

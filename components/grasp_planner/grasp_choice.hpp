@@ -22,7 +22,9 @@ struct ChoiceSettings {
   double rank_posture{0.4};          ///< nearness to the rest posture of the arm
   double rank_contacts{0.2};         ///< share of the fingers in contact
   double rank_room{0.3};             ///< surface left free; when a person is to take the object
-  double rank_side{0.1};             ///< hand not between object and person; then too
+  double rank_exchange{0.3};         ///< the arm can hold the object out upright, the hand behind it, seen from the person; then too
+  double rank_sturdy{0.3};           ///< epsilon up to `sturdy_epsilon`: what only just holds comes last
+  double sturdy_epsilon{0.04};
 };
 
 /// Why a listed grasp does not serve now.

@@ -71,7 +71,9 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_posture = t.rank_posture();
   s.rank_contacts = t.rank_contacts();
   s.rank_room = t.rank_room();
-  s.rank_side = t.rank_side();
+  s.rank_exchange = t.rank_exchange();
+  s.rank_sturdy = t.rank_sturdy();
+  s.sturdy_epsilon = positive("sturdy_epsilon", t.sturdy_epsilon());
   return s;
 }
 
