@@ -35,23 +35,35 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
 
 Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, const std::string& object_id, const std::string& human) {
   status_.phase = "looking ahead to the exchange";
-  auto searches = std::make_shared<std::vector<ExchangeSearch>>();
-  const std::function<void()> job = [this, searches, grasps, scene = scene_, who = *person(human), q = set_point_,
+  struct Ahead {
+    std::size_t grasp;
+    double cost;
+  };
+  struct Result {
+    std::vector<Ahead> givable;
+    Refusals refused;
+  };
+  auto result = std::make_shared<Result>();
+  const std::function<void()> job = [this, result, grasps, scene = scene_, who = *person(human), q = set_point_,
                                      T_world_object = object(object_id)->T_world_object] {
-    for (const Grasp& grasp : grasps)
-      searches->push_back(find_exchange(*robot_, scene, who, q, T_world_object, grasp.T_object_hand.inverse(), settings_));
+    auto settings = settings_;
+    settings.set_exchange_goals(1);
+    for (std::size_t i = 0; i < grasps.size(); ++i) {
+      const ExchangeSearch search = find_exchange(*robot_, scene, who, q, T_world_object, grasps[i].T_object_hand.inverse(), settings);
+      if (search.poses.empty())
+        result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
+      else
+        result->givable.push_back({i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
+    }
   };
   Outcome worked = co_await work(job);
   if (!worked.good) co_return worked;
+  for (const auto& refusal : result->refused) refuse(refusal.what, refusal.reason);
+  if (result->givable.empty())
+    co_return Outcome::failure("no grasp of " + object_id + " can be handed to " + human + ": " + result->refused.front().reason);
+  std::stable_sort(result->givable.begin(), result->givable.end(), [](const Ahead& a, const Ahead& b) { return a.cost < b.cost; });
   std::vector<Grasp> givable;
-  for (std::size_t i = 0; i < grasps.size(); ++i) {
-    if (!(*searches)[i].poses.empty())
-      givable.push_back(grasps[i]);
-    else
-      refuse("grasp " + std::to_string(grasps[i].id), (*searches)[i].reason);
-  }
-  if (givable.empty())
-    co_return Outcome::failure("no grasp of " + object_id + " can be handed to " + human + ": " + searches->front().reason);
+  for (const Ahead& ahead : result->givable) givable.push_back(grasps[ahead.grasp]);
   grasps = std::move(givable);
   co_return Outcome{};
 }

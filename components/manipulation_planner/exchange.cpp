@@ -9,6 +9,9 @@
 namespace handsel::manipulation_planner {
 namespace {
 
+constexpr int kHeadings = 24;
+constexpr double kLeastFacing = -0.3;  // cosine: the hand may not come from the person's side
+
 struct Place {
   Pose T_world_object;
   double cost;
@@ -50,8 +53,8 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
 
   std::vector<Place> places;
   int out_of_reach = 0, blocked = 0;
-  for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74}) {
-    for (const double aside : {-0.24, -0.12, 0.0, 0.12, 0.24}) {
+  for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74, 0.82}) {
+    for (const double aside : {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36}) {
       for (const double below : {0.05, 0.15, 0.25, 0.35, 0.45, 0.55}) {
         Vector3 p = torso + ahead * toward_robot + aside * across;
         p.z() = shoulder_z - below;
@@ -66,14 +69,14 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
         const double base_cost =
             settings.w_comfort() * arm_comfort_cost(person, p) + settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
             settings.w_visibility() * visibility_cost(person, p, 3.0) + settings.w_effort() * (p - T_world_object_now.translation()).norm();
-        for (int k = 0; k < 12; ++k) {
-          const double yaw = 2 * std::numbers::pi * k / 12;
+        for (int k = 0; k < kHeadings; ++k) {
+          const double yaw = 2 * std::numbers::pi * k / kHeadings;
           Pose T = T_world_object_now;
           T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * T_world_object_now.linear();
           T.translation() = p;
           const Vector3 reach = (T.linear() * T_tool_object.linear().transpose() * palm_to_object).normalized();
           const double facing = reach.dot(-toward_robot);
-          if (facing < 0) continue;
+          if (facing < kLeastFacing) continue;
           places.push_back({T, base_cost + settings.w_legibility() * (1 - facing) / 2});
         }
       }
