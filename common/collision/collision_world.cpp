@@ -221,7 +221,9 @@ struct CollisionWorld::Impl {
   }
 
   bool self_touch(const std::vector<SelfPair>& pairs, CollisionVerdict* verdict) const {
+    const bool holding = !attachment.object.empty();
     for (const SelfPair& pair : pairs) {
+      if (holding && bodies[pair.a].hand && bodies[pair.b].hand) continue;  // fingers may lean on each other around what they hold
       if (std::none_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return changed[axis]; })) continue;
       if (!touch(*bodies[pair.a].shape, T_world_body[pair.a], *bodies[pair.b].shape, T_world_body[pair.b])) continue;
       if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b)};

@@ -79,6 +79,12 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
 
 bool ManipulationPlanner::at_rest() const { return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9; }
 
+Vector ManipulationPlanner::posture() const {
+  Vector q = scene_.robot_position;
+  for (const int axis : arm_.axes) q[axis] = set_point_[axis];
+  return q;
+}
+
 bool ManipulationPlanner::may_move() const { return execution_ && execution_->mode < Mode::hold; }
 
 const SceneObject* ManipulationPlanner::object(const std::string& id) const {
@@ -187,7 +193,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   request.id = next_request();
   request.group = arm_.name;
   request.nodes = nodes;
-  request.start = set_point_;
+  request.start = posture();
   request.attachment = attachment_;
   request.allowed_contacts = motion.allowed;
   request.speed_scale = motion.speed;
@@ -236,7 +242,8 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
     status_.phase = motion.phase;
     const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
     if (!ready) co_return Outcome::failure("no permission to move: " + (execution_ ? execution_->reason : "the controller is silent"));
-    PlannedPath planned = co_await plan_path(set_point_, motion);
+    const Vector start = posture();
+    PlannedPath planned = co_await plan_path(start, motion);
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
       if (last.good) co_return last;

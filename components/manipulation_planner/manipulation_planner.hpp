@@ -99,6 +99,7 @@ class ManipulationPlanner {
 
   bool at_rest() const;
   bool may_move() const;
+  Vector posture() const;  // the arm as commanded, hand and head as measured: squeezing fingers are commanded beyond what they touch
   const SceneObject* object(const std::string& id) const;
   const Person* person(const std::string& id) const;  // empty id: the nearest
   void hold(const SceneObject& object);
