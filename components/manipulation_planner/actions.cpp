@@ -184,7 +184,7 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   HandResult released = co_await hand(HandAction::release_on_pull, opening, settings_.offer_timeout());
   if (!released.outcome.good || released.state != HandState::released) {
     status_.exchange_engaged = false;
-    const Vector grip = grasp_ ? grasp_->hand_joints : RobotModel::part(set_point_, robot_->require_group("hand"));
+    const Vector grip = RobotModel::part(set_point_, robot_->require_group("hand"));
     HandResult kept = co_await hand(HandAction::grasp, grip, settings_.hand_timeout());
     if (!kept.outcome.good) refuse("keeping the object", kept.outcome.reason);
     co_return Outcome::failure(released.outcome.good ? receiver + " did not take " + object_id + " within " +
