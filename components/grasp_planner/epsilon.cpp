@@ -57,6 +57,7 @@ class Hull {
 
  private:
   static constexpr double kTolerance = 1e-12;
+  static constexpr double kRounding = 2e-14;
 
   struct Facet {
     std::array<std::uint16_t, D> vertices{};
@@ -131,6 +132,29 @@ class Hull {
       f.offset = -f.offset;
     }
     return std::isfinite(f.offset);
+  }
+
+  // The hyperplane through `point` and the ridge between a facet that sees it and one that does not: their pencil has it, outward already.
+  // Recomputed from the vertices when rounding shows.
+  bool cone_plane(const Facet& seeing, const Facet& blind, const Point& point, Facet& f) const {
+    const double above = dot(seeing.normal, point) - seeing.offset, below = blind.offset - dot(blind.normal, point);
+    double length = 0;
+    for (std::size_t c = 0; c < D; ++c) {
+      f.normal[c] = above * blind.normal[c] + std::max(0.0, below) * seeing.normal[c];
+      length += f.normal[c] * f.normal[c];
+    }
+    length = std::sqrt(length);
+    if (!(length > 1e-9 * above)) return plane(f);
+    f.offset = 0;
+    for (double& v : f.normal) v /= length;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const std::uint16_t v : f.vertices) {
+      const double h = dot(f.normal, points_[v]);
+      low = std::min(low, h);
+      high = std::max(high, h);
+    }
+    f.offset = 0.5 * (low + high);
+    return high - low < kRounding || plane(f);
   }
 
   // A simplex of D + 1 points, each as far as possible from the span of those before.
@@ -216,7 +240,7 @@ class Hull {
         cone.vertices = facets_[f].vertices;
         cone.vertices[k] = point;
         cone.neighbours[k] = other;
-        if (!plane(cone)) return false;
+        if (!cone_plane(facets_[f], facets_[other], points_[point], cone)) return false;
         const auto id = static_cast<std::uint32_t>(facets_.size());
         bool linked = false;
         for (std::size_t j = 0; j < D; ++j) {

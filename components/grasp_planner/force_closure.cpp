@@ -25,21 +25,15 @@ WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edg
 }
 
 int wrench_rank(const WrenchMatrix& wrenches) {
-  // Modified Gram-Schmidt on the rows' covariance would square the condition; pivot on the columns instead.
-  Eigen::MatrixXd a = wrenches;
-  const double scale = a.size() == 0 ? 0.0 : a.cwiseAbs().maxCoeff();
+  // Elimination along the few rows, each pivoted on its largest entry; a row that has nothing left adds nothing.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> a = wrenches;
+  const double least = 1e-10 * (a.size() == 0 ? 0.0 : a.cwiseAbs().maxCoeff());
   int rank = 0;
-  while (rank < a.rows() && rank < a.cols()) {
-    Eigen::Index r = 0, c = 0;
-    const double pivot = a.bottomRightCorner(a.rows() - rank, a.cols() - rank).cwiseAbs().maxCoeff(&r, &c);
-    if (!(pivot > 1e-10 * scale)) break;
-    a.row(rank).swap(a.row(rank + r));
-    a.col(rank).swap(a.col(rank + c));
-    for (Eigen::Index i = rank + 1; i < a.rows(); ++i) {
-      const double f = a(i, rank) / a(rank, rank);
-      a.row(i).tail(a.cols() - rank) -= f * a.row(rank).tail(a.cols() - rank);
-    }
+  for (Eigen::Index k = 0; k < a.rows(); ++k) {
+    Eigen::Index pivot = 0;
+    if (a.cols() == 0 || !(a.row(k).cwiseAbs().maxCoeff(&pivot) > least)) continue;
     ++rank;
+    for (Eigen::Index i = k + 1; i < a.rows(); ++i) a.row(i) -= (a(i, pivot) / a(k, pivot)) * a.row(k);
   }
   return rank;
 }

@@ -142,6 +142,8 @@ void Node::choose(const GraspRequest& request, bool reply) {
   const ObjectModel* model = object != scene_.objects.end() ? objects_(object->model) : nullptr;
   if (object == scene_.objects.end()) {
     result->reply.reason = "object " + request.object + " is not in the scene";
+  } else if (!scene_.robot_known) {
+    result->reply.reason = "the place of the robot is not known yet";
   } else if (model == nullptr) {
     result->reply.reason = "object " + request.object + " is of model " + object->model + ", of which there is no description";
   } else if (request.start.size() != chooser_->robot().dof()) {
