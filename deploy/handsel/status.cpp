@@ -64,7 +64,7 @@ SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
     status.troubles.push_back(line.component + " is " + line.state + (line.reason.empty() ? "" : ": " + line.reason));
   }
   const ExecutionStatus& execution = snapshot.execution.sample;
-  if (snapshot.execution.ever && execution.mode != Mode::normal) {
+  if (snapshot.execution.ever && (execution.mode != Mode::normal || execution.causes != 0)) {
     const std::string causes = cause_names(execution.causes);
     status.troubles.push_back("mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " because of " + causes) +
                               (execution.reason.empty() ? "" : ": " + execution.reason));

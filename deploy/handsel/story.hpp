@@ -12,7 +12,7 @@ namespace handsel {
 
 enum class StepKind {
   start,    ///< start SCENARIO [seed N] [robot R]
-  wait,     ///< wait CONDITION within T: as expect, but what was waited for may be long in coming
+  wait,     ///< wait CONDITION within T: must hold now or later; what held before does not count
   task,     ///< task KIND OBJECT [to PERSON | from PERSON | on SURFACE]
   control,  ///< pause | resume | cancel | acknowledge | speed P
   kill,     ///< kill [-9|-15] PROCESS...

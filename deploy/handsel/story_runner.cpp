@@ -44,6 +44,12 @@ bool does_something(StepKind kind) {
   return kind != StepKind::wait && kind != StepKind::expect && kind != StepKind::never && kind != StepKind::listen;
 }
 
+/// What also held before the disturbance: it must hold when its line is reached, a moment of it on the way is not enough.
+bool is_calm(const Condition& condition) {
+  return condition.kind == ConditionKind::rest || condition.kind == ConditionKind::ready ||
+         (condition.kind == ConditionKind::mode && condition.subject == name(Mode::normal));
+}
+
 std::string where(const Story& story, const StoryStep& step) { return story.name + ":" + std::to_string(step.line) + ": "; }
 
 }  // namespace
@@ -196,6 +202,7 @@ void StoryRunner::await(const StoryStep& step) {
     if (!holds(*step.condition, system_->session().snapshot(), now())) throw Unfulfilled{"it does not hold"};
     watch->first = now();
   } else {
+    if (step.kind == StepKind::wait) watch->held = false;
     system_->wait(std::max(deadline - now(), Duration::zero()) + from_seconds(0.05), [&] {
       look(system_->session().snapshot(), now());
       wake_due();
@@ -241,9 +248,10 @@ void StoryRunner::begin_watching(std::size_t index) {
 
 void StoryRunner::look(const Snapshot& snapshot, TimePoint at) {
   for (Watch& watch : watches_) {
-    if (watch.held || !holds(*watch.step->condition, snapshot, at)) continue;
-    watch.held = true;
-    watch.first = at;
+    if (watch.held && !is_calm(*watch.step->condition)) continue;
+    const bool held = watch.held;
+    watch.held = holds(*watch.step->condition, snapshot, at);
+    if (watch.held && !held) watch.first = at;
   }
 }
 

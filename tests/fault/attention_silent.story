@@ -4,6 +4,7 @@ wait ready within 15s
 task give mug
 wait phase approach within 30s
 wait moving within 5s
+listen for 500ms
 silence attention for 1500ms
 expect cause attention_silent within 450ms
 expect speed below 0.5 within 1200ms

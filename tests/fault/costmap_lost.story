@@ -4,6 +4,7 @@ wait ready within 15s
 task give mug
 wait phase approach within 30s
 wait moving within 5s
+listen for 500ms
 kill -9 costmap
 expect status names costmap within 1s
 expect back costmap within 5s

@@ -4,6 +4,7 @@ wait ready within 15s
 task give mug
 wait phase approach within 30s
 wait moving within 5s
+listen for 500ms
 silence collision_checker for 1500ms
 expect mode hold within 250ms
 expect cause forecast_silent within 250ms

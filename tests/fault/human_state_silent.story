@@ -4,6 +4,7 @@ wait ready within 15s
 task give mug
 wait phase approach within 30s
 wait moving within 5s
+listen for 500ms
 silence spark for 1500ms
 expect mode stop within 350ms
 expect cause human_state_silent within 350ms

@@ -4,6 +4,7 @@ wait ready within 15s
 task give mug
 wait phase approach within 30s
 wait moving within 5s
+listen for 500ms
 sim silence_robot_state 1.0
 expect mode stop within 80ms
 expect cause robot_state_silent within 80ms

@@ -4,6 +4,7 @@ wait ready within 15s
 task give mug
 wait phase approach within 30s
 wait moving within 5s
+listen for 500ms
 kill -9 trajectory_controller
 expect rest within 700ms
 expect status names trajectory_controller within 1s
