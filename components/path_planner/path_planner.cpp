@@ -9,7 +9,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr int kAttempts = 3;  // the fine check may refuse what the coarse one let pass; each attempt halves the step twice
+constexpr int kAttempts = 3;  // the fine check may refuse what the coarse one let pass; then everything is checked finely
 
 std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
 
@@ -73,9 +73,9 @@ class Planning {
     if (!ends_free()) return result_;
     if (problem_.straight) return straight_line();
     for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
-      space_.set_step(settings_.step / (1 << (2 * attempt)));
+      space_.set_step(attempt == 0 ? settings_.step : std::min(settings_.step, settings_.verify_step));
       if (!find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919)) return result_;
-      if (verified()) {
+      if (verified() || unsmoothed()) {
         finish(space_, result_);
         return result_;
       }
@@ -165,6 +165,7 @@ class Planning {
         result_.planner = name_of(kind);
       }
     }
+    raw_ = result_.path;
     space_.enter(Stage::smooth);
     Random random(seed);
     smooth(space_, result_.path, random);
@@ -174,6 +175,7 @@ class Planning {
       smooth(space_, smoothed, random);
       if (price(space_, smoothed) < price(space_, result_.path)) {
         result_.path = smoothed;
+        raw_ = direct;
         result_.planner = "straight";
         for (std::size_t i = 0; i < goals_.size(); ++i)
           if (goals_[i] == smoothed.back()) result_.goal = goal_index_[i];
@@ -183,6 +185,12 @@ class Planning {
     }
     prune(space_, result_.path);
     return true;
+  }
+
+  /// The path as it was found: what smoothing shifted by less than a step may scrape a corner.
+  bool unsmoothed() {
+    result_.path = raw_;
+    return verified();
   }
 
   bool verified() {
@@ -214,6 +222,7 @@ class Planning {
   const Settings& settings_;
   std::vector<Vector> goals_;
   std::vector<std::size_t> goal_index_;
+  std::vector<Vector> raw_;
   Result result_;
 };
 

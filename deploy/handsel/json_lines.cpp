@@ -8,7 +8,8 @@ namespace handsel::command {
 
 using nlohmann::json;
 
-int for_each_line(std::istream& in, std::ostream& out, const std::function<json(const json&)>& answer) {
+int for_each_line(std::istream& in, std::ostream& out, const std::function<json(const json&)>& answer,
+                  const std::function<std::string(const json&)>& show) {
   bool bad = false;
   long number_of_line = 0, answered = 0;
   std::string line;
@@ -26,7 +27,8 @@ int for_each_line(std::istream& in, std::ostream& out, const std::function<json(
       continue;
     }
     try {
-      out << answer(item).dump(-1, ' ', false, json::error_handler_t::replace) << '\n';
+      const json result = answer(item);
+      out << (show ? show(result) : result.dump(-1, ' ', false, json::error_handler_t::replace)) << std::endl;
     } catch (const LineError& e) {
       refuse(e.what());
     } catch (const ConfigError& e) {

@@ -19,7 +19,9 @@ struct LineError : std::runtime_error {
 
 /// Calls `answer` for every line that is not blank and writes what it returns. A line that is no JSON, or for which `answer` throws
 /// LineError or ConfigError, yields {"line": n, "error": "..."} (n from 1). Returns 2 if there was such a line or no line at all, else 0.
-int for_each_line(std::istream& in, std::ostream& out, const std::function<nlohmann::json(const nlohmann::json&)>& answer);
+/// `show` writes an answer for people instead; refusals stay JSON.
+int for_each_line(std::istream& in, std::ostream& out, const std::function<nlohmann::json(const nlohmann::json&)>& answer,
+                  const std::function<std::string(const nlohmann::json&)>& show = {});
 
 /// Fields by name; LineError names the field when it is missing, of the wrong type or not finite.
 const nlohmann::json& field(const nlohmann::json& object, const char* name);

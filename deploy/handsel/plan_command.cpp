@@ -1,0 +1,262 @@
+#include "deploy/handsel/plan_command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <memory>
+
+#include <unistd.h>
+
+#include "common/config/resources.hpp"
+#include "components/path_planner/path_planner.hpp"
+#include "deploy/handsel/json_lines.hpp"
+
+namespace handsel {
+namespace {
+
+using namespace command;
+using nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+struct Options {
+  std::string robot, srdf, group, planner{"auto"};
+  double time{5.0};
+  std::uint64_t checks{0}, seed{1};
+  bool json_lines{false};
+};
+
+const std::map<std::string, PlannerKind> kPlanners = {{"auto", PlannerKind::automatic},
+                                                      {"rrt", PlannerKind::rrt},
+                                                      {"rrtconnect", PlannerKind::rrt_connect},
+                                                      {"trrt", PlannerKind::trrt},
+                                                      {"bitrrt", PlannerKind::bitrrt}};
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+RobotModel load_robot(const Options& options) {
+  if (options.robot.ends_with(".urdf")) return RobotModel::load_urdf(options.robot, options.srdf);
+  if (!options.srdf.empty()) throw ConfigError("--srdf belongs to a .urdf; a robot description names its own");
+  return RobotModel::load(robot_description(options.robot));
+}
+
+Obstacle obstacle_of(const json& item) {
+  const json& type = field(item, "type");
+  const Vector dims = vector_of(item, "dims");
+  const auto expect = [&](int n) {
+    if (dims.size() != n || !(dims.minCoeff() > 0))
+      throw LineError("\"dims\" of a " + type.dump() + " must be " + std::to_string(n) + " numbers > 0");
+  };
+  Obstacle obstacle;
+  obstacle.id = item.value("id", "");
+  obstacle.placed.T_parent_shape = make_pose(vector3(item, "pos"), quaternion(item, "quat_xyzw"));
+  if (type == "box") {
+    expect(3);
+    obstacle.placed.shape = Box{dims};
+  } else if (type == "cylinder") {
+    expect(2);
+    obstacle.placed.shape = Cylinder{dims[1], dims[0]};
+  } else if (type == "sphere") {
+    expect(1);
+    obstacle.placed.shape = Sphere{dims[0]};
+  } else {
+    throw LineError("unknown obstacle type " + type.dump() + "; known are box, cylinder, sphere");
+  }
+  return obstacle;
+}
+
+HumanState people_of(const json& problem) {
+  HumanState state;
+  const auto human = problem.find("human");
+  if (human == problem.end()) return state;
+  ObservedPerson seen;
+  const json& joints = field(*human, "joints");
+  if (!joints.is_object()) throw LineError("\"joints\" of \"human\" must be an object of points by joint name");
+  for (const auto& [name, point] : joints.items()) {
+    if (body_joint_index(name) < 0) throw LineError("\"" + name + "\" is no joint of a body");
+    seen.joints.push_back({name, vector3(joints, name.c_str()), 1.0});
+  }
+  Person person;
+  person.id = "human";
+  person.joints = fit_body(seen, nullptr, person.stature);
+  if (human->contains("gaze")) {
+    const Vector3 gaze = vector3(*human, "gaze");
+    if (!(gaze.norm() > 1e-9)) throw LineError("\"gaze\" must not be zero");
+    person.gaze_known = true;
+    person.gaze_direction = gaze.normalized();
+    for (const BodyJoint& joint : person.joints)
+      if (joint.name == "head") person.gaze_origin = joint.position;
+  }
+  state.people.push_back(person);
+  return state;
+}
+
+CostSettings weights_of(const json& problem) {
+  CostSettings settings;
+  const auto weights = problem.find("weights");
+  if (weights == problem.end()) return settings;
+  const auto read = [&](const char* name, double& value) {
+    if (weights->contains(name)) value = number(*weights, name);
+    if (value < 0) throw LineError(std::string("the weight \"") + name + "\" must not be negative");
+  };
+  read("safety", settings.w_safety);
+  read("visibility", settings.w_visibility);
+  read("comfort", settings.w_comfort);
+  if (!(settings.w_safety + settings.w_visibility + settings.w_comfort > 0)) throw LineError("at least one of the \"weights\" must be > 0");
+  return settings;
+}
+
+class Batch {
+ public:
+  explicit Batch(const Options& options) : options_(options), robot_(load_robot(options)), world_(robot_, nullptr) {
+    if (!options.group.empty()) group_ = robot_.group(options.group);
+    for (int i = 0; i < robot_.dof(); ++i) axis_by_name_[robot_.axes()[i].name] = i;
+  }
+
+  json answer(const json& item) {
+    const std::string of_item = item.is_object() ? item.value("group", options_.group) : options_.group;
+    if (!options_.group.empty() && of_item != options_.group)
+      throw LineError("the problem is for the group \"" + of_item + "\", not for \"" + options_.group + "\"");
+    path_planner::Problem problem;
+    problem.planner = kPlanners.at(options_.planner);
+    problem.seed = options_.seed;
+    problem.budget = options_.checks > 0 ? options_.checks : UINT64_MAX / 2;
+    problem.start = robot_.rest_posture().size() == robot_.dof() ? robot_.rest_posture() : Vector::Zero(robot_.dof());
+    const json& start = field(item, "start");
+    for (const auto& [name, value] : start.items())
+      if (!is_fixed(name)) problem.start[axis(name)] = number(start, name.c_str());
+    read_goals(item, problem);
+    std::vector<Obstacle> obstacles;
+    for (const json& one : item.value("obstacles", json::array())) obstacles.push_back(obstacle_of(one));
+    const HumanState people = people_of(item);
+    HumanCost cost(robot_, weights_of(item));
+    cost.set_people(people);
+    world_.set_obstacles(obstacles);
+    world_.set_people(people);
+
+    const Clock::time_point begin = Clock::now();
+    Clock::time_point smoothing = begin;
+    bool smoothed = false;
+    path_planner::Hooks hooks;
+    if (options_.checks == 0) hooks.cancelled = [&] { return seconds_since(begin) > options_.time; };
+    hooks.entered = [&](path_planner::Stage stage) {
+      if (stage == path_planner::Stage::smooth && !smoothed) smoothing = Clock::now();
+      smoothed = smoothed || stage == path_planner::Stage::smooth;
+    };
+    const path_planner::Result result = path_planner::plan(robot_, world_, cost, problem, {}, hooks);
+    const double total = seconds_since(begin);
+    const double search = smoothed ? std::chrono::duration<double>(smoothing - begin).count() : total;
+    ++asked_;
+    solved_ += result.solved;
+    if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\r%d of %d solved ", solved_, asked_);
+
+    json path = json::array();
+    for (const Vector& q : result.path) path.push_back(std::vector<double>(q.begin(), q.end()));
+    std::vector<std::string> names;
+    for (int i : problem.axes) names.push_back(robot_.axes()[i].name);
+    std::string reason = result.reason;
+    if (reason == "cancelled") {
+      char text[64];
+      std::snprintf(text, sizeof text, "no path within %.1f s", options_.time);
+      reason = text;
+    }
+    return {{"set", item.value("set", "")},
+            {"idx", item.contains("idx") ? item["idx"] : json(asked_)},
+            {"solved", result.solved},
+            {"plan_s", search},
+            {"simplify_s", total - search},
+            {"path", path},
+            {"joint_names", names},
+            {"length", result.length},
+            {"cost", result.cost},
+            {"work", result.work},
+            {"checks", result.checks},
+            {"planner", result.planner},
+            {"reason", reason}};
+  }
+
+  bool all_solved() const { return solved_ == asked_; }
+
+ private:
+  int axis(const std::string& name) const {
+    const auto found = axis_by_name_.find(name);
+    if (found == axis_by_name_.end()) throw LineError("the robot has no axis \"" + name + "\"");
+    return found->second;
+  }
+
+  bool is_fixed(const std::string& name) const {
+    return std::any_of(robot_.joints().begin(), robot_.joints().end(),
+                       [&](const Joint& j) { return j.name == name && j.kind == JointKind::fixed; });
+  }
+
+  void read_goals(const json& item, path_planner::Problem& problem) const {
+    const json& goals = field(item, "goals");
+    if (!goals.is_array() || goals.empty()) throw LineError("\"goals\" must be a list of at least one goal");
+    if (group_ != nullptr) {
+      problem.axes = group_->axes;
+    } else {
+      for (const auto& [name, value] : goals[0].items()) problem.axes.push_back(axis(name));
+      std::sort(problem.axes.begin(), problem.axes.end());
+    }
+    for (const json& goal : goals) {
+      if (goal.size() != problem.axes.size())
+        throw LineError("a goal names " + std::to_string(goal.size()) + " axes, " + std::to_string(problem.axes.size()) +
+                        " are planned for");
+      Vector q(problem.axes.size());
+      for (std::size_t i = 0; i < problem.axes.size(); ++i)
+        q[static_cast<Eigen::Index>(i)] = number(goal, robot_.axes()[problem.axes[i]].name.c_str());
+      problem.goals.push_back(q);
+    }
+  }
+
+  const Options& options_;
+  RobotModel robot_;
+  CollisionWorld world_;
+  const Group* group_{nullptr};
+  std::map<std::string, int> axis_by_name_;
+  int asked_{0}, solved_{0};
+};
+
+std::string row(const json& result) {
+  char text[320];
+  std::snprintf(text, sizeof text, "%-24s %4s  %-10s %8.1f ms + %6.1f ms  %3zu nodes  %6.2f rad  cost %7.3f  %9llu checks  %s",
+                result["set"].get<std::string>().c_str(), result["idx"].dump().c_str(),
+                result["solved"].get<bool>() ? result["planner"].get<std::string>().c_str() : "no path",
+                1e3 * result["plan_s"].get<double>(), 1e3 * result["simplify_s"].get<double>(), result["path"].size(),
+                result["length"].get<double>(), result["cost"].get<double>(),
+                static_cast<unsigned long long>(result["checks"].get<std::uint64_t>()), result["reason"].get<std::string>().c_str());
+  return text;
+}
+
+int run(const Options& options) {
+  if (!(options.time > 0)) throw ConfigError("--time must be greater than 0");
+  Batch batch(options);
+  const bool for_people = !options.json_lines && isatty(STDOUT_FILENO) != 0;
+  const int code = for_each_line(
+      std::cin, std::cout, [&](const json& item) { return batch.answer(item); },
+      for_people ? row : std::function<std::string(const json&)>{});
+  if (isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "\n");
+  return code != 0 ? code : batch.all_solved() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<Options>();
+  CLI::App* plan = app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
+  plan->footer(
+      R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
+ "human": {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility", "comfort"}}; dims of a cylinder: height, radius.)");
+  plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
+  plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
+  plan->add_option("--group", options->group, "group of axes; where the robot names none, the axes of the goals");
+  plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")->check(CLI::IsMember(kPlanners));
+  plan->add_option("--time", options->time, "limit of a problem [s]");
+  plan->add_option("--checks", options->checks, "limit in judged states instead: repeatable");
+  plan->add_option("--seed", options->seed, "of every random choice");
+  plan->add_flag("--json", options->json_lines, "JSON Lines on a terminal, too");
+  plan->callback([options, &exit_code] { exit_code = run(*options); });
+}
+
+}  // namespace handsel
