@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "components/path_planner/search.hpp"
 #include "components/path_planner/smoothing.hpp"
@@ -9,6 +10,7 @@
 namespace handsel::path_planner {
 namespace {
 
+constexpr std::uint64_t kFirstShare = 40000;
 constexpr int kAttempts = 3;  // the fine check may refuse what the coarse one let pass; then everything is checked finely
 
 std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
@@ -128,6 +130,22 @@ class Planning {
     return result_;
   }
 
+  /// An unlucky tree is given up for a new one, each time after twice as many checks: search times have long tails.
+  Found search_restarting(PlannerKind kind, std::uint64_t seed) {
+    const std::uint64_t limit = space_.limit();
+    Found best;
+    best.closest = std::numeric_limits<double>::infinity();
+    for (std::uint64_t share = kFirstShare;; share *= 2) {
+      space_.limit(std::min(limit, space_.checks() + share));
+      const Found found = search(space_, goals_, kind, seed);
+      seed += 104729;
+      space_.limit(limit);
+      if (!found.path.empty()) return found;
+      if (found.closest < best.closest) best = found;
+      if (space_.exhausted()) return best;
+    }
+  }
+
   bool find(std::uint64_t seed) {
     space_.enter(Stage::search);
     const Vector start = space_.start();
@@ -149,11 +167,11 @@ class Planning {
         space_.limit(space_.checks() +
                      static_cast<std::uint64_t>(settings_.search_share *
                                                 static_cast<double>(problem_.budget - std::min(problem_.budget, space_.checks()))));
-      found = search(space_, goals_, kind, seed);
+      found = search_restarting(kind, seed);
       space_.limit(problem_.budget);
       if (found.path.empty() && !asked && kind == PlannerKind::bitrrt && !space_.exhausted() && direct.empty()) {
         kind = PlannerKind::rrt_connect;
-        found = search(space_, goals_, kind, seed + 1);
+        found = search_restarting(kind, seed + 1);
       }
       if (found.path.empty() && direct.empty()) return out_of_budget(found.closest);
       if (found.path.empty()) {

@@ -44,6 +44,7 @@ class SearchSpace {
   void charge(std::uint64_t checks) { charged_ += checks; }  ///< work that counts like that many checks
   bool cancelled() const { return hooks_.cancelled && hooks_.cancelled(); }
   bool exhausted() const { return checks() >= limit_ || cancelled(); }
+  std::uint64_t limit() const { return limit_; }
   void limit(std::uint64_t checks) { limit_ = checks; }  ///< budget counted from the beginning
   void enter(Stage stage) const {
     if (hooks_.entered) hooks_.entered(stage);
