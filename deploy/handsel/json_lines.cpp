@@ -1,6 +1,7 @@
 #include "deploy/handsel/json_lines.hpp"
 
 #include <cmath>
+#include <iostream>
 
 #include "common/base/errors.hpp"
 
@@ -36,6 +37,7 @@ int for_each_line(std::istream& in, std::ostream& out, const std::function<json(
     }
   }
   out.flush();
+  if (answered == 0) std::cerr << "handsel: nothing came on standard input; one JSON line a case is expected\n";
   return bad || answered == 0 ? 2 : 0;
 }
 
