@@ -9,7 +9,9 @@ namespace handsel::manipulation_planner {
 
 Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human) {
   if (status_.holding && attachment_.object == object_id) co_return Outcome{};
-  if (object(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
+  status_.phase = "looking for the object";
+  const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
+  if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
   Outcome last;
   for (int round = 0; round < 2; ++round) {
     GraspList list = co_await ask_grasps(object_id, for_human);
@@ -143,7 +145,7 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   if (held->holder == Holder::human) co_return Outcome{};
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
   status_.phase = "choosing the exchange point";
-  const bool seen = co_await waiting_.until([this, &human] { return person(human) != nullptr; }, settings_.offer_timeout());
+  const bool seen = co_await waiting_.until([this, &human] { return person(human) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure(human.empty() ? "nobody is in sight" : "person " + human + " is not in sight");
   const std::string receiver = person(human)->id;
   status_.human = receiver;
