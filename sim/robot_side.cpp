@@ -73,7 +73,8 @@ void RobotSide::step(double now, double dt, bool holding_object) {
   if (holding_object && !clenched_) {
     double moving = 0;
     for (int axis : hand_axes_) moving = std::max(moving, std::abs(velocity_[axis]));
-    clenched_ = moving < 1e-6;
+    hand_rest_ = moving < 1e-6 ? hand_rest_ + dt : 0;
+    clenched_ = hand_rest_ > 0.5;
     closed_ = position_;
   }
   if (clenched_) {

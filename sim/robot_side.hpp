@@ -13,7 +13,7 @@ struct RobotSideSettings {
   double max_gap{0.020};          ///< without set-points for this long while enabled: soft stop [s]
   double resume_tolerance{0.02};  ///< set-points this near the held posture, at rest, end a protective stop [rad]
   int resume_count{10};           ///< that many of them in a row
-  bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has come to rest
+  bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has rested for half a second
 };
 
 /// Starts enabled, holding `start`; the watch begins with the first set-point. A protective stop ends by itself when set-points come
@@ -46,7 +46,7 @@ class RobotSide {
   Vector closed_;  // hand posture kept by the mutant
   std::vector<SoftStop> stops_;
   bool stopping_{false}, at_rest_{false}, seen_{false}, fresh_{false}, clenched_{false};
-  double last_{0};
+  double last_{0}, hand_rest_{0};
   int matching_{0};
 };
 
