@@ -12,7 +12,8 @@ constexpr double kStill = 0.05;      // an object slower than this is offered [m
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
 constexpr double kSoreForce = 30.0;  // beyond this the person lets go [N]
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
-constexpr double kStepBack = 0.2;         // with what it took [m]
+constexpr double kStepBack = 0.2;    // with what it took [m]
+constexpr double kStep = 0.3;        // a recorded body is moved on the floor by no more than this before contact [m]
 constexpr double kWalkSpeed = 0.6;   // mean [m/s]
 
 double min_jerk(double s) {
@@ -220,7 +221,35 @@ void PersonModel::watch(double dt, const PersonView& view) {
   hand_target_ = from_;
   hand_active_ = !settings_.recording;
   playback_ = 0;
+  if (settings_.recording) {
+    home_ = feet_;
+    step_ = (goal - at_contact(home_)).cwiseProduct(Vector3(1, 1, 0));
+    if (step_.norm() > kStep) step_ *= kStep / step_.norm();
+  }
   enter(PersonPhase::reaching);
+}
+
+// Where the recorded hand is at its farthest when the person stands at `feet`.
+Vector3 PersonModel::at_contact(const Vector3& feet) const {
+  BodyPoints points;
+  settings_.recording->sample(settings_.recording->contact, points);
+  return feet + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * points[kHand[index()]];
+}
+
+// The place for the middle of the hand nearest to `from` from which it holds the object.
+Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) const {
+  const Pose T_object_world = view.T_world_object.inverse();
+  const auto distance = [&](const Vector3& p) { return surface_distance(*view.object, T_object_world * p); };
+  Vector3 p = from;
+  for (int i = 0; i < 8; ++i) {
+    const double d = distance(p), h = 1e-4;
+    if (std::abs(d - kPalm) < 5e-4) break;
+    const Vector3 slope((distance(p + h * Vector3::UnitX()) - d) / h, (distance(p + h * Vector3::UnitY()) - d) / h,
+                        (distance(p + h * Vector3::UnitZ()) - d) / h);
+    if (slope.norm() < 1e-6) break;
+    p -= (d - kPalm) * slope.normalized();
+  }
+  return p;
 }
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
@@ -245,13 +274,12 @@ void PersonModel::play(double dt, const PersonView& view) {
   lost_time_ = lost ? lost_time_ + dt : 0;
   if (lost_time_ > 0.5 || since() > recording.contact + 1.5) return give_up();
   playback_ = std::min(playback_ + dt, recording.contact);
+  feet_ = home_ + min_jerk(playback_ / std::max(0.1, recording.contact - settings_.warp_time)) * step_;
   place_base();
   const Vector3 recorded = points_[kHand[index()]];
   if (view.object != nullptr) {
-    BodyPoints at_contact;
-    recording.sample(recording.contact, at_contact);
-    const Vector3 meets = feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * at_contact[kHand[index()]];
-    warp_ = grasp_point(view) - meets;
+    const Vector3 meets = at_contact(home_ + step_);
+    warp_ = nearest_hold(view, meets) - meets;
     if (warp_.norm() > settings_.max_warp) warp_ *= settings_.max_warp / warp_.norm();
   }
   const double s = min_jerk(1 - (recording.contact - playback_) / settings_.warp_time);
@@ -276,6 +304,7 @@ void PersonModel::pull(double dt, const PersonView& view) {
     from_ = hand_target_;
     duration_ = 1.2;
     lean_from_ = lean_;
+    home_ = feet_;
     enter(PersonPhase::withdrawing);
   }
 }
@@ -287,7 +316,7 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
-  if (!settings_.recording) feet_ = home_ - s * kStepBack * forward();
+  feet_ = home_ - s * kStepBack * forward();
   hand_target_ = from_ + s * (keep_point() - from_);
   if (progress_ >= 1) enter(PersonPhase::keeping);
 }

@@ -81,6 +81,8 @@ class PersonModel {
   bool offered(const PersonView&) const;
   void choose_hand(const PersonView&);
   Vector3 grasp_point(const PersonView&) const;
+  Vector3 nearest_hold(const PersonView&, const Vector3& from) const;
+  Vector3 at_contact(const Vector3& feet) const;
   Vector3 shoulder(int side) const;
   Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
   Vector3 left() const { return {-std::sin(yaw_), std::cos(yaw_), 0}; }
@@ -99,7 +101,7 @@ class PersonModel {
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()};
   double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, walk_direction_{1};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
-      warp_{Vector3::Zero()};
+      warp_{Vector3::Zero()}, step_{Vector3::Zero()};
   Vector3 gaze_{Vector3::UnitX()};
   Person body_;
   BodyState hand_state_;
