@@ -206,4 +206,46 @@ std::vector<HandShape::Round> HandShape::rounds(const std::vector<std::vector<Po
   return out;
 }
 
+HandShape::PlacedHand HandShape::placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const {
+  PlacedHand out;
+  const auto add = [&](const Solid& s, const Pose& T_hand_s) {
+    const Pose T_frame_s = T_frame_hand * T_hand_s;
+    Placed p;
+    p.capsule = s.capsule;
+    p.a = T_frame_s * s.a;
+    p.b = T_frame_s * s.b;
+    p.radius = s.radius;
+    p.shape = s.shape;
+    p.T_frame_shape = T_frame_s * s.T_step_shape;
+    p.middle = s.capsule ? Vector3(0.5 * (p.a + p.b)) : Vector3(p.T_frame_shape * s.shape->sphere_center());
+    p.bound = s.capsule ? 0.5 * (p.b - p.a).norm() + s.radius : s.shape->sphere_radius();
+    out.box.extend(Vector3(p.middle.array() - p.bound));
+    out.box.extend(Vector3(p.middle.array() + p.bound));
+    out.solids.push_back(std::move(p));
+  };
+  for (const Solid& s : palm_) add(s, Pose::Identity());
+  for (std::size_t f = 0; f < fingers_.size(); ++f) {
+    for (const Solid& s : fingers_[f]) add(s, step_pose(T_hand_step[f], s.step));
+  }
+  return out;
+}
+
+bool HandShape::hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance) {
+  if (a.box.squaredExteriorDistance(b.box) > clearance * clearance) return false;
+  for (const Placed& s : a.solids) {
+    for (const Placed& t : b.solids) {
+      const double bound = s.bound + t.bound + clearance;
+      if ((s.middle - t.middle).squaredNorm() > bound * bound) continue;
+      if (s.capsule && t.capsule) {
+        const double reach = s.radius + t.radius + clearance;
+        Vector3 p, q;
+        if (nearest_points(s.a, s.b, t.a, t.b, p, q) < reach * reach) return true;
+      } else if (touch(*s.shape, s.T_frame_shape, *t.shape, t.T_frame_shape)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace handsel::grasp_planner

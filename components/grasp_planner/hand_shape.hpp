@@ -30,6 +30,23 @@ class HandShape {
     double height{};
   };
   std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const;
+  /// The whole hand placed in some frame, for tests of hands against each other.
+  struct Placed {
+    bool capsule{};
+    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  // capsules
+    double radius{};
+    CollisionShapePtr shape;  // the others
+    Pose T_frame_shape{Pose::Identity()};
+    Vector3 middle{Vector3::Zero()};
+    double bound{};  // all of it is this near to its middle
+  };
+  struct PlacedHand {
+    std::vector<Placed> solids;
+    Eigen::AlignedBox3d box;
+  };
+  PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
+  /// Nearer than `clearance` [m] (capsules; other solids: touching).
+  static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance);
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
   struct Round {
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};

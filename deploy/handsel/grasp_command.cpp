@@ -1,7 +1,5 @@
 #include "deploy/handsel/grasp_command.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -9,9 +7,11 @@
 #include <memory>
 
 #include "common/config/resources.hpp"
+#include "components/grasp_planner/double_grasp.hpp"
 #include "components/grasp_planner/epsilon.hpp"
 #include "components/grasp_planner/grasp_list.hpp"
 #include "deploy/handsel/json_lines.hpp"
+#include "deploy/handsel/terminal.hpp"
 
 namespace handsel {
 namespace {
@@ -19,6 +19,8 @@ namespace {
 using nlohmann::json;
 using namespace command;
 using namespace grasp_planner;
+
+constexpr double kDegree = 3.14159265358979323846 / 180;
 
 json numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -74,6 +76,9 @@ struct ListOptions {
   std::uint32_t positions{GraspListSettings{}.positions}, orientations{GraspListSettings{}.orientations};
   std::uint64_t seed{1};
   bool as_json{};
+  std::string hand2{"sah"};  // double
+  std::size_t most_of_each{200};
+  double clearance{0.005}, opposition{0};
 };
 
 /// A mesh file, or the name or file of an object description.
@@ -136,44 +141,99 @@ void report_mesh(const Graspable& object) {
   if (f.turned > 0) std::fprintf(stderr, "mesh: %u triangles faced the wrong way and were turned\n", f.turned);
 }
 
-int list(const ListOptions& o) {
-  const auto kit = std::make_shared<const HandKit>(HandModel::load(hand_description(o.hand)));
+struct Listed {
+  std::shared_ptr<const HandKit> kit;
+  std::shared_ptr<const Graspable> object;
+  GraspList list;
+};
+
+Listed list_with(const std::string& hand, const ListOptions& o) {
+  Listed out;
+  out.kit = std::make_shared<const HandKit>(HandModel::load(hand_description(hand)));
   GraspListSettings settings;
   settings.positions = o.positions;
   settings.orientations = o.orientations;
   settings.friction = o.friction;
   settings.seed = o.seed;
-  const auto object = std::make_shared<const Graspable>(object_of(o), kit->tip_radius(), settings.step_share, o.seed);
-  report_mesh(*object);
-  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
+  out.object = std::make_shared<const Graspable>(object_of(o), out.kit->tip_radius(), settings.step_share, o.seed);
+  report_mesh(*out.object);
+  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*out.kit));
   const auto start = std::chrono::steady_clock::now();
-  GraspLister lister(kit, workspaces, object, settings);
-  const bool bar = isatty(STDERR_FILENO) != 0;
+  GraspLister lister(out.kit, workspaces, out.object, settings);
   std::uint64_t done = 0;
   while (lister.advance(256)) {
     done += 256;
-    if (bar)
+    if (progress_wanted()) {
       std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * done / lister.frames()),
                    static_cast<unsigned long long>(lister.frames()));
+    }
   }
-  if (bar) std::fprintf(stderr, "\r\033[K");
-  const GraspList list = lister.list();
+  if (progress_wanted()) std::fprintf(stderr, "\r\033[K");
+  out.list = lister.list();
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const bool table = !o.as_json && isatty(STDOUT_FILENO) != 0;
-  if (table)
+  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", out.list.grasps.size(),
+               out.list.hand.c_str(), out.list.object.c_str(), static_cast<unsigned long long>(out.list.frames), seconds,
+               static_cast<unsigned long long>(o.seed));
+  for (const Refusal& r : out.list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
+  return out;
+}
+
+int list(const ListOptions& o) {
+  const Listed listed = list_with(o.hand, o);
+  const bool table = !json_wanted(o.as_json);
+  if (table) {
     std::printf("%8s %8s %8s %10s %7s %7s %9s %6s\n", "id", "quality", "epsilon", "stability", "centre", "force", "curvature", "room");
-  for (const ListedGrasp& g : list.grasps) {
+  }
+  for (const ListedGrasp& g : listed.list.grasps) {
     if (table) {
       std::printf("%8llu %8.3f %8.4f %10.3f %7.3f %7.3f %9.3f %6.2f\n", static_cast<unsigned long long>(g.grasp.id), g.grasp.quality,
                   g.grasp.epsilon, g.scores.stability, g.scores.centre, g.scores.force, g.scores.curvature, g.room);
     } else {
-      std::cout << line_of(g, kit->hand).dump() << '\n';
+      std::cout << line_of(g, listed.kit->hand).dump() << '\n';
     }
   }
-  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", list.grasps.size(), list.hand.c_str(),
-               list.object.c_str(), static_cast<unsigned long long>(list.frames), seconds, static_cast<unsigned long long>(o.seed));
-  for (const Refusal& r : list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
-  return list.grasps.empty() ? 1 : 0;
+  return listed.list.grasps.empty() ? 1 : 0;
+}
+
+int pairs(const ListOptions& o) {
+  const Listed a = list_with(o.hand, o), b = list_with(o.hand2, o);
+  DoubleSettings settings;
+  settings.most_of_each = o.most_of_each;
+  settings.clearance = o.clearance;
+  settings.least_opposition = o.opposition * kDegree;
+  const auto start = std::chrono::steady_clock::now();
+  const DoubleList found = list_double_grasps({a.kit.get(), &a.list, {}}, {b.kit.get(), &b.list, {}}, a.object->box().center(), settings);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const bool table = !json_wanted(o.as_json);
+  if (table) std::printf("%8s %8s %8s %12s %8s\n", "first", "second", "quality", "opposed[deg]", "score");
+  for (const DoubleGrasp& d : found.grasps) {
+    const std::uint64_t first = a.list.grasps[d.first].grasp.id, second = b.list.grasps[d.second].grasp.id;
+    if (table) {
+      std::printf("%8llu %8llu %8.3f %12.0f %8.3f\n", static_cast<unsigned long long>(first), static_cast<unsigned long long>(second),
+                  d.quality, d.opposition / kDegree, d.score);
+    } else {
+      std::cout
+          << json{{"first", first}, {"second", second}, {"quality", d.quality}, {"opposition", d.opposition}, {"score", d.score}}.dump()
+          << '\n';
+    }
+  }
+  std::fprintf(stderr, "%zu double grasps of %llu pairs in %.2f s; %llu collide, %llu not opposed\n", found.grasps.size(),
+               static_cast<unsigned long long>(found.pairs), seconds, static_cast<unsigned long long>(found.colliding),
+               static_cast<unsigned long long>(found.not_opposed));
+  return found.grasps.empty() ? 1 : 0;
+}
+
+void add_list_options(CLI::App& command, ListOptions& o) {
+  command.add_option("--hand", o.hand, "hand description: name or file")->capture_default_str();
+  command.add_option("--object", o.object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
+  command.add_option("--scale", o.scale, "factor on the object's size")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--orientations", o.orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")->check(CLI::PositiveNumber);
+  command.add_option("--seed", o.seed, "of the contact points")->capture_default_str();
+  command.add_flag("--json", o.as_json, "JSON Lines also on a terminal");
 }
 
 }  // namespace
@@ -190,17 +250,17 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
 
   CLI::App* listing = grasp->add_subcommand("list", "All grasps found, best first; what was rejected and why goes to stderr");
   auto o = std::make_shared<ListOptions>();
-  listing->add_option("--hand", o->hand, "hand description: name or file")->capture_default_str();
-  listing->add_option("--object", o->object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
-  listing->add_option("--scale", o->scale, "factor on the object's size")->check(CLI::PositiveNumber)->capture_default_str();
-  listing->add_option("--positions", o->positions, "grasp frames: positions in the object's box")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  listing->add_option("--orientations", o->orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
-  listing->add_option("--mu", o->friction, "Coulomb friction; the object's when left out")->check(CLI::PositiveNumber);
-  listing->add_option("--seed", o->seed, "of the contact points")->capture_default_str();
-  listing->add_flag("--json", o->as_json, "JSON Lines also on a terminal");
+  add_list_options(*listing, *o);
   listing->callback([o, &exit_code] { exit_code = list(*o); });
+
+  CLI::App* doubling = grasp->add_subcommand("double", "Pairs of grasps of two hands that do not collide, best first");
+  auto d = std::make_shared<ListOptions>();
+  add_list_options(*doubling, *d);
+  doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")->capture_default_str();
+  doubling->add_option("--best", d->most_of_each, "grasps taken from each list")->check(CLI::PositiveNumber)->capture_default_str();
+  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(CLI::NonNegativeNumber)->capture_default_str();
+  doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));
+  doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
 }
 
 }  // namespace handsel
