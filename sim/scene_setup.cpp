@@ -116,7 +116,9 @@ class Reader {
       std::filesystem::path folder = person.recording();
       if (folder.empty()) fail("person " + s.id + " plays a recording but names none");
       if (folder.is_relative()) {
-        if (data_root_.empty()) throw MissingError("recording " + folder.string() + " is relative and HANDSEL_DATA is not set");
+        if (data_root_.empty())
+          throw MissingError("recording " + folder.string() +
+                             " is relative, HANDSEL_DATA is not set and there is no ../shared/data beside the project");
         folder = data_root_ / folder;
       }
       s.recording = std::make_shared<const Recording>(load_recording(folder));

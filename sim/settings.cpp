@@ -35,7 +35,11 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.coverage = positive(read.coverage(), "coverage");
   s.ssm.reaction = positive(read.reaction(), "reaction");
   s.setpoint_period = read.setpoint_period();
-  if (const char* data = std::getenv("HANDSEL_DATA")) s.data_root = data;
+  const std::filesystem::path beside = resource_root() / "../../shared/data";
+  if (const char* data = std::getenv("HANDSEL_DATA"))
+    s.data_root = data;
+  else if (std::filesystem::exists(beside))
+    s.data_root = beside;
   return s;
 }
 

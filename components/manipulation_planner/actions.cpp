@@ -78,6 +78,7 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   Motion approach;
   approach.phase = "approach";
   approach.goals = {grasp.approach_joints};
+  approach.tolerated = {object_id};
   Motion reach_object;
   reach_object.phase = "reaching the object";
   reach_object.goals = {grasp.arm_joints};

@@ -6,6 +6,12 @@
 #include "common/model/human_body.hpp"
 
 namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kForever = 600;  // [s] a motion this long has been forgotten by everybody
+constexpr std::uint32_t kBlocked = 1U << static_cast<unsigned>(Cause::forecast_collision);
+
+}  // namespace
 
 ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot,
                                          ObjectLibrary objects, std::uint64_t client)
@@ -60,6 +66,9 @@ void ManipulationPlanner::on(const TrajectoryReply& reply) {
 
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = &out;
+  const bool blocked = execution_ && (execution_->causes & kBlocked) != 0;
+  if (!blocked) free_at_ = now;
+  blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
   if (status_.state == ActionState::running && !action_) {
     action_ = run(goal_);
@@ -214,6 +223,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   command.trajectory = trajectory_reply_->trajectory;
   command.attachment = attachment_;
   command.allowed_contacts = motion.allowed;
+  command.allowed_contacts.insert(command.allowed_contacts.end(), motion.tolerated.begin(), motion.tolerated.end());
   const std::uint64_t id = command.id;
   const auto acknowledged = [this, id] { return execution_->trajectory == id; };
   bool heard = false;
@@ -222,13 +232,22 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     heard = co_await waiting_.until(acknowledged, 0.3);
   }
   if (!heard) co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
-  constexpr double kForever = 600;
-  co_await waiting_.until(
-      [this, id] {
-        return execution_->trajectory != id || execution_->motion == MotionState::finished || execution_->motion == MotionState::refused ||
-               execution_->motion == MotionState::stopped;
-      },
-      kForever);
+  const auto ended = [this, id] {
+    return execution_->trajectory != id || (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
+  };
+  co_await waiting_.until([this, ended] { return ended() || blocked_for_ > settings_.blocked_timeout(); }, kForever);
+  if (!ended()) {
+    const Outcome blocked = Outcome::failure("the way is blocked: " + execution_->reason);
+    TrajectoryCommand stop;
+    stop.id = ++commands_;
+    stop.epoch = execution_->epoch;
+    stop.robot = robot_->name();
+    for (int tries = 0; tries < 5 && execution_->trajectory != stop.id; ++tries) {
+      out_->trajectories.push_back(stop);
+      co_await waiting_.pause(0.3);
+    }
+    co_return blocked;
+  }
   if (execution_->trajectory != id) co_return Outcome::failure("the trajectory controller lost the trajectory");
   if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
   if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);

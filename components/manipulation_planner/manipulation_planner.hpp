@@ -63,6 +63,7 @@ class ManipulationPlanner {
     std::vector<Vector> goals;  // arm axes, alternatives
     bool straight{false};
     std::vector<std::string> allowed;
+    std::vector<std::string> tolerated;  // the plan keeps off these, but a brush foreseen on the way is no reason to hold
     double speed{1.0};
   };
   struct PlannedPath {
@@ -126,6 +127,8 @@ class ManipulationPlanner {
   HumanState people_;
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;
+  TimePoint free_at_{};
+  double blocked_for_{0};  // how long the forecast has held the robot back [s]
   std::optional<GraspReply> grasp_reply_;
   std::optional<PathReply> path_reply_;
   std::optional<TrajectoryReply> trajectory_reply_;
