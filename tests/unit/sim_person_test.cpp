@@ -125,7 +125,7 @@ TEST(SimRecording, TheHandIsWarpedByAtMostTenCentimetresInTheLastHalfSecondAndTh
     return Vector3(settings.feet + Eigen::AngleAxisd(M_PI, Vector3::UnitZ()) * points[joint(name)]);
   };
   const double contact = settings.recording->contact;
-  for (const Vector3& off : {Vector3(0.02, 0.03, -0.04), Vector3(0.15, -0.1, 0.0), Vector3(0.2, 0.2, 0.25), Vector3(0.5, 0, 0)}) {
+  for (const Vector3& off : {Vector3(0.02, 0.03, -0.04), Vector3(0.15, -0.1, 0.0), Vector3(0.2, 0.2, 0.25), Vector3(0.65, 0, 0)}) {
     PersonModel person(settings);
     const PersonView view = offer(recorded_at(contact, "r_hand") + Vector3(-0.07, 0, 0) + off);
     double clock = 0, t = 0, warp = 0, step = 0;
