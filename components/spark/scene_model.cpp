@@ -9,6 +9,9 @@
 namespace handsel::spark {
 namespace {
 
+constexpr double kSameMove = 0.004;      // [m] what is seen this near the estimate is the same place: averaged
+constexpr double kSameTurn = 0.06;       // [rad]
+constexpr int kAverageOver = 15;         // [samples]
 constexpr double kRevisionMove = 0.005;  // [m] an object that moved this far makes a new revision
 
 double arm_length(const RobotModel& robot) {
@@ -29,6 +32,20 @@ bool differs(const Scene& a, const Scene& b) {
     if ((x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove) return true;
   }
   return false;
+}
+
+// The place of what stands still is known better than one noisy look at it; what moves is taken as seen.
+Pose averaged(const Pose& estimate, const Pose& seen, int& looks) {
+  const Eigen::AngleAxisd turn(estimate.linear().transpose() * seen.linear());
+  if ((seen.translation() - estimate.translation()).norm() > kSameMove || std::abs(turn.angle()) > kSameTurn) {
+    looks = 1;
+    return seen;
+  }
+  looks = std::min(looks + 1, kAverageOver);
+  Pose out = estimate;
+  out.translation() += (seen.translation() - estimate.translation()) / looks;
+  out.linear() = estimate.linear() * Eigen::AngleAxisd(turn.angle() / looks, turn.axis()).toRotationMatrix();
+  return out;
 }
 
 }  // namespace
@@ -52,7 +69,9 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
     if (seen < known.seen) continue;
     known.object.id = observed.id;
     known.object.model = observed.model;
-    known.object.T_world_object = observed.T_world_object;
+    known.object.T_world_object =
+        known.looks > 0 ? averaged(known.object.T_world_object, observed.T_world_object, known.looks) : observed.T_world_object;
+    known.looks = std::max(known.looks, 1);
     known.seen = seen;
     if (robot_known_) known.T_tool_object = T_world_tool_.inverse() * observed.T_world_object;
   }

@@ -36,6 +36,7 @@ class SceneModel {
     SceneObject object;
     Pose T_tool_object{Pose::Identity()};
     TimePoint seen{};
+    int looks{};  ///< that make up the estimate
   };
   void locate_tool();
   void assign_holder(Known& known, const HumanState& people) const;

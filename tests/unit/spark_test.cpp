@@ -2,6 +2,7 @@
 
 #include "common/model/human_body.hpp"
 #include "components/spark/people_tracker.hpp"
+#include "components/spark/scene_model.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -115,6 +116,29 @@ TEST(PeopleTracker, ABodyWithoutJointsIsNobody) {
   empty.body = "ghost";
   tracker.observe(seen({empty}), at(0));
   EXPECT_TRUE(tracker.state(at(0), kReach).people.empty());
+}
+
+Vector3 mug_after(SceneModel& model, int looks, const std::function<Vector3(int)>& where) {
+  for (int i = 0; i < looks; ++i) {
+    ObjectObservation observation;
+    observation.source = "camera";
+    observation.objects.push_back({"mug", "mug", make_pose(where(i)), 0.9});
+    model.observe(observation, at(i / 30.0));
+  }
+  return model.scene(at(looks / 30.0), HumanState{}).objects.at(0).T_world_object.translation();
+}
+
+TEST(SceneModel, WhatStandsStillIsKnownBetterThanOneLook) {
+  SceneModel model(settings(), std::make_shared<const RobotModel>(), ObjectLibrary{}, {});
+  const Vector3 mug(0.7, -0.4, 0.77);
+  const Vector3 known = mug_after(model, 60, [&](int i) { return Vector3(mug + 0.0015 * Vector3(i % 2 ? 1 : -1, i % 3 - 1, 0)); });
+  EXPECT_LT((known - mug).norm(), 3e-4);
+}
+
+TEST(SceneModel, WhatMovesIsTakenAsSeen) {
+  SceneModel model(settings(), std::make_shared<const RobotModel>(), ObjectLibrary{}, {});
+  const Vector3 known = mug_after(model, 30, [](int i) { return Vector3(0.7 + 0.2 * i / 30.0, -0.4, 0.77); });
+  EXPECT_LT((known - Vector3(0.7 + 0.2 * 29 / 30.0, -0.4, 0.77)).norm(), 5e-3);
 }
 
 }  // namespace
