@@ -188,7 +188,7 @@ void PersonModel::act(double dt, const PersonView& view) {
 
 bool PersonModel::offered(const PersonView& view) const {
   if (refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > kStill) return false;
-  return (object_centre(view) - shoulder(index())).norm() < reach_ + kLeanReach;
+  return (object_centre(view) - shoulder(index())).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
 }
 
 // The better hand, unless the other is clearly nearer or the only one that reaches.
