@@ -10,6 +10,7 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr int kHeadings = 24;
+constexpr double kWorthwhile = 0.25;   // poses this much costlier than the best are not offered as alternatives
 constexpr double kLeastFacing = -0.3;  // cosine: the hand may not come from the person's side
 
 struct Place {
@@ -88,6 +89,7 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
   options.restarts = 0;
   int unreachable = 0;
   for (const auto& place : places) {
+    if (!out.poses.empty() && place.cost > out.poses.front().cost + kWorthwhile) break;
     const bool offered = std::any_of(out.poses.begin(), out.poses.end(), [&](const ExchangePose& pose) {
       return (pose.T_world_object.translation() - place.T_world_object.translation()).norm() < 0.05;
     });
