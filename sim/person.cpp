@@ -393,23 +393,27 @@ void PersonModel::place_base() {
   for (std::size_t i = 0; i < own.size(); ++i) points_[i] = feet_ + R * own[i];
 }
 
+// Moves the hand to `target`. Near the base posture the arm keeps its shape, farther away hand and forearm line up, elbow down and out:
+// no joint jumps when the hand begins or ends to be led.
 void PersonModel::bend_arm(int s, const Vector3& target) {
-  const double upper = (template_[kElbow[s]] - template_[kShoulder[s]]).norm();
-  const double wrist = (template_[kWrist[s]] - template_[kElbow[s]]).norm();
-  const double lower = wrist + (template_[kHand[s]] - template_[kWrist[s]]).norm();
-  const Vector3 shoulder_point = points_[kShoulder[s]];
-  Vector3 to = target - shoulder_point;
-  const double d = std::clamp(to.norm(), std::abs(upper - lower) + 1e-3, upper + lower - 1e-4);
+  const Vector3 root = points_[kShoulder[s]], elbow = points_[kElbow[s]], wrist = points_[kWrist[s]], hand = points_[kHand[s]];
+  const double upper = (elbow - root).norm(), lower = (wrist - elbow).norm(), palm = (hand - wrist).norm();
+  const double away = min_jerk((target - hand).norm() / 0.3);
+  const Vector3 along = (target - root).stableNormalized();
+  const Vector3 palm_vector = palm * ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
+  Vector3 to = target - palm_vector - root;
+  const double d = std::clamp(to.norm(), std::abs(upper - lower) + 1e-3, upper + lower - 1e-6);
   to = to.norm() > 1e-9 ? Vector3(to.normalized()) : forward();
   const double a = (upper * upper - lower * lower + d * d) / (2 * d);
   const double h = std::sqrt(std::max(0.0, upper * upper - a * a));
-  const Vector3 hint = Vector3(0, 0, -0.8) + (s == 0 ? 0.4 : -0.4) * left() - 0.2 * forward();
-  Vector3 out = hint - hint.dot(to) * to;
-  out = out.norm() > 1e-6 ? Vector3(out.normalized()) : left();
-  points_[kElbow[s]] = shoulder_point + a * to + h * out;
-  const Vector3 hand = shoulder_point + d * to;
-  points_[kWrist[s]] = points_[kElbow[s]] + wrist / lower * (hand - points_[kElbow[s]]);
-  points_[kHand[s]] = hand;
+  const auto across = [&](const Vector3& v) { return Vector3((v - v.dot(to) * to).stableNormalized()); };
+  const Vector3 led = across(Vector3(0, 0, -0.8) + (s == 0 ? 0.4 : -0.4) * left() - 0.2 * forward());
+  const Vector3 bent = elbow - root - (elbow - root).dot((wrist - root).stableNormalized()) * (wrist - root).stableNormalized();
+  const Vector3 own = bent.norm() > 1e-4 ? across(bent) : led;
+  const Vector3 out = across((1 - away) * own + away * led);
+  points_[kElbow[s]] = root + a * to + h * out;
+  points_[kWrist[s]] = root + d * to;
+  points_[kHand[s]] = points_[kWrist[s]] + palm_vector;
 }
 
 void PersonModel::look_at(const Vector3& target, double dt) {
