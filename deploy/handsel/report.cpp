@@ -122,6 +122,7 @@ std::string summary(const nlohmann::json& report) {
       text += format("          %5.1f s  ", step["started_s"].get<double>()) + step["step"].get<std::string>() +
               format(" (%.1f s)", step["duration_s"].get<double>()) + "\n";
     }
+    if (task["success"].get<bool>()) continue;
     for (const Json& refusal : task["refusals"]) {
       text += "          refused " + refusal["what"].get<std::string>() + ": " + refusal["reason"].get<std::string>() + "\n";
     }

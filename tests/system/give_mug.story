@@ -1,12 +1,12 @@
 # The main job: a mug goes from the table into a person's hand.
 start give_mug seed 1
 wait ready within 15s
-expect one commander within 2s
 task give mug
 wait moving within 10s
 wait carrier robot within 40s
 wait handover within 60s
 expect task done within 70s
+expect one commander
 expect nothing dropped
 expect no limit violations
 expect no separation violations

@@ -19,3 +19,8 @@ set_tests_properties(command PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 30
 
 handsel_test(lockstep SOURCES ${CMAKE_CURRENT_LIST_DIR}/lockstep_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(lockstep PROPERTIES TIMEOUT 120)
+
+handsel_test(handover SOURCES ${CMAKE_CURRENT_LIST_DIR}/handover_test.cpp LINK handsel_lockstep LABEL system)
+target_compile_definitions(test_handover PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_handover product)
+set_tests_properties(handover PROPERTIES RUN_SERIAL TRUE TIMEOUT 900)

@@ -1,0 +1,113 @@
+// The main job, judged by the simulator's oracle: over DDS and in lock-step, with people who take, who never move, who were recorded, and
+// a robot that never lets go.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "deploy/handsel/lockstep_system.hpp"
+#include "deploy/handsel/trial.hpp"
+#include "tests/support/shell.hpp"
+
+namespace handsel {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int kSeeds = 10;
+constexpr int kAtLeast = 9;
+
+std::vector<Json> in_lockstep(const std::string& scenario, int seeds) {
+  std::vector<Trial> trials;
+  NodeContext context = system_context(scenario, "", 1);
+  for (int seed = 1; seed <= seeds; ++seed) {
+    context.seed = static_cast<std::uint64_t>(seed);
+    trials.push_back({context, {.scenario = scenario}});
+  }
+  std::vector<Json> lines;
+  EXPECT_TRUE(run_trials(trials, 2, [&](const Json& line) { lines.push_back(line); })) << "a trial crashed";
+  return lines;
+}
+
+Json over_dds(const std::string& scenario, int seed) {
+  const test::Outcome outcome = test::shell(std::string(HANDSEL_COMMAND) + " run --headless --port 0 --domain 38 --scenario " + scenario +
+                                            " --seed " + std::to_string(seed));
+  const Json report = Json::parse(outcome.out, nullptr, false);
+  if (report.is_discarded()) {
+    ADD_FAILURE() << "no report; exit code " << outcome.exit_code << ": " << outcome.err;
+    return {{"success", false}, {"failure", "no report"}};
+  }
+  EXPECT_EQ(outcome.exit_code, report["success"].get<bool>() ? 0 : 1);
+  return report;
+}
+
+void expect_bounded(const Json& line, const std::string& what) {
+  for (const char* derivative : {"v", "a", "j"})
+    EXPECT_LE(line["limit_share"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
+  EXPECT_EQ(line["ssm_violations"], 0) << what;
+}
+
+int successes(const std::vector<Json>& lines) {
+  int count = 0;
+  for (const Json& line : lines) {
+    if (line["success"].get<bool>()) {
+      ++count;
+    } else {
+      std::printf("seed %s: %s %s\n", line["seed"].dump().c_str(), line["failure"].dump().c_str(), line["reason"].dump().c_str());
+    }
+  }
+  return count;
+}
+
+TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
+  const std::vector<Json> lockstep = in_lockstep("give_mug", kSeeds);
+  ASSERT_EQ(lockstep.size(), static_cast<std::size_t>(kSeeds));
+  EXPECT_GE(successes(lockstep), kAtLeast) << "in lock-step";
+  int done = 0, agreed = 0;
+  for (int seed = 1; seed <= kSeeds; ++seed) {
+    const Json report = over_dds("give_mug", seed);
+    const std::string what = "seed " + std::to_string(seed);
+    const bool success = report["success"];
+    std::printf("%s: %s, lock-step %s %s\n", what.c_str(), success ? "done" : "failed",
+                lockstep[static_cast<std::size_t>(seed - 1)]["success"].dump().c_str(), report["failure"].dump().c_str());
+    done += success;
+    agreed += success == lockstep[static_cast<std::size_t>(seed - 1)]["success"].get<bool>();
+    if (!report.contains("oracle")) continue;
+    expect_bounded(report, what);
+    EXPECT_EQ(report["oracle"]["limit_violations"], 0) << what;
+    EXPECT_EQ(report["oracle"]["commanders"], 1) << what;
+    if (!success) continue;
+    EXPECT_GE(report["oracle"]["max_lifted_m"].get<double>(), 0.10) << what;
+    EXPECT_GE(report["oracle"]["human_contact_before_release_s"].get<double>(), 0.2) << what;
+    EXPECT_GE(report["oracle"]["human_alone_s"].get<double>(), 1.0) << what;
+  }
+  EXPECT_GE(done, kAtLeast) << "over DDS";
+  EXPECT_GE(agreed, kAtLeast);
+}
+
+TEST(Handover, mutants_fail_with_a_reason) {
+  for (const char* scenario : {"give_mug_still", "give_mug_no_release"}) {
+    for (const Json& line : in_lockstep(scenario, 3)) {
+      EXPECT_FALSE(line["success"].get<bool>()) << scenario << " seed " << line["seed"];
+      EXPECT_FALSE(line["reason"].get<std::string>().empty()) << scenario;
+      expect_bounded(line, scenario);
+    }
+    const Json report = over_dds(scenario, 1);
+    EXPECT_FALSE(report["success"].get<bool>()) << scenario << " over DDS";
+    EXPECT_FALSE(report["failure"].get<std::string>().empty()) << scenario << " over DDS";
+  }
+}
+
+TEST(Handover, recorded_people_take_it_too) {
+  const char* data = std::getenv("HANDSEL_DATA");
+  if (!data || !std::filesystem::is_directory(std::filesystem::path(data) / "motion/kth_handover")) {
+    GTEST_SKIP() << "HANDSEL_DATA names no folder with motion/kth_handover";
+  }
+  const std::vector<Json> lines = in_lockstep("give_mug_recorded", 10);
+  for (const Json& line : lines) expect_bounded(line, "recorded, seed " + line["seed"].dump());
+  EXPECT_GE(successes(lines), 8);
+}
+
+}  // namespace
+}  // namespace handsel
