@@ -71,7 +71,9 @@ class Connection : public std::enable_shared_from_this<Connection> {
   void refuse(http::status status, const std::string& sentence) { send(make(status, "text/plain; charset=utf-8", sentence, 11), false); }
 
   void push() {
-    if (!streaming_ || writing_) return;
+    if (!streaming_) return;
+    stale_ = writing_;  // what it is being sent is no longer the newest
+    if (writing_) return;
     writing_ = true;
     event_ = "data: " + shared_.state + "\n\n";
     expire();
@@ -79,6 +81,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
       self->writing_ = false;
       if (error) return self->end();
       self->stream_.expires_never();
+      if (self->stale_) self->push();
     });
   }
 
@@ -168,7 +171,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::optional<http::response_serializer<http::empty_body>> serializer_;
   std::string event_;
   char dropped_[256];
-  bool streaming_{false}, writing_{false};
+  bool streaming_{false}, writing_{false}, stale_{false};
 };
 
 }  // namespace

@@ -28,6 +28,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   feed<ActionStatus>();
   feed<ComponentHealth>();
   feed<ExecutionStatus>();
+  bus.set_degraded("the state of the world is not known yet");
   bus.every(from_seconds(settings_.period()), [this](TimePoint now) { step(now); });
 }
 
@@ -39,6 +40,7 @@ void Node::feed() {
 void Node::step(TimePoint now) {
   Outbox out;
   core_.step(now, out);
+  bus_.set_degraded(core_.knows_world() ? "" : "the state of the world is not known yet");
   for (const auto& goal : out.action_goals) action_out_->publish(goal);
   for (const auto& status : out.task_statuses) status_out_->publish(status);
   if (out.go) go_out_->publish(*out.go);

@@ -32,6 +32,8 @@ class Supervisor {
   void on(const ComponentHealth& health, TimePoint arrival) { permission_.on(health, arrival); }
   void on(const ExecutionStatus& status, TimePoint arrival) { permission_.on(status, arrival); }
 
+  /// Facts have come: tasks can be judged.
+  bool knows_world() const { return facts_.has_value(); }
   void step(TimePoint now, Outbox& out);
 
  private:

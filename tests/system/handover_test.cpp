@@ -43,6 +43,7 @@ Json over_dds(const std::string& scenario, int seed) {
 }
 
 void expect_bounded(const Json& line, const std::string& what) {
+  ASSERT_TRUE(line.contains("limit_share")) << what << ": " << line.dump();
   for (const char* derivative : {"v", "a", "j"})
     EXPECT_LE(line["limit_share"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
   EXPECT_EQ(line["ssm_violations"], 0) << what;
