@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "deploy/handsel/processes.hpp"
+#include "tests/support/background.hpp"
+#include "tests/support/http_client.hpp"
 #include "tests/support/shell.hpp"
 
 namespace handsel::test {
@@ -89,14 +92,31 @@ TEST(Command, topics_are_listed_as_json_lines) {
 }
 
 TEST(Command, a_domain_in_use_is_refused_and_the_system_there_lives_on) {
-  const Outcome outcome = shell(kHandsel + " up --headless --port 0" + kDomain + " >/dev/null 2>&1 & up=$!; " +                      //
-                                "for i in $(seq 100); do " + kHandsel + " status" + kDomain + " >/dev/null 2>&1 && break; done; " +  //
-                                kHandsel + " run --scenario give_mug" + kDomain + "; code=$?; " +                                    //
-                                kHandsel + " status" + kDomain + "; kill -INT $up; wait $up; echo $code $?");
-  EXPECT_THAT(outcome.err, HasSubstr("domain 39 is in use"));
-  EXPECT_THAT(outcome.out, HasSubstr("\"component\":\"supervisor\""));
-  EXPECT_THAT(outcome.out, testing::EndsWith("2 0\n"));
+  Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "39"});
+  ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
+  const Outcome second = shell(kHandsel + " run --scenario give_mug" + kDomain);
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr("domain 39 is in use"));
+  const Outcome status = shell(kHandsel + " status" + kDomain);
+  EXPECT_EQ(status.exit_code, 0) << status.out;
+  EXPECT_EQ(up.interrupt(), 0);
   EXPECT_EQ(processes_running(), 0);
+}
+
+TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {
+  Background up({kHandsel, "up", "--headless", "--port", "0", "--domain", "39"});
+  ASSERT_TRUE(up.wait_for("watch it at")) << up.said();
+  const std::string running = shell("ps -eo args | grep -o '[b]in/handsel_[a-z_]* --domain 39' | sort | uniq -c").out;
+  for (const char* box : kProcesses) EXPECT_THAT(running, testing::ContainsRegex(std::string(" 1 bin/handsel_") + box + " ")) << box;
+
+  const std::string said = up.said();
+  const auto port = static_cast<std::uint16_t>(std::atoi(said.substr(said.find("127.0.0.1:") + 10).c_str()));
+  HttpClient client(port);
+  client.request("GET", "/events");
+  const std::string page = client.read("\"shapes\"");
+  for (const char* box : kProcesses) EXPECT_THAT(page, HasSubstr(std::string("\"component\":\"") + box + "\"")) << box;
+  for (const char* shown : {"\"mug\"", "\"anna\"", "\"table\"", "\"mode\""}) EXPECT_THAT(page, HasSubstr(shown)) << shown;
+  EXPECT_EQ(up.interrupt(), 0);
 }
 
 }  // namespace
