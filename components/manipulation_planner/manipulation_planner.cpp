@@ -132,7 +132,6 @@ void ManipulationPlanner::hold(const SceneObject& held) {
 
 void ManipulationPlanner::release_object() {
   attachment_ = {};
-  grasp_.reset();
   status_.holding = false;
 }
 
@@ -309,11 +308,15 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
 
 Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person, const std::string& object_id) {
   const Pose T_now = T_world_tool();
-  Vector3 away = -T_now.linear().col(2);
-  if (const SceneObject* left = object(object_id)) {
-    const Vector3 gap = T_now.translation() - left->T_world_object.translation();
-    if (gap.norm() > 0.03) away = gap.normalized();
+  Vector3 back = -Vector3::UnitZ();  // tool frame
+  if (grasp_) {
+    const Pose T_root_grasp = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->arm_joints), robot_->tool_link());
+    const Pose T_root_standoff = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->approach_joints), robot_->tool_link());
+    back = (T_root_grasp.inverse() * T_root_standoff).translation();
+  } else if (const SceneObject* left = object(object_id)) {
+    back = -(T_now.inverse() * left->T_world_object.translation());
   }
+  const Vector3 away = T_now.linear() * back.normalized();
   Motion motion;
   motion.phase = "retreat";
   motion.straight = true;
@@ -346,7 +349,10 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       co_await waiting_.until([this] { return scene_.robot_known && execution_ && set_point_.size() == robot_->dof(); }, 10.0);
   if (!known) co_return Outcome::failure("no scene or no controller state has come");
   if (const SceneObject* held = object(goal.object); held != nullptr && held->holder == Holder::robot) {
-    if (attachment_.object != held->id) hold(*held);
+    if (attachment_.object != held->id) {
+      grasp_.reset();
+      hold(*held);
+    }
   } else if (attachment_.object == goal.object) {
     release_object();
   }
