@@ -12,8 +12,8 @@
 namespace handsel {
 
 struct TriangleMesh {
-  std::vector<Vector3> vertices;               ///< [m]
-  std::vector<std::array<int, 3>> triangles;   ///< counter-clockwise seen from outside
+  std::vector<Vector3> vertices;              ///< [m]
+  std::vector<std::array<int, 3>> triangles;  ///< counter-clockwise seen from outside
 };
 
 /// Reads STL, OBJ or DAE (assimp), welds equal vertices, drops degenerate triangles.
@@ -21,10 +21,20 @@ struct TriangleMesh {
 /// (64 MB, 500 000 triangles).
 TriangleMesh load_mesh(const std::filesystem::path& file, const Vector3& scale = Vector3::Ones());
 
-struct Sphere { double radius; };                    ///< [m]
-struct Box { Vector3 size; };                        ///< full extents [m]
-struct Cylinder { double radius; double length; };   ///< along z [m]
-struct Capsule { double radius; double length; };    ///< along z, length of the straight part [m]
+struct Sphere {
+  double radius;
+};  ///< [m]
+struct Box {
+  Vector3 size;
+};  ///< full extents [m]
+struct Cylinder {
+  double radius;
+  double length;
+};  ///< along z [m]
+struct Capsule {
+  double radius;
+  double length;
+};  ///< along z, length of the straight part [m]
 using MeshPtr = std::shared_ptr<const TriangleMesh>;
 
 using Shape = std::variant<Sphere, Box, Cylinder, Capsule, MeshPtr>;

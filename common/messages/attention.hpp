@@ -15,12 +15,12 @@ const char* name(Behaviour);
 
 struct BehaviourState {
   Behaviour behaviour{};
-  double period{};               ///< of its clock now [s]
-  std::uint64_t activations{};   ///< of its perceptual schema since start
+  double period{};                         ///< of its clock now [s]
+  std::uint64_t activations{};             ///< of its perceptual schema since start
   std::uint64_t activations_at_fastest{};  ///< had the clock always run at its shortest period
   bool released{};
-  double stimulus{};             ///< what it watches, SI
-  double speed_factor{1.0};      ///< what it asks for, [-1, 1]
+  double stimulus{};         ///< what it watches, SI
+  double speed_factor{1.0};  ///< what it asks for, [-1, 1]
 };
 
 /// Topic AttentionState, profile state, 10 Hz.
@@ -32,15 +32,15 @@ struct AttentionState {
 /// Topic AttentionAdvice, profile advice, 50 Hz.
 struct AttentionAdvice {
   Stamp stamp{};
-  double speed_factor{1.0};      ///< minimum over the released behaviours, [-1, 1]
-  Behaviour limiting{};          ///< the one that asked for it
-  std::string reason;            ///< one phrase for people
+  double speed_factor{1.0};  ///< minimum over the released behaviours, [-1, 1]
+  Behaviour limiting{};      ///< the one that asked for it
+  std::string reason;        ///< one phrase for people
   bool has_gaze_target{};
-  Vector3 gaze_target{Vector3::Zero()};   ///< world [m]
+  Vector3 gaze_target{Vector3::Zero()};  ///< world [m]
   bool has_target_shift{};
   Vector3 target_shift{Vector3::Zero()};  ///< of the exchange point, world [m]
-  double cost_gain{1.0};         ///< on the human-aware costs
-  double human_period{};         ///< how often interpretation of people is wanted [s]; 0 = as it comes
+  double cost_gain{1.0};                  ///< on the human-aware costs
+  double human_period{};                  ///< how often interpretation of people is wanted [s]; 0 = as it comes
 };
 
 }  // namespace handsel

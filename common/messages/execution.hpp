@@ -18,8 +18,8 @@ namespace handsel {
 struct Go {
   Stamp stamp{};
   std::uint64_t epoch{};
-  bool allowed{};        ///< false: Hold
-  bool acknowledge{};    ///< a person acknowledged a Fault
+  bool allowed{};               ///< false: Hold
+  bool acknowledge{};           ///< a person acknowledged a Fault
   double override_factor{1.0};  ///< global speed override [0, 1]
   std::string reason;
 };
@@ -27,12 +27,12 @@ struct Go {
 /// Soft motion for some axes; starts when accepted. Topic Trajectory, profile command.
 struct TrajectoryCommand {
   Stamp stamp{};
-  std::uint64_t id{};                   ///< unique, grows
-  std::uint64_t epoch{};                ///< the Go it belongs to; another epoch is refused
+  std::uint64_t id{};     ///< unique, grows
+  std::uint64_t epoch{};  ///< the Go it belongs to; another epoch is refused
   std::string robot;
-  std::vector<std::uint32_t> axes;      ///< robot axis of each trajectory axis
+  std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
   Trajectory trajectory;
-  Attachment attachment;                ///< what the hand holds while it runs
+  Attachment attachment;  ///< what the hand holds while it runs
   std::vector<std::string> allowed_contacts;
 };
 
@@ -50,8 +50,8 @@ struct HandCommand {
   std::uint64_t epoch{};
   std::string robot;
   HandAction action{HandAction::move};
-  Vector position;                      ///< actuated hand axes, in the order of the group "hand" [rad]
-  double pull_force{4.0};               ///< [N] beyond the load's weight, for release_on_pull
+  Vector position;         ///< actuated hand axes, in the order of the group "hand" [rad]
+  double pull_force{4.0};  ///< [N] beyond the load's weight, for release_on_pull
 };
 
 /// Ordered: further down takes precedence (architecture: mode machine).
@@ -60,21 +60,21 @@ enum class Mode : std::uint8_t { normal, slow, hold, stop, fault };
 /// Named causes; the bit is 1 << value.
 enum class Cause : std::uint8_t {
   none,
-  no_go,                 ///< Hold: no permission to move
-  supervisor_silent,     ///< Hold at the end of the trajectory
-  forecast_silent,       ///< Hold
-  forecast_collision,    ///< Slow or Hold
-  attention_silent,      ///< Slow
-  attention_slow,        ///< Slow
-  separation,            ///< Slow ... Stop
-  robot_state_silent,    ///< Stop
-  human_state_silent,    ///< Stop
-  human_unknown,         ///< Slow ... Stop: nobody seen, but not covered
-  drive_not_enabled,     ///< Stop
-  tracking_error,        ///< Fault
-  limit_violation,       ///< Fault
-  cycle_late,            ///< Hold after 5 in a row
-  override_slow,         ///< Slow
+  no_go,               ///< Hold: no permission to move
+  supervisor_silent,   ///< Hold at the end of the trajectory
+  forecast_silent,     ///< Hold
+  forecast_collision,  ///< Slow or Hold
+  attention_silent,    ///< Slow
+  attention_slow,      ///< Slow
+  separation,          ///< Slow ... Stop
+  robot_state_silent,  ///< Stop
+  human_state_silent,  ///< Stop
+  human_unknown,       ///< Slow ... Stop: nobody seen, but not covered
+  drive_not_enabled,   ///< Stop
+  tracking_error,      ///< Fault
+  limit_violation,     ///< Fault
+  cycle_late,          ///< Hold after 5 in a row
+  override_slow,       ///< Slow
 };
 const char* name(Cause);
 const char* name(Mode);
@@ -87,16 +87,16 @@ struct ExecutionStatus {
   Stamp stamp{};
   std::string robot;
   Mode mode{Mode::hold};
-  std::uint32_t causes{};               ///< bits of Cause
-  std::uint64_t epoch{};                ///< Go in force
-  std::uint64_t trajectory{};           ///< last trajectory id received
+  std::uint32_t causes{};      ///< bits of Cause
+  std::uint64_t epoch{};       ///< Go in force
+  std::uint64_t trajectory{};  ///< last trajectory id received
   MotionState motion{MotionState::idle};
-  double progress{};                    ///< time along the trajectory / its duration
-  std::uint64_t hand_command{};         ///< last hand command id received
+  double progress{};             ///< time along the trajectory / its duration
+  std::uint64_t hand_command{};  ///< last hand command id received
   HandState hand{HandState::idle};
-  double pull{};                        ///< force beyond the load's weight, toward the person [N]
-  std::string reason;                   ///< of the last refusal, or of slowing, one sentence
-  std::uint64_t cycles{}, late_cycles{};///< control cycles; later than one period
+  double pull{};                                                                  ///< force beyond the load's weight, toward the person [N]
+  std::string reason;                                                             ///< of the last refusal, or of slowing, one sentence
+  std::uint64_t cycles{}, late_cycles{};                                          ///< control cycles; later than one period
   double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};  ///< largest |.| sent so far / guard limit
 };
 
@@ -104,13 +104,13 @@ struct ExecutionStatus {
 struct ActiveTrajectory {
   Stamp stamp{};
   std::string robot;
-  Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world, as last measured
-  std::uint64_t trajectory{};           ///< 0: at rest
-  double time{};                        ///< along the trajectory [s]
-  double speed_factor{};                ///< alpha in force, [-1, 1]
+  Pose T_world_base{Pose::Identity()};      ///< root link of the robot in the world, as last measured
+  std::uint64_t trajectory{};               ///< 0: at rest
+  double time{};                            ///< along the trajectory [s]
+  double speed_factor{};                    ///< alpha in force, [-1, 1]
   Vector position, velocity, acceleration;  ///< set-point, all axes
   std::vector<std::uint32_t> axes;
-  Trajectory rest;                      ///< the trajectory that runs (from its own time 0)
+  Trajectory rest;  ///< the trajectory that runs (from its own time 0)
   Attachment attachment;
   std::vector<std::string> allowed_contacts;
 };
@@ -120,10 +120,10 @@ struct TrajectoryForecast {
   Stamp stamp{};
   std::uint64_t trajectory{};
   bool collides{};
-  double time_to_collision{};           ///< at present speed [s]; infinity if none within the horizon (1e9 on the wire)
-  double clearance{};                   ///< least distance to people over the horizon [m]
-  double cost{};                        ///< largest human-aware cost over the horizon, [0, 1]
-  std::string reason;                   ///< what touches what
+  double time_to_collision{};  ///< at present speed [s]; infinity if none within the horizon (1e9 on the wire)
+  double clearance{};          ///< least distance to people over the horizon [m]
+  double cost{};               ///< largest human-aware cost over the horizon, [0, 1]
+  std::string reason;          ///< what touches what
 };
 
 }  // namespace handsel

@@ -21,8 +21,8 @@ struct ObservedPerson {
   std::string body;  ///< transient id of the tracker
   std::vector<ObservedJoint> joints;
   bool has_gaze{};
-  Vector3 gaze_origin{Vector3::Zero()};        ///< between the eyes, world [m]
-  Vector3 gaze_direction{Vector3::UnitX()};    ///< unit, world
+  Vector3 gaze_origin{Vector3::Zero()};      ///< between the eyes, world [m]
+  Vector3 gaze_direction{Vector3::UnitX()};  ///< unit, world
 };
 
 /// The volume a source has looked at: what makes "nobody there" a fact. Axis-aligned box in world [m].

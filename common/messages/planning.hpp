@@ -15,14 +15,14 @@ namespace handsel {
 
 /// Who asks: unique over the system; the reply repeats it.
 struct RequestId {
-  std::uint64_t client{};    ///< random per process start
+  std::uint64_t client{};  ///< random per process start
   std::uint64_t number{};
   bool operator==(const RequestId&) const = default;
 };
 
 /// An object rigidly held by the hand while the robot moves.
 struct Attachment {
-  std::string object;                        ///< scene object id; empty = nothing held
+  std::string object;  ///< scene object id; empty = nothing held
   Pose T_tool_object{Pose::Identity()};
 };
 
@@ -32,17 +32,17 @@ enum class PlannerKind : std::uint8_t { automatic, rrt, rrt_connect, trrt, bitrr
 struct PathRequest {
   Stamp stamp{};
   RequestId id;
-  std::string group;                  ///< "arm"
-  Vector start;                       ///< all axes of the robot [rad]
-  std::vector<Vector> goals;          ///< alternatives, group axes only [rad]
+  std::string group;          ///< "arm"
+  Vector start;               ///< all axes of the robot [rad]
+  std::vector<Vector> goals;  ///< alternatives, group axes only [rad]
   Attachment attachment;
   /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms are no obstacle because
   /// the exchange with them is engaged. The same meaning wherever this field appears.
   std::vector<std::string> allowed_contacts;
   PlannerKind planner{PlannerKind::automatic};
-  double time_limit{2.0};             ///< [s] a budget in checks is derived from it
+  double time_limit{2.0};  ///< [s] a budget in checks is derived from it
   std::uint64_t seed{};
-  bool straight{};                    ///< only the straight line from start to goals[0] is wanted, checked
+  bool straight{};  ///< only the straight line from start to goals[0] is wanted, checked
 };
 
 /// Topic PathReply, profile reply.
@@ -50,11 +50,11 @@ struct PathReply {
   Stamp stamp{};
   RequestId id;
   bool solved{};
-  std::string reason;                 ///< why not, one sentence
-  std::uint32_t goal{};               ///< index of the goal reached
-  std::vector<Vector> path;           ///< group axes, path.front() = start
-  double cost{}, length{};            ///< integral human-aware cost; joint-space length [rad]
-  std::uint64_t checks{};             ///< states judged
+  std::string reason;        ///< why not, one sentence
+  std::uint32_t goal{};      ///< index of the goal reached
+  std::vector<Vector> path;  ///< group axes, path.front() = start
+  double cost{}, length{};   ///< integral human-aware cost; joint-space length [rad]
+  std::uint64_t checks{};    ///< states judged
 };
 
 /// Topic TrajectoryRequest, profile request: a broken line to soft motion.
@@ -62,11 +62,11 @@ struct TrajectoryRequest {
   Stamp stamp{};
   RequestId id;
   std::string group;
-  std::vector<Vector> nodes;          ///< group axes [rad]
-  Vector start;                       ///< all axes, for the collision checks of corners
+  std::vector<Vector> nodes;  ///< group axes [rad]
+  Vector start;               ///< all axes, for the collision checks of corners
   Attachment attachment;
   std::vector<std::string> allowed_contacts;
-  double speed_scale{1.0};            ///< (0, 1] on the comfort velocity limits
+  double speed_scale{1.0};  ///< (0, 1] on the comfort velocity limits
 };
 
 /// Topic TrajectoryReply, profile reply.
@@ -75,9 +75,9 @@ struct TrajectoryReply {
   RequestId id;
   bool solved{};
   std::string reason;
-  Trajectory trajectory;              ///< group axes
-  double duration_ptp{};              ///< with a stop at each node [s]
-  Refusals corners;                   ///< corners that keep their stop, and why
+  Trajectory trajectory;  ///< group axes
+  double duration_ptp{};  ///< with a stop at each node [s]
+  Refusals corners;       ///< corners that keep their stop, and why
 };
 
 struct Contact {
@@ -86,30 +86,30 @@ struct Contact {
   Vector3 normal{Vector3::UnitZ()};   ///< plane normal of its triangle, outward, object frame
   std::uint32_t triangle{};
   Vector3 barycentric{Vector3::Zero()};
-  double friction{};                  ///< Coulomb coefficient
-  double curvature{};                 ///< interpolated mean curvature, normalised to [0, 1]
+  double friction{};   ///< Coulomb coefficient
+  double curvature{};  ///< interpolated mean curvature, normalised to [0, 1]
 };
 
 /// A grasp of one hand on one object (chapter section 3.2.1).
 struct Grasp {
   std::uint64_t id{};
   Pose T_object_hand{Pose::Identity()};  ///< hand frame = tool link of the robot
-  Vector hand_joints;                 ///< actuated hand axes at contact [rad]
-  Vector pregrasp_joints;             ///< opened before the approach [rad]
+  Vector hand_joints;                    ///< actuated hand axes at contact [rad]
+  Vector pregrasp_joints;                ///< opened before the approach [rad]
   std::vector<Contact> contacts;
-  double epsilon{};                   ///< Ferrari-Canny, L1
-  double quality{};                   ///< weighted sum of the four parts, [0, 1]
-  Vector arm_joints;                  ///< arm axes reaching the grasp; empty until a robot was considered
-  Vector approach_joints;             ///< arm axes at the stand-off before it
+  double epsilon{};        ///< Ferrari-Canny, L1
+  double quality{};        ///< weighted sum of the four parts, [0, 1]
+  Vector arm_joints;       ///< arm axes reaching the grasp; empty until a robot was considered
+  Vector approach_joints;  ///< arm axes at the stand-off before it
 };
 
 /// Topic GraspRequest, profile request.
 struct GraspRequest {
   Stamp stamp{};
   RequestId id;
-  std::string object;                 ///< scene object id
-  Vector start;                       ///< all axes of the robot; IK is seeded from it
-  std::string for_human;              ///< person who will take it, or empty: leave room for that hand
+  std::string object;     ///< scene object id
+  Vector start;           ///< all axes of the robot; IK is seeded from it
+  std::string for_human;  ///< person who will take it, or empty: leave room for that hand
   std::uint32_t max_grasps{20};
   std::uint64_t seed{};
 };
@@ -118,9 +118,9 @@ struct GraspRequest {
 struct GraspReply {
   Stamp stamp{};
   RequestId id;
-  std::string reason;                 ///< set when the list is empty
+  std::string reason;  ///< set when the list is empty
   std::vector<Grasp> grasps;
-  Refusals rejected;                  ///< counts per reason, e.g. {"113 frames", "thumb finds no contact"}
+  Refusals rejected;  ///< counts per reason, e.g. {"113 frames", "thumb finds no contact"}
 };
 
 /// Topic GraspCandidates, profile advice, 2 Hz: better grasps for the task that runs.
@@ -134,7 +134,7 @@ struct GraspCandidates {
 struct StateQuery {
   Stamp stamp{};
   RequestId id;
-  std::vector<Vector> states;         ///< all axes
+  std::vector<Vector> states;  ///< all axes
   Attachment attachment;
   std::vector<std::string> allowed_contacts;
 };
@@ -142,9 +142,9 @@ struct StateQuery {
 struct StateVerdict {
   Stamp stamp{};
   RequestId id;
-  std::vector<std::uint8_t> free;     ///< 1 = free, one a state
-  std::string reason;                 ///< what touches what in the first that is not
-  double clearance{};                 ///< least distance of all the free states [m]
+  std::vector<std::uint8_t> free;  ///< 1 = free, one a state
+  std::string reason;              ///< what touches what in the first that is not
+  double clearance{};              ///< least distance of all the free states [m]
 };
 
 }  // namespace handsel

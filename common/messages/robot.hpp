@@ -15,14 +15,14 @@ enum class DriveMode : std::uint8_t { off, braked, enabled, protective_stop, use
 /// Published by the robot side (driver or simulator), 500 Hz. Topic RobotState, profile sensor, keyed by robot.
 struct RobotState {
   Stamp stamp{};
-  std::string robot;                     ///< name of the robot description
+  std::string robot;  ///< name of the robot description
   std::uint64_t sequence{};
-  Pose T_world_base{Pose::Identity()};   ///< root link of the robot in the world
-  Vector position, velocity, effort;     ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
-  Vector external_torque;                ///< per axis, without model gravity and friction [Nm]; empty if unknown
-  Wrench wrist_wrench;                   ///< what the world exerts on the hand with its load, gravity of the hand removed, tool frame
-  double hand_effort{};                  ///< sum of |finger torques| [Nm]
-  double payload{};                      ///< mass the hand carries as measured by the robot side [kg]
+  Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
+  Vector position, velocity, effort;    ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
+  Vector external_torque;               ///< per axis, without model gravity and friction [Nm]; empty if unknown
+  Wrench wrist_wrench;                  ///< what the world exerts on the hand with its load, gravity of the hand removed, tool frame
+  double hand_effort{};                 ///< sum of |finger torques| [Nm]
+  double payload{};                     ///< mass the hand carries as measured by the robot side [kg]
   DriveMode mode{DriveMode::off};
 };
 

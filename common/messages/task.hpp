@@ -12,20 +12,32 @@
 namespace handsel {
 
 enum class TaskKind : std::uint8_t {
-  give, receive, pick, place, clear, tidy, regrasp, lift, go_to,  // goals
-  pause, resume, cancel, acknowledge, speed,                      // about the running one, or the system
+  give,
+  receive,
+  pick,
+  place,
+  clear,
+  tidy,
+  regrasp,
+  lift,
+  go_to,  // goals
+  pause,
+  resume,
+  cancel,
+  acknowledge,
+  speed,  // about the running one, or the system
 };
 const char* name(TaskKind);
 
 /// Topic TaskGoal, profile command.
 struct TaskGoal {
   Stamp stamp{};
-  std::uint64_t id{};            ///< chosen by the sender, unique
+  std::uint64_t id{};  ///< chosen by the sender, unique
   TaskKind kind{};
   std::string object;
-  std::string human;             ///< empty: the nearest attentive person
+  std::string human;  ///< empty: the nearest attentive person
   std::string surface;
-  double value{};                ///< speed: [0, 1]
+  double value{};  ///< speed: [0, 1]
 };
 
 enum class TaskState : std::uint8_t { accepted, running, paused, succeeded, failed, cancelled, refused };
@@ -37,11 +49,11 @@ struct TaskStatus {
   std::uint64_t id{};
   TaskKind kind{};
   TaskState state{};
-  std::vector<std::string> plan; ///< the steps, e.g. "pick mug", "give mug to anna"
-  std::uint32_t step{};          ///< index into plan
-  std::string phase;             ///< of the running action
-  std::string reason;            ///< of a failure or refusal
-  Refusals refusals;             ///< gathered on the way
+  std::vector<std::string> plan;  ///< the steps, e.g. "pick mug", "give mug to anna"
+  std::uint32_t step{};           ///< index into plan
+  std::string phase;              ///< of the running action
+  std::string reason;             ///< of a failure or refusal
+  Refusals refusals;              ///< gathered on the way
 };
 
 enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to };
@@ -52,9 +64,9 @@ struct ActionGoal {
   Stamp stamp{};
   std::uint64_t id{};
   std::uint64_t task{};
-  std::uint64_t epoch{};         ///< Go epoch its motions carry
+  std::uint64_t epoch{};  ///< Go epoch its motions carry
   ActionKind kind{};
-  bool cancel{};                 ///< stop action `id`: finish softly, report cancelled
+  bool cancel{};  ///< stop action `id`: finish softly, report cancelled
   std::string object, human, surface;
 };
 
@@ -67,10 +79,10 @@ struct ActionStatus {
   std::uint64_t task{};
   ActionKind kind{};
   ActionState state{ActionState::idle};
-  std::string phase;             ///< planning, approach, grasp, lift, carry, offer, release, retreat
+  std::string phase;  ///< planning, approach, grasp, lift, carry, offer, release, retreat
   std::string object, human;
-  bool holding{};                ///< the hand holds `object`
-  bool exchange_engaged{};       ///< the exchanging forearm and hand are excepted from separation
+  bool holding{};                           ///< the hand holds `object`
+  bool exchange_engaged{};                  ///< the exchanging forearm and hand are excepted from separation
   Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
   std::string reason;
   Refusals refusals;

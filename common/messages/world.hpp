@@ -15,28 +15,28 @@ enum class Holder : std::uint8_t { nobody, surface, robot, human };
 
 struct SceneObject {
   std::string id;
-  std::string model;                       ///< name in deploy/objects
+  std::string model;  ///< name in deploy/objects
   Pose T_world_object{Pose::Identity()};
   Holder holder{Holder::nobody};
-  std::string holder_id;                   ///< surface or person; empty for nobody and robot
-  double age{};                            ///< since last seen [s]
+  std::string holder_id;  ///< surface or person; empty for nobody and robot
+  double age{};           ///< since last seen [s]
 };
 
 /// A fixed box: furniture, wall. Support surfaces are the top faces of boxes with supports = true.
 struct SceneBox {
   std::string id;
-  Pose T_world_box{Pose::Identity()};      ///< centre
-  Vector3 size{Vector3::Zero()};           ///< full extents [m]
+  Pose T_world_box{Pose::Identity()};  ///< centre
+  Vector3 size{Vector3::Zero()};       ///< full extents [m]
   bool supports{};
 };
 
 /// Topic Scene, profile state, 10 Hz.
 struct Scene {
   Stamp stamp{};
-  std::uint64_t revision{};                ///< grows with every change that matters to a planner
-  bool robot_known{};                      ///< a RobotState has come
-  Pose T_world_base{Pose::Identity()};     ///< root link of the robot, as last measured
-  Vector robot_position;                   ///< all axes, as last measured [rad]; empty until robot_known
+  std::uint64_t revision{};             ///< grows with every change that matters to a planner
+  bool robot_known{};                   ///< a RobotState has come
+  Pose T_world_base{Pose::Identity()};  ///< root link of the robot, as last measured
+  Vector robot_position;                ///< all axes, as last measured [rad]; empty until robot_known
   std::vector<SceneObject> objects;
   std::vector<SceneBox> boxes;
 };
@@ -44,40 +44,50 @@ struct Scene {
 enum class Side : std::uint8_t { left, right };
 
 struct BodyJoint {
-  std::string name;                        ///< REP-155, as in ObservedJoint
-  Vector3 position{Vector3::Zero()};       ///< world [m]
-  Vector3 velocity{Vector3::Zero()};       ///< world [m/s]
+  std::string name;                   ///< REP-155, as in ObservedJoint
+  Vector3 position{Vector3::Zero()};  ///< world [m]
+  Vector3 velocity{Vector3::Zero()};  ///< world [m/s]
 };
 
 struct Person {
-  std::string id;                          ///< persistent
-  std::vector<BodyJoint> joints;           ///< complete fitted body
-  double stature{1.75};                    ///< [m]
+  std::string id;                 ///< persistent
+  std::vector<BodyJoint> joints;  ///< complete fitted body
+  double stature{1.75};           ///< [m]
   bool gaze_known{};
   Vector3 gaze_origin{Vector3::Zero()}, gaze_direction{Vector3::UnitX()};  ///< world, unit
-  double age{};                            ///< since last seen [s]
-  double inflation{};                      ///< all body volumes grow by this: v_h * age while lost [m]
+  double age{};                                                            ///< since last seen [s]
+  double inflation{};                                                      ///< all body volumes grow by this: v_h * age while lost [m]
 };
 
 /// Topic HumanState, profile state. Published at its rate even when nobody is there.
 struct HumanState {
   Stamp stamp{};
   std::vector<Person> people;
-  bool covered{};                          ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
+  bool covered{};  ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
 };
 
 enum class FactKind : std::uint8_t {
-  in_contact_zone, in_danger_zone, in_interaction_zone, in_social_zone,  ///< subject = person (zones of the robot)
-  approaching, attentive, reaching, hand_near_object,                     ///< subject = person; object where it applies
-  on_surface, held_by_robot, held_by_human, reachable_by_robot, reachable_by_human,  ///< subject = object; object = surface/person
+  in_contact_zone,
+  in_danger_zone,
+  in_interaction_zone,
+  in_social_zone,  ///< subject = person (zones of the robot)
+  approaching,
+  attentive,
+  reaching,
+  hand_near_object,  ///< subject = person; object where it applies
+  on_surface,
+  held_by_robot,
+  held_by_human,
+  reachable_by_robot,
+  reachable_by_human,  ///< subject = object; object = surface/person
 };
 
 struct Fact {
   FactKind kind{};
   std::string subject;
   std::string object;
-  double value{};    ///< kind-specific: distance [m], speed [m/s]; 1 for plain facts
-  double since{};    ///< how long it has held [s]
+  double value{};  ///< kind-specific: distance [m], speed [m/s]; 1 for plain facts
+  double since{};  ///< how long it has held [s]
 };
 
 /// Topic Facts, profile state, 10 Hz: the facts that hold now.
@@ -92,10 +102,10 @@ struct Costmap {
   Stamp stamp{};
   std::string person;
   std::uint64_t revision{};
-  Vector3 origin{Vector3::Zero()};          ///< world [m]
-  double resolution{};                      ///< [m]
+  Vector3 origin{Vector3::Zero()};  ///< world [m]
+  double resolution{};              ///< [m]
   std::uint32_t nx{}, ny{}, nz{};
-  std::vector<std::uint8_t> values;         ///< index (k*ny + j)*nx + i
+  std::vector<std::uint8_t> values;  ///< index (k*ny + j)*nx + i
 };
 
 }  // namespace handsel

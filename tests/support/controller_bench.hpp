@@ -104,7 +104,8 @@ class ControllerBench {
       worst_velocity = std::max(worst_velocity, std::abs(b.velocity[i]) / g.velocity[i]);
       worst_acceleration = std::max(worst_acceleration, std::abs(b.acceleration[i]) / g.acceleration[i]);
       worst_jerk = std::max(worst_jerk, std::abs(b.acceleration[i] - a.acceleration[i]) / dt / g.jerk[i]);
-      worst_jerk = std::max(worst_jerk, (std::abs(b.velocity[i] - a.velocity[i] - dt * a.acceleration[i]) - 1e-12) / (g.jerk[i] * dt * dt / 2.0));
+      worst_jerk =
+          std::max(worst_jerk, (std::abs(b.velocity[i] - a.velocity[i] - dt * a.acceleration[i]) - 1e-12) / (g.jerk[i] * dt * dt / 2.0));
       const double moved = b.position[i] - a.position[i] - dt * a.velocity[i] - 0.5 * dt * dt * a.acceleration[i];
       worst_jump = std::max(worst_jump, (std::abs(moved) - 1e-12) / (g.jerk[i] * dt * dt * dt / 6.0));
     }
