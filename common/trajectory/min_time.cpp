@@ -243,28 +243,23 @@ void MotionFamily::emit(double s, double cruise, AxisProfile& out, double share)
 
 namespace {
 
-/// Brings a state with v beyond +V (or heading beyond it) back to V as fast as possible; `side` -1 mirrors.
+/// Brings a state with v beyond +V (or heading beyond it) back to V as fast as possible without heading beyond -V then; `side` -1 mirrors.
 void brake_velocity(AxisState& s, const AxisLimits& l, double side, AxisProfile& out) noexcept {
-  const double V = l.velocity, J = l.jerk;
+  const double V = l.velocity, A = l.acceleration, J = l.jerk;
   const double v = side * s.velocity, a = side * s.acceleration;
-  const double floor = -std::min(l.acceleration, std::sqrt(4 * J * V));
-  const double a_end = -std::sqrt(std::max(0.0, a * a + 2 * J * (v - V)));
-  double t1, hold = 0;
-  if (a_end >= floor || a <= floor) {
-    t1 = std::max(0.0, (a - a_end) / J);
-    if (a <= floor) {
-      t1 = 0;
-      hold = std::max(0.0, (v - V) / -a);
-    }
-  } else {
-    t1 = (a - floor) / J;
-    const double v1 = v - (floor * floor - a * a) / (2 * J);
-    hold = std::max(0.0, (v1 - V) / -floor);
-  }
-  out.push(t1, -side * J);
-  s = advanced(s, t1, -side * J);
-  out.push(hold, 0);
-  s = advanced(s, hold, 0);
+  const auto go = [&](double t, double jerk) {
+    t = std::max(0.0, t);
+    out.push(t, side * jerk);
+    s = advanced(s, t, side * jerk);
+  };
+  const double at_V = std::sqrt(std::max(0.0, a * a + 2 * J * (v - V)));
+  const double turning = std::sqrt(std::max(0.0, J * (v + V) + a * a / 2));
+  const double deepest = std::min(turning, A);
+  if (at_V <= deepest) return go((a + at_V) / J, -J);
+  go((a + deepest) / J, -J);
+  const double v1 = side * s.velocity, last = std::sqrt(4 * J * V);
+  if (deepest == A) go(std::min(v1 - V, v1 + V - A * A / (2 * J)) / A, 0);
+  if (deepest > last) go((deepest - last) / J, J);
 }
 
 void bring_inside(AxisState& s, const AxisLimits& l, AxisProfile& out, double slack) noexcept {

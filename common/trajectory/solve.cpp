@@ -1,6 +1,7 @@
 #include "common/trajectory/solve.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "common/trajectory/min_time.hpp"
@@ -17,43 +18,150 @@ std::string size_mismatch(const MotionState3& s, const char* which, Eigen::Index
          std::to_string(n) + " of each";
 }
 
+AxisState state_of(const MotionState3& s, Eigen::Index i) { return {s.position[i], s.velocity[i], s.acceleration[i]}; }
+
 std::string axis_reason(Eigen::Index axis, const std::string& what) { return "axis " + std::to_string(axis) + ": " + what; }
+
+/// Imposed duration, or every axis as fast as it can; empty, or why not.
+std::string one_by_one(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits, std::optional<double> imposed,
+                       std::vector<AxisProfile>& profiles, Solution& out) {
+  const auto n = static_cast<Eigen::Index>(profiles.size());
+  std::vector<AxisProblem> problems(profiles.size());
+  double longest = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    AxisProblem& problem = problems[static_cast<std::size_t>(i)];
+    const AxisOutcome outcome = problem.init(state_of(from, i), state_of(to, i), limits_of(limits, i));
+    if (outcome != AxisOutcome::ok) return axis_reason(i, reason(outcome));
+    out.min_durations.push_back(problem.minimum());
+    longest = std::max(longest, problem.minimum());
+    if (imposed && *imposed < problem.minimum() * (1 - 1e-12)) {
+      return axis_reason(i, "needs " + std::to_string(problem.minimum()) + " s, imposed are " + std::to_string(*imposed) + " s");
+    }
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const AxisProblem& problem = problems[static_cast<std::size_t>(i)];
+    AxisProfile& profile = profiles[static_cast<std::size_t>(i)];
+    if (!imposed) {
+      problem.minimum_profile(profile);
+      if (problem.minimum() == longest) continue;
+      if (to.velocity[i] != 0 || to.acceleration[i] != 0) return axis_reason(i, "ends early and moving, so it cannot wait for the others");
+      profile.push(longest - problem.minimum(), 0);
+    } else if (problem.profile(*imposed, profile) != AxisOutcome::ok) {
+      const auto three = three_segment(state_of(from, i), state_of(to, i), *imposed);
+      out.excess = std::max(out.excess, excess(state_of(from, i), three.data(), 3, limits_of(limits, i)));
+      profile.clear();
+      for (const Segment& s : three) profile.push(s.duration, s.jerk);
+    }
+  }
+  return {};
+}
 
 }  // namespace
 
-bool SynchronisedAxes::read(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept {
-  for (std::size_t k = 0; k < problems_.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    const AxisState a{from.position[i], from.velocity[i], from.acceleration[i]}, b{to.position[i], to.velocity[i], to.acceleration[i]};
-    outcome_ = problems_[k].init(a, b, limits_of(limits, i));
-    axis_ = static_cast<int>(k);
-    if (outcome_ != AxisOutcome::ok) return false;
-  }
-  return true;
+SynchronisedBatch::SynchronisedBatch(int axes, int problems) : axes_(axes) {
+  const auto lanes = static_cast<std::size_t>(axes * problems);
+  const std::size_t blocks = (lanes + detail::kLanes - 1) / detail::kLanes;
+  problems_.resize(static_cast<std::size_t>(problems));
+  blocks_.resize(blocks);
+  odd_.resize(blocks);
+  slow_.resize(lanes);
+  minima_.resize(lanes);
+  durations_.resize(blocks * detail::kLanes);
+  profiles_.resize(lanes);
 }
 
-double SynchronisedAxes::least_common() const noexcept {
-  double common = 0;
-  for (const AxisProblem& p : problems_) common = std::max(common, p.minimum());
-  for (bool grown = true; grown;) {
-    grown = false;
-    for (const AxisProblem& p : problems_) {
-      const double next = p.earliest(common);
-      if (next > common) common = next, grown = true;
+void SynchronisedBatch::take_over(const detail::LaneInput& in, int lane) noexcept {
+  const auto i = static_cast<std::size_t>(lane);
+  odd_[i / detail::kLanes] |= 1U << lane % detail::kLanes;
+  const AxisOutcome outcome =
+      slow_[i].init({in.position[i], in.velocity[i], in.acceleration[i]}, {in.end_position[i], in.end_velocity[i], in.end_acceleration[i]},
+                    {in.max_velocity[i], in.max_acceleration[i], in.max_jerk[i]});
+  Problem& problem = problems_[i / static_cast<std::size_t>(axes_)];
+  problem.open = true;
+  minima_[i] = slow_[i].minimum();
+  if (outcome == AxisOutcome::ok || problem.outcome != AxisOutcome::ok) return;
+  problem.outcome = outcome;
+  problem.axis = lane % axes_;
+}
+
+void SynchronisedBatch::find_durations(int count) noexcept {
+  for (int p = 0; p < count; ++p) {
+    Problem& problem = problems_[static_cast<std::size_t>(p)];
+    if (!problem.open || problem.outcome != AxisOutcome::ok) continue;
+    const int first = p * axes_;
+    double T = 0;
+    for (int i = first; i < first + axes_; ++i) T = std::max(T, minima_[static_cast<std::size_t>(i)]);
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (int i = first; i < first + axes_; ++i) {
+        if (!(odd_[static_cast<std::size_t>(i / detail::kLanes)] >> i % detail::kLanes & 1)) continue;
+        const double next = slow_[static_cast<std::size_t>(i)].earliest(T);
+        if (next > T) T = next, grown = true;
+      }
+    }
+    problem.duration = T;
+    std::fill_n(durations_.begin() + first, axes_, T);
+  }
+}
+
+int SynchronisedBatch::solve(const detail::LaneInput& in, int count) noexcept {
+  using detail::kLanes;
+  const int lanes = count * axes_, blocks = (lanes + kLanes - 1) / kLanes;
+  const detail::LaneKernels& kernels = detail::lane_kernels();
+  for (int p = 0; p < count; ++p) problems_[static_cast<std::size_t>(p)] = {0, AxisOutcome::ok, 0, true};
+  for (int b = 0; b < blocks; ++b) {
+    const auto k = static_cast<std::size_t>(b);
+    const int first = b * kLanes, here = std::min(kLanes, lanes - first);
+    odd_[k] = 0;
+    const std::uint32_t odd = kernels.prepare(in, first, here, blocks_[k]);
+    std::copy_n(blocks_[k].minimum, here, minima_.begin() + first);
+    for (std::uint32_t left = odd; left != 0; left &= left - 1) take_over(in, first + std::countr_zero(left));
+  }
+  for (bool again = true; again;) {
+    again = false;
+    find_durations(count);
+    for (Problem& problem : problems_) problem.open = false;
+    for (int b = 0; b < blocks; ++b) {
+      const auto k = static_cast<std::size_t>(b);
+      std::uint32_t blocked = 0, failed = 0;
+      failed = kernels.finish(blocks_[k], durations_.data() + b * kLanes, odd_[k], &blocked);
+      for (std::uint32_t left = failed | blocked; left != 0; left &= left - 1) {
+        take_over(in, b * kLanes + std::countr_zero(left));
+        again = true;
+      }
     }
   }
-  return common;
+  write_profiles(lanes);
+  int solved = 0;
+  for (int p = 0; p < count; ++p) solved += problems_[static_cast<std::size_t>(p)].outcome == AxisOutcome::ok;
+  return solved;
+}
+
+void SynchronisedBatch::write_profiles(int lanes) noexcept {
+  for (int i = 0; i < lanes; ++i) {
+    AxisProfile& out = profiles_[static_cast<std::size_t>(i)];
+    const auto b = static_cast<std::size_t>(i / detail::kLanes), lane = static_cast<std::size_t>(i % detail::kLanes);
+    if (odd_[b] >> lane & 1) {
+      Problem& problem = problems_[static_cast<std::size_t>(i / axes_)];
+      if (problem.outcome != AxisOutcome::ok) continue;
+      problem.outcome = slow_[static_cast<std::size_t>(i)].profile(problem.duration, out);
+      problem.axis = i % axes_;
+      continue;
+    }
+    const detail::LaneBlock& block = blocks_[b];
+    int n = 0;
+    for (int k = 0; k < block.segments; ++k) {
+      out.segments[static_cast<std::size_t>(n)] = {block.duration[k][lane], block.jerk[k][lane]};
+      n += block.duration[k][lane] > 0;
+    }
+    out.count = n;
+  }
 }
 
 bool SynchronisedAxes::solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept {
-  if (!read(from, to, limits)) return false;
-  duration_ = least_common();
-  for (std::size_t k = 0; k < problems_.size(); ++k) {
-    axis_ = static_cast<int>(k);
-    outcome_ = problems_[k].profile(duration_, profiles_[k]);
-    if (outcome_ != AxisOutcome::ok) return false;
-  }
-  return true;
+  return batch_.solve({from.position.data(), from.velocity.data(), from.acceleration.data(), to.position.data(), to.velocity.data(),
+                       to.acceleration.data(), limits.velocity.data(), limits.acceleration.data(), limits.jerk.data()},
+                      1) == 1;
 }
 
 Solution solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits, Sync sync, std::optional<double> imposed) {
@@ -69,49 +177,25 @@ Solution solve(const MotionState3& from, const MotionState3& to, const Kinematic
     out.reason = "the imposed duration must be finite and not negative";
     return out;
   }
-  SynchronisedAxes axes(static_cast<int>(n));
-  if (!axes.read(from, to, limits)) {
-    out.reason = axis_reason(axes.axis(), reason(axes.outcome()));
-    return out;
-  }
-  double common = 0;
-  for (int i = 0; i < n; ++i) {
-    out.min_durations.push_back(axes.minimum(i));
-    common = std::max(common, axes.minimum(i));
-  }
-  if (imposed) {
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (*imposed < out.min_durations[i] * (1 - 1e-12)) {
-        out.reason = axis_reason(i, "needs " + std::to_string(out.min_durations[i]) + " s, imposed are " + std::to_string(*imposed) + " s");
-        return out;
-      }
+  std::vector<AxisProfile> profiles(static_cast<std::size_t>(n));
+  if (sync == Sync::time && !imposed) {
+    SynchronisedAxes axes(static_cast<int>(n));
+    if (!axes.solve(from, to, limits)) {
+      out.reason = axis_reason(axes.axis(), reason(axes.outcome()));
+      return out;
     }
-    common = *imposed;
-  } else if (sync == Sync::time) {
-    common = axes.least_common();
+    for (int i = 0; i < n; ++i) {
+      out.min_durations.push_back(axes.minimum(i));
+      profiles[static_cast<std::size_t>(i)] = axes.profile(i);
+    }
+  } else if (out.reason = one_by_one(from, to, limits, imposed, profiles, out); !out.ok()) {
+    return out;
   }
   out.trajectory.axes.resize(n);
   for (int i = 0; i < n; ++i) {
-    AxisProfile profile;
-    const AxisState start{from.position[i], from.velocity[i], from.acceleration[i]};
-    const bool own = sync == Sync::none && !imposed;
-    if (own) {
-      axes.problem(i).minimum_profile(profile);
-      if (axes.minimum(i) < common) {
-        if (to.velocity[i] != 0 || to.acceleration[i] != 0) {
-          out.reason = axis_reason(i, "ends early and moving, so it cannot wait for the others");
-          out.trajectory.axes.clear();
-          return out;
-        }
-        profile.push(common - axes.minimum(i), 0);
-      }
-    } else if (axes.problem(i).profile(common, profile) != AxisOutcome::ok) {
-      const auto three = three_segment(start, {to.position[i], to.velocity[i], to.acceleration[i]}, common);
-      out.excess = std::max(out.excess, excess(start, three.data(), 3, limits_of(limits, i)));
-      profile.clear();
-      for (const Segment& s : three) profile.push(s.duration, s.jerk);
-    }
-    out.trajectory.axes[i] = {start, {profile.segments.begin(), profile.segments.begin() + profile.count}};
+    const AxisProfile& p = profiles[static_cast<std::size_t>(i)];
+    out.trajectory.axes[static_cast<std::size_t>(i)] = {{from.position[i], from.velocity[i], from.acceleration[i]},
+                                                        {p.segments.begin(), p.segments.begin() + p.count}};
   }
   return out;
 }

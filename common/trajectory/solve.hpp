@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/trajectory/lanes.hpp"
 #include "common/trajectory/min_time.hpp"
 
 namespace handsel {
@@ -22,29 +23,55 @@ struct Solution {
   bool ok() const { return reason.empty(); }
 };
 
-/// The same for a cycle: allocates at construction only.
-class SynchronisedAxes {
+/// Several problems of equally many axes at once, each ending together, axes side by side in wide registers: for a planner that weighs
+/// candidates. Allocates at construction only.
+class SynchronisedBatch {
  public:
-  explicit SynchronisedAxes(int axes) : problems_(axes), profiles_(axes) {}
-  /// All of size axes. On false `outcome()` and `axis()` say what failed and where; the profiles are not to be used.
-  bool solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept;
-  double duration() const noexcept { return duration_; }
-  double minimum(int axis) const noexcept { return problems_[axis].minimum(); }
-  const AxisProfile& profile(int axis) const noexcept { return profiles_[axis]; }
-  const AxisProblem& problem(int axis) const noexcept { return problems_[axis]; }
-  AxisOutcome outcome() const noexcept { return outcome_; }
-  int axis() const noexcept { return axis_; }
+  SynchronisedBatch(int axes, int problems);
+  /// Problem p, axis i is entry p * axes + i of each array. Returns how many of the first `count` problems are solved.
+  int solve(const detail::LaneInput& in, int count) noexcept;
 
-  /// The steps of solve, for callers that want something between: read the problems, find the least common duration, make the profiles.
-  bool read(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept;
-  double least_common() const noexcept;
+  /// Of a problem that was not solved only outcome() and axis() are to be used: what failed and where.
+  AxisOutcome outcome(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].outcome; }
+  int axis(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].axis; }
+  double duration(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].duration; }
+  double minimum(int problem, int axis) const noexcept { return minima_[static_cast<std::size_t>(problem * axes_ + axis)]; }
+  const AxisProfile& profile(int problem, int axis) const noexcept { return profiles_[static_cast<std::size_t>(problem * axes_ + axis)]; }
 
  private:
-  std::vector<AxisProblem> problems_;
+  struct Problem {
+    double duration{};
+    AxisOutcome outcome{AxisOutcome::ok};
+    int axis{};
+    bool open{};
+  };
+  void take_over(const detail::LaneInput& in, int lane) noexcept;
+  void find_durations(int count) noexcept;
+  void write_profiles(int lanes) noexcept;
+
+  int axes_;
+  std::vector<Problem> problems_;
+  std::vector<detail::LaneBlock> blocks_;
+  std::vector<std::uint32_t> odd_;  // of each block, the lanes solved one by one
+  std::vector<AxisProblem> slow_;   // for those
+  std::vector<double> minima_, durations_;
   std::vector<AxisProfile> profiles_;
-  double duration_{};
-  AxisOutcome outcome_{AxisOutcome::ok};
-  int axis_{};
+};
+
+/// One problem, for a cycle: allocates at construction only.
+class SynchronisedAxes {
+ public:
+  explicit SynchronisedAxes(int axes) : batch_(axes, 1) {}
+  /// All of size axes. On false `outcome()` and `axis()` say what failed and where; the profiles are not to be used.
+  bool solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept;
+  double duration() const noexcept { return batch_.duration(0); }
+  double minimum(int axis) const noexcept { return batch_.minimum(0, axis); }
+  const AxisProfile& profile(int axis) const noexcept { return batch_.profile(0, axis); }
+  AxisOutcome outcome() const noexcept { return batch_.outcome(0); }
+  int axis() const noexcept { return batch_.axis(0); }
+
+ private:
+  SynchronisedBatch batch_;
 };
 
 /// `imposed`: duration wanted [s]. Below the minimum of an axis it is refused; where an axis cannot keep its limits for exactly that

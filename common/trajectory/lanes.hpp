@@ -1,0 +1,56 @@
+// Eight axes side by side in one register: minimum time, and motions of imposed duration, of the usual problems. What is not usual (starts
+// outside the limits, borders decided by rounding, isolated short durations, humps of the displacement, bad numbers) is marked odd and left
+// to min_time.hpp. Every motion is integrated and compared with the end wanted before it is handed out. The method is that of min_time.hpp,
+// where it is derived. Written once for any register width, chosen when the program runs; free of Eigen, whose alignment depends on the
+// width. Nothing here allocates, locks or throws.
+#pragma once
+
+#include <cstdint>
+
+namespace handsel::detail {
+
+constexpr int kLanes = 8;
+constexpr int kLaneSegments = 13;
+using LaneArray = double[kLanes];
+
+/// Lane i of a block is entry `first + i` of each array.
+struct LaneInput {
+  const double *position, *velocity, *acceleration;              ///< start
+  const double *end_position, *end_velocity, *end_acceleration;  ///< end
+  const double *max_velocity, *max_acceleration, *max_jerk;
+};
+
+/// What is known of eight axes between the steps, and the result: `segments` pieces a lane, some of no duration.
+struct alignas(64) LaneBlock {
+  struct Family {
+    LaneArray start_velocity, start_acceleration, end_velocity, end_acceleration, C, s_lo, s_hi, at_limit, reversed;
+  };
+  LaneArray distance, scale, velocity, acceleration, end_velocity, end_acceleration, max_velocity, max_acceleration, max_jerk;
+  Family up, down;
+  LaneArray s, cruise, side;  // of the fastest motion; side +1 up, -1 down
+  LaneArray minimum;          ///< least duration [s]
+  LaneArray duration[kLaneSegments], jerk[kLaneSegments];
+  LaneArray phase[4];  // rest to rest: jerk, acceleration, velocity phases [s], sign
+  std::uint32_t lanes;
+  std::int32_t segments;
+  bool rest;
+};
+
+struct LaneKernels {
+  const char* name;
+  /// Reads `lanes` axes; returns the bits of the odd ones, whose minimum is 0.
+  std::uint32_t (*prepare)(const LaneInput& in, int first, int lanes, LaneBlock& block) noexcept;
+  /// Motions of the durations wanted, one a lane. Returns the bits of the lanes that failed; `blocked`: bits of those for which the
+  /// duration is blocked. The bits in `leave` are neither computed nor returned.
+  std::uint32_t (*finish)(LaneBlock& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept;
+};
+
+extern const LaneKernels kLaneKernelsBase;
+#ifdef HANDSEL_WIDE_LANES
+extern const LaneKernels kLaneKernelsAvx2;
+extern const LaneKernels kLaneKernelsAvx512;
+#endif
+/// The widest this processor has.
+const LaneKernels& lane_kernels() noexcept;
+
+}  // namespace handsel::detail

@@ -1,0 +1,5 @@
+#include "common/trajectory/lanes_body.hpp"
+
+namespace handsel::detail {
+const LaneKernels kLaneKernelsAvx2{"avx2", prepare, finish};
+}  // namespace handsel::detail

@@ -1,0 +1,5 @@
+#include "common/trajectory/lanes_body.hpp"
+
+namespace handsel::detail {
+const LaneKernels kLaneKernelsAvx512{"avx512", prepare, finish};
+}  // namespace handsel::detail
