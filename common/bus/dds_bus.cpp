@@ -13,6 +13,8 @@
 #include <random>
 #include <vector>
 
+#include <dds/ddsi/ddsi_serdata.h>
+
 #include "common/base/errors.hpp"
 #include "common/bus/executor.hpp"
 #include "common/bus/intake.hpp"
@@ -187,6 +189,28 @@ class DdsPublisher final : public AnyPublisher {
   dds_entity_t writer_{0};
 };
 
+class DdsRawReader final : public RawReader {
+ public:
+  explicit DdsRawReader(dds_entity_t reader) : reader_(reader) {}
+  ~DdsRawReader() override { dds_delete(reader_); }
+
+  bool take(RawSample& out) override {
+    ddsi_serdata* data = nullptr;
+    dds_sample_info_t info{};
+    if (dds_takecdr(reader_, &data, 1, &info, DDS_ANY_STATE) <= 0) return false;
+    out.stamp = info.source_timestamp;
+    out.instance = info.instance_handle;
+    out.gone = !info.valid_data;
+    out.cdr.resize(info.valid_data ? ddsi_serdata_size(data) : 0);
+    if (info.valid_data) ddsi_serdata_to_ser(data, 0, out.cdr.size(), out.cdr.data());
+    ddsi_serdata_unref(data);
+    return true;
+  }
+
+ private:
+  dds_entity_t reader_;
+};
+
 }  // namespace
 
 void DdsBus::Impl::mark(Reader& reader) {
@@ -355,6 +379,14 @@ const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::fu
   impl_->mark(*reader);
   return reader->intake.status();
 }
+
+std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type) {
+  const Qos qos = observer_qos(type.row());
+  return std::make_unique<DdsRawReader>(
+      need(dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr), std::string("reader of ") + type.row().topic));
+}
+
+std::uint32_t DdsBus::domain() const { return impl_->settings.domain; }
 
 Duration DdsBus::lag_any(const MessageType& type) const {
   Duration least = Duration::max();

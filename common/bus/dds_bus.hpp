@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/raw.hpp"
 
 namespace handsel {
 
@@ -21,7 +22,7 @@ struct DdsBusSettings {
 /// Sets CYCLONEDDS_URI to dds/loopback.xml of the resource root when the environment has none.
 void use_default_dds_configuration();
 
-class DdsBus : public Bus {
+class DdsBus : public Bus, public RawBus {
  public:
   /// Throws MissingError when the domain cannot be entered.
   explicit DdsBus(const DdsBusSettings& settings);
@@ -49,6 +50,8 @@ class DdsBus : public Bus {
   const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
                                           const SubscribeOptions& options) override;
   Duration lag_any(const MessageType& type) const override;
+  std::unique_ptr<RawReader> read_raw(const MessageType& type) override;
+  std::uint32_t domain() const override;
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) override;
   void after(Duration delay, std::function<void(TimePoint)> on_time) override;
   CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) override;

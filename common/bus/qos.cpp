@@ -66,6 +66,16 @@ Qos reader_qos(const TopicRow& row) {
   return qos;
 }
 
+Qos observer_qos(const TopicRow& row) {
+  Qos qos = reader_qos(row);
+  dds_qset_deadline(qos.get(), DDS_INFINITY);
+  dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, DDS_INFINITY);
+  if (meaning(row.profile).depth > 0) return qos;
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kKeepAllBound);
+  return qos;
+}
+
 Qos writer_qos(const TopicRow& row, int strength) {
   const Meaning m = meaning(row.profile);
   Qos qos = common(row);

@@ -17,6 +17,8 @@ using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 inline constexpr dds_duration_t kHealthLease = DDS_MSECS(300);
 
 Qos reader_qos(const TopicRow& row);
+/// Of a reader that must not hold up a writer, however slow or stopped it is: nothing is kept for it beyond the last samples.
+Qos observer_qos(const TopicRow& row);
 /// `strength` is used on topics with exclusive ownership.
 Qos writer_qos(const TopicRow& row, int strength);
 Qos topic_qos(const TopicRow& row);

@@ -409,7 +409,15 @@ void WireIo::octets(const char* field, std::vector<std::uint8_t>& m, std::uint8_
     first_ = false;
     return;
   }
-  if (mode_ == Mode::leaves) return;
+  if (mode_ == Mode::leaves) {
+    stack_[depth_++] = {field, -1};
+    for (std::size_t i = 0; i < length; ++i) {
+      at(static_cast<int>(i));
+      leaf(nullptr, WireLeaf::Kind::integer, w + i, 1);
+    }
+    --depth_;
+    return;
+  }
   if (mode_ == Mode::fill) {
     std::memset(w, 1, length);
     return;

@@ -1,4 +1,9 @@
+#include <sys/resource.h>
+
 #include "common/bus/process.hpp"
 #include "components/bridge/node.hpp"
 
-int main(int argc, char** argv) { return handsel::run_process<handsel::bridge::Node>(argc, argv, "bridge"); }
+int main(int argc, char** argv) {
+  setpriority(PRIO_PROCESS, 0, 10);  // whoever moves the robot comes first; every thread started from here inherits it
+  return handsel::run_process<handsel::bridge::Node>(argc, argv, "bridge");
+}

@@ -3,15 +3,21 @@
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 #include "common/config/bridge.pb.h"
 #include "common/config/resources.hpp"
+#include "common/messages/system.hpp"
+#include "components/bridge/catalogue.hpp"
 
 namespace handsel::bridge {
 namespace {
 
 constexpr Duration kRetry = std::chrono::seconds(5);
+constexpr Duration kClock = std::chrono::milliseconds(100);
+constexpr Duration kGraphPeriod = std::chrono::seconds(1);
+constexpr Duration kSilent = std::chrono::seconds(3);  // then a component is no longer shown as alive
 
 std::uint16_t port_of(const config::BridgeSettings& settings) {
   if (const char* text = std::getenv("HANDSEL_WEB_PORT"); text && *text) {
@@ -26,53 +32,95 @@ std::uint16_t port_of(const config::BridgeSettings& settings) {
   return static_cast<std::uint16_t>(settings.port());
 }
 
-}  // namespace
-
-template <class M>
-void Node::show(double max_rate) {
-  const SubscribeOptions options{.period = max_rate > 0 ? from_seconds(1.0 / max_rate) : Duration{}};
-  bus_.subscribe<M>([this](const M& sample, const Receipt& receipt) { view_.take(sample, receipt.arrival); }, options);
+config::BridgeSettings read_settings(const std::filesystem::path& folder) {
+  config::BridgeSettings settings;
+  load_text_proto(folder / "bridge.txtpb", settings);
+  if (!(settings.rate() > 0.0 && settings.rate() <= 120.0))
+    throw ConfigError("bridge.txtpb: rate is " + std::to_string(settings.rate()) + "; it must be in (0, 120] Hz");
+  if (settings.max_clients() == 0 || settings.max_clients() > 64)
+    throw ConfigError("bridge.txtpb: max_clients is " + std::to_string(settings.max_clients()) + "; it must be 1..64");
+  return settings;
 }
 
-Node::Node(Bus& bus, const NodeContext& context) : bus_(bus), view_(context.robot) {
-  config::BridgeSettings settings;
-  load_text_proto(context.settings / "bridge.txtpb", settings);
-  if (!(settings.rate() > 0.0 && settings.rate() <= 10.0))
-    throw ConfigError("bridge.txtpb: rate is " + std::to_string(settings.rate()) + "; it must be in (0, 10] Hz");
-  if (settings.max_clients() == 0) throw ConfigError("bridge.txtpb: max_clients is 0; it must be at least 1");
+}  // namespace
+
+Node::Node(Bus& bus, const NodeContext& context)
+    : bus_(bus), raw_(dynamic_cast<RawBus*>(&bus)), site_(find_page(), resource_root()), readers_(topics().size()) {
+  const config::BridgeSettings settings = read_settings(context.settings);
   settings_.port = port_of(settings);
   settings_.max_clients = settings.max_clients();
+  settings_.allowed_origins.assign(settings.allowed_origins().begin(), settings.allowed_origins().end());
 
-  const double rate = settings.rate();
-  show<RobotState>(rate);
-  show<HumanState>(rate);
-  show<ActiveTrajectory>(rate);
-  show<TrajectoryForecast>(rate);
-  show<AttentionAdvice>(rate);
-  show<ExecutionStatus>(rate);
-  show<Scene>(0);
-  show<Facts>(0);
-  show<TaskStatus>(0);
-  show<ActionStatus>(0);
-  show<AttentionState>(0);
-  show<ComponentHealth>(0);
+  const SystemFacts facts{.scenario = context.scenario.stem(),
+                          .domain = raw_ ? raw_->domain() : 0,
+                          .version = HANDSEL_VERSION,
+                          .session = std::to_string(bus.stamp_now())};
+  catalogue_ = make_catalogue(*context.robot, resource_root(), facts);
+  config_ = config_json(*context.robot, resource_root(), facts);
 
+  bus_.subscribe<ComponentHealth>(
+      [this](const ComponentHealth& health, const Receipt& receipt) {
+        if (health.state != HealthState::stopping) heard_[health.component] = receipt.arrival;
+      },
+      {.period = kGraphPeriod});
   open_page();
   bus_.every(kRetry, [this](TimePoint) { open_page(); });
-  bus_.every(from_seconds(1.0 / rate), [this](TimePoint now) {
-    if (server_) server_->update(view_.json(now));
+  bus_.every(from_seconds(1.0 / settings.rate()), [this](TimePoint) { look(); });
+  bus_.every(kClock, [this](TimePoint) {
+    if (server_ && server_->any_client()) server_->set_time(bus_.stamp_now());
+  });
+  bus_.every(kGraphPeriod, [this](TimePoint now) {
+    if (server_) server_->set_graph(graph(now));
   });
 }
 
 void Node::open_page() {
   if (server_) return;
   try {
-    server_ = std::make_unique<HttpServer>(settings_, page_files());
-    bus_.set_degraded("");
+    server_ = std::make_unique<Server>(settings_, site_, catalogue_, config_);
+    bus_.set_degraded(raw_ ? "" : "this bus has no serialised samples; viewers see no topic");
     std::fprintf(stderr, "bridge: the page is at http://127.0.0.1:%u/\n", server_->port());
   } catch (const std::runtime_error& error) {
     bus_.set_degraded(error.what());
   }
+}
+
+void Node::look() {
+  if (!server_ || !raw_) return;
+  std::vector<Sample> samples;
+  for (std::size_t i = 0; i < readers_.size(); ++i) {
+    if (!server_->wanted(i)) {
+      readers_[i].reset();
+      continue;
+    }
+    if (!readers_[i]) readers_[i] = raw_->read_raw(message_type(i));
+    for (RawSample raw; readers_[i]->take(raw);) {
+      Sample sample{.channel = i, .instance = raw.instance, .gone = raw.gone, .stamp = raw.stamp, .bytes = {}};
+      if (!raw.gone) sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(raw.cdr));
+      samples.push_back(std::move(sample));
+    }
+  }
+  server_->publish(std::move(samples));
+}
+
+Graph Node::graph(TimePoint now) const {
+  std::set<std::string> alive;
+  for (const auto& [component, at] : heard_)
+    if (now - at < kSilent) alive.insert(component);
+  const auto living = [&](const char* list) {
+    std::set<std::string> out;
+    std::istringstream words(list);
+    for (std::string word; words >> word;)
+      if (alive.contains(word)) out.insert(word);
+    return out;
+  };
+  Graph out;
+  for (const TopicRow& row : topics()) {
+    out.writers[row.topic] = living(row.writers);
+    out.readers[row.topic] = living(row.readers);
+    if (const auto i = static_cast<std::size_t>(&row - topics().data()); readers_[i]) out.readers[row.topic].insert("bridge");
+  }
+  return out;
 }
 
 }  // namespace handsel::bridge

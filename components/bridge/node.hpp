@@ -1,12 +1,15 @@
-// The wall screen: listens to everything, serves a page on 127.0.0.1. Nothing depends on it.
+// The wall screen: passes every topic on as it is to whoever watches, serves the page on 127.0.0.1. Nothing depends on it.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
-#include "components/bridge/http_server.hpp"
-#include "components/bridge/view.hpp"
+#include "common/bus/raw.hpp"
+#include "components/bridge/server.hpp"
 
 namespace handsel::bridge {
 
@@ -16,14 +19,19 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
-  template <class M>
-  void show(double max_rate);
   void open_page();
+  void look();
+  Graph graph(TimePoint now) const;
 
   Bus& bus_;
-  View view_;
-  HttpSettings settings_;
-  std::unique_ptr<HttpServer> server_;
+  RawBus* raw_;  ///< null: a bus without serialised samples
+  ServerSettings settings_;
+  Site site_;
+  Catalogue catalogue_;
+  std::string config_;
+  std::vector<std::unique_ptr<RawReader>> readers_;  ///< by place in the table of topics; null: nobody watches
+  std::map<std::string, TimePoint> heard_;           ///< components, by their health
+  std::unique_ptr<Server> server_;
 };
 
 }  // namespace handsel::bridge

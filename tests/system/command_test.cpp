@@ -7,8 +7,8 @@
 
 #include "deploy/handsel/processes.hpp"
 #include "tests/support/background.hpp"
-#include "tests/support/http_client.hpp"
 #include "tests/support/shell.hpp"
+#include "tests/support/websocket_client.hpp"
 
 namespace handsel::test {
 namespace {
@@ -111,11 +111,18 @@ TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {
 
   const std::string said = up.said();
   const auto port = static_cast<std::uint16_t>(std::atoi(said.substr(said.find("127.0.0.1:") + 10).c_str()));
-  HttpClient client(port);
-  client.request("GET", "/events");
-  const std::string page = client.read("\"shapes\"");
-  for (const char* box : kProcesses) EXPECT_THAT(page, HasSubstr(std::string("\"component\":\"") + box + "\"")) << box;
-  for (const char* shown : {"\"mug\"", "\"anna\"", "\"table\"", "\"mode\""}) EXPECT_THAT(page, HasSubstr(shown)) << shown;
+  HttpClient settings(port);
+  settings.request("GET", "/config.json");
+  const std::string told = settings.read();
+  for (const char* named : {"\"robot\":\"jido\"", "\"domain\":39", "\"mug\"", "handsel/scene"})
+    EXPECT_THAT(told, HasSubstr(named)) << named;
+  WebSocketClient viewer(port);
+  viewer.read("\"advertise\"");
+  viewer.frame(WebSocketClient::kText, R"({"op":"subscribeConnectionGraph"})");
+  for (const char* box : kProcesses) {
+    const std::string named = std::string("\"") + box + "\"";
+    EXPECT_THAT(viewer.read(named), HasSubstr(named));
+  }
   EXPECT_EQ(up.interrupt(), 0);
 }
 

@@ -1,0 +1,38 @@
+// Samples as they are on the wire, not decoded: for the bridge and for recordings, which pass on what was sent.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/wire/message_type.hpp"
+
+namespace handsel {
+
+struct RawSample {
+  Stamp stamp{};                  ///< when it was written [ns, system clock of the writer]
+  std::uint64_t instance{};       ///< which value of the key, stable while the reader lives
+  bool gone{};                    ///< the instance has no writer any more; `cdr` is empty
+  std::vector<std::uint8_t> cdr;  ///< the serialised sample with its encapsulation header; well-formed, its values not judged
+};
+
+/// Reads one topic until it is destroyed. It never holds up a writer: requests and replies are read best-effort, and what is not
+/// taken in time gives way to what is newer (the last 64 of a queue, the last 1 or 8 of each instance elsewhere).
+class RawReader {
+ public:
+  virtual ~RawReader() = default;
+  /// The oldest sample that waits; false when there is none.
+  virtual bool take(RawSample& out) = 0;
+};
+
+/// The side of a bus that has serialised samples; LocalBus has none.
+class RawBus {
+ public:
+  virtual ~RawBus() = default;
+  /// On the bus's own thread; the bus must outlive the reader. Throws MissingError when the transport refuses.
+  virtual std::unique_ptr<RawReader> read_raw(const MessageType& type) = 0;
+  virtual std::uint32_t domain() const = 0;
+};
+
+}  // namespace handsel

@@ -1,0 +1,107 @@
+#include "components/bridge/catalogue.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "common/bus/topics.hpp"
+#include "common/config/resources.hpp"
+#include "common/config/robot.pb.h"
+#include "common/wire/schema.hpp"
+
+namespace handsel::bridge {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::json;
+
+bool queued(Profile profile) {
+  return profile == Profile::command || profile == Profile::goal || profile == Profile::request || profile == Profile::reply;
+}
+bool kept(Profile profile) { return profile == Profile::state || profile == Profile::latch; }
+
+struct Description {
+  std::string folder;  ///< "robots/jido", empty when the robot's description is not among the resources
+  config::RobotDescription robot;
+};
+
+Description describe(const RobotModel& robot, const fs::path& resources) {
+  Description out;
+  const std::string folder = "robots/" + robot.name();
+  const fs::path file = resources / folder / (robot.name() + ".txtpb");
+  if (!fs::exists(file)) return out;
+  out.folder = folder;
+  load_text_proto(file, out.robot);
+  return out;
+}
+
+/// The URDF as a viewer can use it: meshes by their address here.
+std::string robot_description(const Description& description, const fs::path& resources) {
+  if (description.folder.empty()) return {};
+  std::ostringstream text;
+  text << std::ifstream(resources / description.folder / description.robot.urdf()).rdbuf();
+  static const std::regex relative(R"re(filename="([^":]+)")re");
+  return std::regex_replace(text.str(), relative, "filename=\"package://handsel/" + description.folder + "/$1\"");
+}
+
+Json objects(const fs::path& resources) {
+  Json out = Json::object();
+  for (const auto& entry : fs::directory_iterator(resources / "objects")) {
+    const std::string folder = entry.path().filename();
+    const fs::path file = entry.path() / (folder + ".txtpb");
+    if (!fs::exists(file)) continue;
+    config::ObjectDescription object;
+    load_text_proto(file, object);
+    Json& one = out[object.name()];
+    if (!object.mesh().empty()) one["mesh"] = "/assets/objects/" + folder + "/" + object.mesh();
+    one["scale"] = {1.0, 1.0, 1.0};
+    if (object.has_scale()) one["scale"] = {object.scale().x(), object.scale().y(), object.scale().z()};
+  }
+  return out;
+}
+
+}  // namespace
+
+Catalogue make_catalogue(const RobotModel& robot, const fs::path& resources, const SystemFacts& facts) {
+  Catalogue catalogue;
+  catalogue.name = "handsel " + robot.name();
+  catalogue.session = facts.session;
+  catalogue.metadata = {
+      {"robot", robot.name()}, {"scenario", facts.scenario}, {"domain", std::to_string(facts.domain)}, {"version", facts.version}};
+  catalogue.parameters = catalogue.metadata;
+  catalogue.parameters["/robot_description"] = robot_description(describe(robot, resources), resources);
+  for (const TopicRow& row : topics()) {
+    Channel channel;
+    channel.topic = row.topic;
+    channel.encoding = "cdr";
+    channel.schema_name = idl_name(row);
+    channel.schema = idl_schema(row);
+    channel.schema_encoding = "omgidl";
+    channel.queued = queued(row.profile);
+    channel.kept = kept(row.profile);
+    catalogue.channels.push_back(std::move(channel));
+  }
+  return catalogue;
+}
+
+std::string config_json(const RobotModel& robot, const fs::path& resources, const SystemFacts& facts) {
+  Json json{{"robot", robot.name()}, {"scenario", facts.scenario}, {"domain", facts.domain}, {"version", facts.version}};
+  const Description description = describe(robot, resources);
+  if (!description.folder.empty()) {
+    json["urdf"] = "/assets/" + description.folder + "/" + description.robot.urdf();
+    json["srdf"] = "/assets/" + description.folder + "/" + description.robot.srdf();
+    json["tool_link"] = description.robot.tool_link();
+    json["gaze_link"] = description.robot.gaze_link();
+    for (const auto& group : description.robot.groups()) json["groups"][group.name()] = group.joints();
+  }
+  json["axes"] = Json::array();
+  for (const Axis& axis : robot.axes()) json["axes"].push_back(axis.name);
+  json["objects"] = objects(resources);
+  json["topics"] = Json::array();
+  for (const TopicRow& row : topics())
+    json["topics"].push_back({{"topic", row.topic}, {"type", idl_name(row)}, {"profile", name(row.profile)}, {"rate", row.rate}});
+  return json.dump();
+}
+
+}  // namespace handsel::bridge

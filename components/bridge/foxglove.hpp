@@ -1,0 +1,133 @@
+// The Foxglove WebSocket protocol, server side, without a socket: what is announced, what a viewer asks, what it is sent. Pure.
+// Source: the public description of the protocol (subprotocols foxglove.websocket.v1 and foxglove.sdk.v1).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "components/bridge/outbox.hpp"
+
+namespace handsel::bridge {
+
+inline constexpr std::array<const char*, 2> kSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1"};
+/// The first of ours in a Sec-WebSocket-Protocol header; empty when there is none.
+std::string choose_subprotocol(std::string_view header);
+
+struct Channel {
+  std::string topic;
+  std::string encoding;         ///< "cdr", "protobuf"
+  std::string schema_name;      ///< "handsel::RobotState"
+  std::string schema;           ///< omgidl: the text; protobuf: the FileDescriptorSet in base64
+  std::string schema_encoding;  ///< "omgidl", "protobuf"
+  bool queued{};                ///< every sample is wanted; else the newest of each instance
+  bool kept{};                  ///< the last sample of each instance is given to who comes late
+};
+
+/// What every viewer is told; the same for all. A channel's id is its place in `channels` + 1.
+struct Catalogue {
+  std::string name;
+  std::string session;  ///< changes with every start
+  std::map<std::string, std::string> metadata;
+  std::vector<Channel> channels;
+  std::map<std::string, std::string> parameters;  ///< read-only
+};
+
+struct Sample {
+  std::size_t channel{};  ///< place in the catalogue
+  std::uint64_t instance{};
+  bool gone{};  ///< the instance is no more; no bytes
+  Stamp stamp{};
+  Bytes bytes;
+};
+
+/// Topic -> components, alive, that write and read it.
+struct Graph {
+  std::map<std::string, std::set<std::string>> writers, readers;
+  bool operator==(const Graph&) const = default;
+};
+
+struct Asset {
+  Bytes bytes;         ///< null: refused
+  std::string reason;  ///< of the refusal
+};
+
+/// What all viewers share: the announcements, made once, and the samples kept for who comes late.
+class Hub {
+ public:
+  explicit Hub(Catalogue catalogue, std::function<Asset(const std::string& uri)> fetch);
+
+  const Catalogue& catalogue() const { return catalogue_; }
+  const SharedText& greeting() const { return greeting_; }  ///< serverInfo
+  const SharedText& channels() const { return channels_; }  ///< advertise
+  Asset fetch(const std::string& uri) const { return fetch_(uri); }
+  void keep(const Sample& sample);
+  /// Nobody reads the channel any more: what is kept would grow old.
+  void forget(std::size_t channel) { kept_[channel].clear(); }
+  const std::map<std::uint64_t, Sample>& kept(std::size_t channel) const { return kept_[channel]; }
+  void set_graph(Graph graph) { graph_ = std::move(graph); }
+  const Graph& graph() const { return graph_; }
+
+ private:
+  Catalogue catalogue_;
+  std::function<Asset(const std::string&)> fetch_;
+  SharedText greeting_, channels_;
+  std::vector<std::map<std::uint64_t, Sample>> kept_;
+  Graph graph_;
+};
+
+/// One client: what it subscribed to and what waits for it.
+class Viewer {
+ public:
+  static constexpr std::size_t kMostSubscriptions = 256;
+  static constexpr unsigned kMostErrors = 100;               ///< then it is cut
+  static constexpr std::size_t kMostAssetBytes = 64u << 20;  ///< that may wait to be sent
+  static constexpr unsigned kMostMessages = 2000;            ///< a second
+
+  /// The hub must outlive it. Announces server and channels.
+  explicit Viewer(Hub& hub, const OutboxSettings& settings = {});
+
+  /// What the client sent. Broken or refused messages are answered with a status and counted.
+  void text(std::string_view message, TimePoint now);
+  void binary(TimePoint now);
+
+  void sample(const Sample& sample);
+  void time(Stamp now);
+  /// The graph of the hub has changed.
+  void graph_changed();
+
+  Outbox& outbox() { return outbox_; }
+  bool wants(std::size_t channel) const { return by_channel_.contains(channel); }
+  std::uint64_t refused() const { return refused_; }
+  /// Not empty: the client is to be cut, and why.
+  const std::string& cut() const { return cut_; }
+
+ private:
+  void status(int level, const std::string& message);
+  void refuse(const std::string& why);
+  void put(std::string text);
+  bool flooding(TimePoint now);
+  void send(std::uint32_t subscription, const Sample& sample);
+  void send_graph(const Graph& before, const Graph& now);
+  void fetch(const std::string& uri, std::uint32_t request);
+
+  Hub& hub_;
+  Outbox outbox_;
+  std::map<std::uint32_t, std::size_t> subscriptions_;  // id of the client -> channel
+  std::multimap<std::size_t, std::uint32_t> by_channel_;
+  std::optional<Graph> told_;  // set while it wants the graph
+  std::uint64_t refused_{0};
+  unsigned errors_{0};
+  TimePoint window_{};
+  unsigned in_window_{0};
+  std::string cut_;
+};
+
+}  // namespace handsel::bridge

@@ -1,0 +1,60 @@
+// One port on 127.0.0.1: HTTP for the page, and a Foxglove WebSocket on "/". Runs on a thread of its own; what it is given may come
+// from any one other thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "components/bridge/foxglove.hpp"
+#include "components/bridge/site.hpp"
+
+namespace handsel::bridge {
+
+struct ServerSettings {
+  std::uint16_t port{8765};     ///< 0: any free one
+  unsigned max_clients{16};     ///< WebSocket clients at once; four times as many connections altogether; more are refused with 503
+  double request_timeout{5.0};  ///< [s] to send a request, and to take the answer
+  double stall_timeout{5.0};    ///< [s] a WebSocket client may take for one message before it is cut
+  std::vector<std::string> allowed_origins;  ///< pages of other hosts that may connect, as in their Origin header
+};
+
+struct Counters {
+  std::uint64_t connections{};          ///< accepted so far
+  std::uint64_t requests{};             ///< answered over HTTP
+  std::uint64_t refused_connections{};  ///< too many at once
+  std::uint64_t refused_requests{};     ///< HTTP and upgrades
+  std::uint64_t refused_messages{};     ///< of WebSocket clients
+  std::uint64_t cut_clients{};          ///< stalled, flooding, sent too much
+  std::uint64_t sent_messages{}, sent_bytes{};
+  std::uint64_t dropped_samples{};  ///< given up because a client was slow
+  std::uint64_t clients{};          ///< WebSocket clients now
+  std::uint64_t open{};             ///< connections now
+};
+
+class Server {
+ public:
+  /// `config`: the JSON of /config.json. Throws std::runtime_error with one sentence when the port cannot be used.
+  Server(const ServerSettings& settings, Site site, Catalogue catalogue, std::string config);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  std::uint16_t port() const;
+  /// Is anybody subscribed to the channel (place in the catalogue)?
+  bool wanted(std::size_t channel) const;
+  bool any_client() const;
+  /// Samples of one look at DDS. Given up, and counted, when the server is far behind.
+  void publish(std::vector<Sample> samples);
+  void set_time(Stamp now);
+  void set_graph(Graph graph);
+  Counters counters() const;
+
+  struct Impl;
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace handsel::bridge
