@@ -1,8 +1,11 @@
 #!/bin/sh
-# build.sh [target...]: sets up, configures build/release when needed and builds the targets ("all" when none is named).
+# build.sh [target...]: sets up, configures build/release when needed, builds the targets ("all" when none is named) and the page.
+# "all" also sets up what the tests need.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
-"$root/deploy/setup.sh"
+for_tests=""
+[ "${1:-all}" != all ] || for_tests=--test
+"$root/deploy/setup.sh" $for_tests
 cd "$root"
 if [ ! -f build/release/build.ninja ]; then
   launcher=""
@@ -13,3 +16,8 @@ if [ ! -f build/release/build.ninja ]; then
   cmake --preset release $launcher >&2
 fi
 cmake --build build/release --target "${@:-all}" >&2
+# The system runs without its page; a test of the page does not pass without it.
+"$root/components/bridge/web/build.sh" "$root/build/release/web" $for_tests || {
+  echo "build: the page could not be built (are the npm packages within reach?); the system runs without it" >&2
+  [ -z "$for_tests" ]
+}

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Installs the Debian 12 packages Handsel is built from and runs on. Does nothing when they are all there.
+# setup.sh [--test]: installs the Debian 12 packages Handsel is built from and runs on, with --test also what only its tests need.
+# Does nothing when they are all there.
 set -eu
 
 packages="
@@ -10,6 +11,12 @@ libtinyxml2-dev libqhull-dev libboost-dev libboost-filesystem-dev libboost-seria
 nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
 libgtest-dev libgmock-dev libbenchmark-dev mold
 "
+test_packages="chromium"
+page_packages="nodejs npm"  # unless there is a Node.js of at least version 18 with npm already
+
+[ "${1:-}" != --test ] || packages="$packages $test_packages"
+node_version=$(node --version 2>/dev/null | sed 's/^v\([0-9]*\).*/\1/')
+if ! command -v npm >/dev/null 2>&1 || [ "${node_version:-0}" -lt 18 ]; then packages="$packages $page_packages"; fi
 
 missing=""
 for package in $packages; do

@@ -41,11 +41,14 @@ TEST(Docs, every_library_the_build_asks_for_has_its_reason) {
 
 TEST(Docs, every_package_of_the_set_up_has_its_reason) {
   const std::string setup = text_of(kRoot / "deploy/setup.sh");
-  const std::size_t begin = setup.find("packages=\"") + 10;
-  std::istringstream packages(setup.substr(begin, setup.find('"', begin) - begin));
   const std::string reasons = text_of(kRoot / "docs/dependencies.md");
   int count = 0;
-  for (std::string package; packages >> package; ++count) EXPECT_NE(reasons.find(package), std::string::npos) << package;
+  for (const char* list : {"\npackages=\"", "\ntest_packages=\"", "\npage_packages=\""}) {
+    const std::size_t begin = setup.find(list) + std::string(list).size();
+    ASSERT_LT(begin, setup.size()) << list;
+    std::istringstream packages(setup.substr(begin, setup.find('"', begin) - begin));
+    for (std::string package; packages >> package; ++count) EXPECT_NE(reasons.find(package), std::string::npos) << package;
+  }
   EXPECT_GT(count, 10);
 }
 

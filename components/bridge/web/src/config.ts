@@ -1,0 +1,16 @@
+// What the page cannot read from DDS: /config.json of the bridge.
+export interface Config {
+  robot: string;
+  scenario: string;
+  urdf: string;
+  axes: string[];
+  tool_link: string;
+  groups: Record<string, string[]>;
+  objects: Record<string, { mesh: string }>;
+}
+
+export async function loadConfig(): Promise<Config> {
+  const answer = await fetch("config.json", { cache: "no-store" });
+  if (!answer.ok) throw new Error(`config.json: HTTP ${answer.status}`);
+  return (await answer.json()) as Config;
+}

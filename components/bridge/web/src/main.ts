@@ -1,0 +1,101 @@
+// The page: newest samples in, tables and a 3-D view out. Draws on change, at most 30 times a second.
+import { Config, loadConfig } from "./config";
+import { Link } from "./link";
+import { Panels } from "./panels";
+import { Part, Region, World } from "./world";
+
+const kFrame = 33, kTables = 200;  // [ms] least time between pictures, between updates of the tables
+const kRest = 2;                   // pictures take at most a share of 1 / (1 + kRest) of the time
+const kNoWebGl = "This browser cannot draw the 3-D view (WebGL is missing or switched off); everything else on this page works.";
+
+// For whoever looks from outside.
+export interface PageState {
+  connected: boolean;
+  webgl: boolean;
+  samples: number;  // received
+  frames: number;   // drawn
+  stamp: string;    // [ns] of the RobotState drawn
+  angles: Record<string, number>;  // [rad] of the drawn model, by axis
+  region(part: Part): Region | undefined;
+  hide(parts: Part[]): void;
+}
+
+declare global {
+  interface Window { handsel: PageState }
+}
+
+async function configured(): Promise<[Config, string]> {
+  for (;;) {
+    try {
+      const config = await loadConfig(), urdf = await fetch(config.urdf);
+      if (!urdf.ok) throw new Error(`${config.urdf}: HTTP ${urdf.status}`);
+      return [config, await urdf.text()];
+    } catch (error) {
+      notice(`The bridge does not answer (${(error as Error).message}); trying again.`);
+      await new Promise((resolve) => setTimeout(resolve, 1000));
+    }
+  }
+}
+
+function notice(sentence: string): void {
+  const element = document.getElementById("stage-note");
+  if (!element) return;
+  element.textContent = sentence;
+  element.hidden = sentence === "";
+}
+
+async function start(): Promise<void> {
+  const [config, urdf] = await configured();
+  notice("");
+  const name = document.getElementById("scene-name");
+  if (name) name.textContent = [config.robot, config.scenario.replaceAll("_", " ")].filter(Boolean).join(" · ");
+
+  let world: World | undefined, pending = false, drawnAt = 0, cost = 0, tablesAt = 0;
+  const wake = (): void => {
+    if (pending) return;
+    pending = true;
+    const due = drawnAt + Math.max(kFrame, kRest * cost) - performance.now();
+    if (due > 4) setTimeout(() => requestAnimationFrame(frame), due - 4);
+    else requestAnimationFrame(frame);
+  };
+  const link = new Link(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/`, wake);
+  const panels = new Panels(link, config.groups.arm ?? config.axes);
+  const angleOf = (axis: string): number =>
+    world ? (world.robot.angles()[axis] ?? NaN) : (link.newest("handsel/robot_state")?.position[config.axes.indexOf(axis)] ?? NaN);
+
+  const frame = (): void => {
+    pending = false;
+    const begin = performance.now();
+    if (world?.update(link)) world.render();
+    cost += 0.2 * (performance.now() - begin - cost);
+    drawnAt = begin;
+    if (begin - tablesAt >= kTables) {
+      tablesAt = begin;
+      panels.show(angleOf);
+    }
+  };
+  try {
+    const stage = document.getElementById("stage");
+    if (stage) world = new World(stage, urdf, config, wake, notice);
+  } catch (error) {
+    notice((error as Error).message === "no WebGL" ? kNoWebGl : `The robot cannot be drawn: ${(error as Error).message}.`);
+  }
+  document.getElementById("frame")?.addEventListener("click", () => world?.frame());
+  setInterval(() => {
+    tablesAt = 0;  // ages grow although nothing comes
+    wake();
+  }, 500);
+
+  window.handsel = {
+    get connected() { return link.connected; },
+    get webgl() { return world !== undefined; },
+    get samples() { return link.samples; },
+    get frames() { return world?.frames ?? 0; },
+    get stamp() { return String(world ? world.robot.stamp : (link.newest("handsel/robot_state")?.stamp ?? 0n)); },
+    get angles() { return Object.fromEntries(config.axes.map((axis) => [axis, angleOf(axis)])); },
+    region: (part) => world?.region(part),
+    hide: (parts) => world?.hide(parts),
+  };
+}
+
+void start();

@@ -1,0 +1,106 @@
+// What the page reads of each message. The wire's schema decides what is in a sample; these are the fields used here (units: idl/).
+export interface Vector3 { x: number; y: number; z: number }
+export interface Quaternion extends Vector3 { w: number }
+export interface Pose { position: Vector3; orientation: Quaternion }
+
+export interface RobotState { robot: string; stamp: bigint; T_world_base: Pose; position: ArrayLike<number>; mode: number }
+
+export interface SceneObject { id: string; model: string; T_world_object: Pose; holder: number; age: number }
+export interface SceneBox { id: string; T_world_box: Pose; size: Vector3 }
+export interface Scene { objects: SceneObject[]; boxes: SceneBox[] }
+
+export interface Person {
+  id: string;
+  joints: { name: string; position: Vector3 }[];
+  stature: number;
+  gaze_known: boolean;
+  gaze_origin: Vector3;
+  gaze_direction: Vector3;
+  age: number;
+  inflation: number;
+}
+export interface HumanState { people: Person[]; covered: boolean }
+
+export interface AxisTrajectory {
+  start_position: number;
+  start_velocity: number;
+  start_acceleration: number;
+  segments: { duration: number; jerk: number }[];
+}
+export interface ActiveTrajectory {
+  trajectory: bigint;
+  time: number;
+  speed_factor: number;
+  position: ArrayLike<number>;
+  axes: ArrayLike<number>;
+  rest: { axes: AxisTrajectory[] };
+}
+export interface TrajectoryForecast { collides: boolean; time_to_collision: number; reason: string }
+
+export interface ExecutionStatus {
+  mode: number;
+  causes: number;
+  progress: number;
+  pull: number;
+  reason: string;
+  cycles: bigint;
+  late_cycles: bigint;
+  limit_share_velocity: number;
+  limit_share_acceleration: number;
+  limit_share_jerk: number;
+  separation: number;
+  separation_limit: number;
+  nearest_on_robot: Vector3;
+  nearest_on_person: Vector3;
+}
+
+export interface AttentionState {
+  behaviours: { behaviour: number; period: number; activations: bigint; activations_at_fastest: bigint; released: boolean; speed_factor: number }[];
+}
+export interface AttentionAdvice { speed_factor: number; limiting: number; reason: string }
+
+export interface TaskStatus { id: bigint; kind: number; state: number; plan: string[]; step: number; reason: string }
+export interface ActionStatus {
+  kind: number;
+  state: number;
+  phase: string;
+  object: string;
+  human: string;
+  holding: boolean;
+  exchange_engaged: boolean;
+  exchange_point: Vector3;
+  reason: string;
+}
+
+export interface ComponentHealth {
+  component: string;
+  state: number;
+  reason: string;
+  cpu: number;
+  memory_mb: number;
+  uptime: number;
+  topics: { rate: number; deadline_misses: bigint; rejected: bigint }[];
+}
+
+export interface Facts { holding: { kind: number; subject: string; object: string; since: number }[] }
+
+export interface Topics {
+  "handsel/robot_state": RobotState;
+  "handsel/scene": Scene;
+  "handsel/human_state": HumanState;
+  "handsel/active_trajectory": ActiveTrajectory;
+  "handsel/trajectory_forecast": TrajectoryForecast;
+  "handsel/execution_status": ExecutionStatus;
+  "handsel/attention_state": AttentionState;
+  "handsel/attention_advice": AttentionAdvice;
+  "handsel/task_status": TaskStatus;
+  "handsel/action_status": ActionStatus;
+  "handsel/component_health": ComponentHealth;
+  "handsel/facts": Facts;
+}
+export type TopicName = keyof Topics;
+export const kTopics: TopicName[] = [
+  "handsel/robot_state", "handsel/scene", "handsel/human_state", "handsel/active_trajectory", "handsel/trajectory_forecast",
+  "handsel/execution_status", "handsel/attention_state", "handsel/attention_advice", "handsel/task_status", "handsel/action_status",
+  "handsel/component_health", "handsel/facts",
+];

@@ -1,0 +1,174 @@
+// The tables beside the 3-D view.
+import { Link } from "./link";
+import { nearness } from "./nearness";
+
+const kSilent = 0.6;    // [s] without a sign of life
+const kNobody = 1e8;    // [m] distances beyond mean that nobody is there
+const kDrives: Record<string, string> = { enabled: "drives on", braked: "brakes closed", off: "drives off" };
+
+type Cell = string | { text: string; kind?: string; share?: number };
+
+const byId = (id: string): HTMLElement => {
+  const element = document.getElementById(id);
+  if (!element) throw new Error(`the page has no #${id}`);
+  return element;
+};
+
+function put(id: string, text: string): void {
+  const element = byId(id);
+  if (element.textContent !== text) element.textContent = text;
+}
+
+// A bar from 0 to 1.
+function bar(element: HTMLElement, share: number, kind = ""): void {
+  const fill = (element.firstElementChild as HTMLElement | null) ?? element.appendChild(document.createElement("i"));
+  element.className = `bar ${kind}`;
+  const text = `scaleX(${Math.min(1, Math.max(0, share)).toFixed(3)})`;
+  if (fill.style.transform !== text) fill.style.transform = text;
+}
+
+function rows(id: string, cells: Cell[][]): void {
+  const body = byId(id);
+  while (body.children.length > cells.length) body.lastElementChild?.remove();
+  cells.forEach((row, i) => {
+    const line = body.children[i] ?? body.appendChild(document.createElement("tr"));
+    row.forEach((cell, k) => {
+      const element = (line.children[k] ?? line.appendChild(document.createElement("td"))) as HTMLElement;
+      const { text, kind = "", share } = typeof cell === "string" ? { text: cell } : cell;
+      if (element.className !== kind) element.className = kind;
+      if (share !== undefined) {
+        const track = (element.firstElementChild as HTMLElement | null) ?? element.appendChild(document.createElement("div"));
+        track.title = text;
+        bar(track, share);
+      } else if (element.textContent !== text) {
+        element.textContent = text;
+      }
+    });
+  });
+}
+
+export class Panels {
+  constructor(private readonly link: Link, private readonly axes: string[]) {}
+
+  show(angles: (axis: string) => number): void {
+    this.connection();
+    this.mode();
+    this.task();
+    this.motion();
+    this.attention();
+    this.health();
+    rows("joints", this.axes.map((axis) => [axis, { text: angles(axis).toFixed(4), kind: "number" }]));
+  }
+
+  private connection(): void {
+    const { link } = this;
+    const lost = link.closedAt > 0 ? `lost ${((performance.now() - link.closedAt) / 1000).toFixed(0)} s ago, ` : "";
+    const text = link.connected ? "live" : `not connected: ${lost}trying again`;
+    put("link", text);
+    byId("link").className = link.connected ? "live" : "lost";
+    document.body.classList.toggle("stale", !link.connected);
+    put("problem", link.connected ? link.problem : "The connection to the bridge is lost: what is shown is old. The page connects again by itself.");
+    byId("problem").hidden = link.connected && link.problem === "";
+  }
+
+  private mode(): void {
+    const { link } = this;
+    const execution = link.newest("handsel/execution_status"), robot = link.newest("handsel/robot_state");
+    const silent = link.age("handsel/execution_status") > kSilent;
+    const mode = !execution ? "waiting" : silent ? "silent" : link.word("Mode", execution.mode);
+    put("mode", mode);
+    byId("mode").dataset.mode = mode;
+    const drive = robot ? link.word("DriveMode", robot.mode) : "";
+    put("drive", !robot ? "no robot yet" : link.age("handsel/robot_state") > kSilent ? "robot silent" : (kDrives[drive] ?? drive));
+    byId("drive").dataset.drive = drive;
+    const causes = execution && !silent ? link.enumeration("Cause").filter((_, bit) => execution.causes & (1 << bit)) : [];
+    const list = byId("causes");
+    list.replaceChildren(...causes.map((cause) => {
+      const chip = document.createElement("li");
+      chip.textContent = cause.replaceAll("_", " ");
+      return chip;
+    }));
+    put("reason", silent && execution ? "The trajectory controller says nothing." : (execution?.reason ?? ""));
+  }
+
+  private task(): void {
+    const { link } = this;
+    const task = link.newest("handsel/task_status"), action = link.newest("handsel/action_status");
+    const state = task ? link.word("TaskState", task.state) : "none";
+    put("task-title", task ? (task.plan[Math.min(task.step, task.plan.length - 1)] ?? link.word("TaskKind", task.kind)) : "no task yet");
+    put("task-state", task ? state : "");
+    byId("task-state").dataset.state = state;
+    const running = action && link.word("ActionState", action.state) === "running";
+    put("phase", running ? action.phase : "");
+    const marks = (i: number): string => (!task ? "" : i < task.step || state === "succeeded" ? "done" : i === task.step ? (state === "running" ? "now" : state) : "later");
+    rows("plan", (task?.plan ?? []).map((text, i) => [{ text: "", kind: `mark ${marks(i)}` }, { text, kind: marks(i) }]));
+    const held = action?.holding ? `holding ${action.object}` : "";
+    const engaged = action?.exchange_engaged ? `${action.human} takes it` : "";
+    put("task-note", [held, engaged, task?.reason ?? ""].filter(Boolean).join(" · "));
+  }
+
+  private motion(): void {
+    const { link } = this;
+    const active = link.newest("handsel/active_trajectory"), execution = link.newest("handsel/execution_status");
+    const factor = active && active.trajectory !== 0n ? active.speed_factor : undefined;
+    put("speed", factor === undefined ? "at rest" : `${(100 * factor).toFixed(0)} %`);
+    bar(byId("speed-bar"), Math.abs(factor ?? 0), factor !== undefined && factor < 0 ? "warn" : "");
+    put("progress", factor === undefined || !execution ? "–" : `${(100 * execution.progress).toFixed(0)} %`);
+    bar(byId("progress-bar"), factor === undefined ? 0 : (execution?.progress ?? 0), "quiet");
+    this.distance();
+    const forecast = link.newest("handsel/trajectory_forecast"), advice = link.newest("handsel/attention_advice");
+    put("forecast", !forecast ? "unknown" : forecast.collides ? `${forecast.reason} in ${forecast.time_to_collision.toFixed(1)} s` : "clear");
+    put("advice", !advice ? "none" : advice.speed_factor > 0.999 ? "full speed" : `${(100 * advice.speed_factor).toFixed(0)} %: ${advice.reason}`);
+    const percent = (share: number): string => `${(100 * share).toFixed(0)} %`;
+    put("limits", execution ? `speed ${percent(execution.limit_share_velocity)}, acceleration ${percent(execution.limit_share_acceleration)}, jerk ${percent(execution.limit_share_jerk)}` : "–");
+    const late = execution && execution.cycles > 0n ? (100 * Number(execution.late_cycles)) / Number(execution.cycles) : 0;
+    put("cycles", execution ? `${execution.cycles}, ${late.toFixed(2)} % late` : "");
+  }
+
+  private distance(): void {
+    const execution = this.link.newest("handsel/execution_status"), humans = this.link.newest("handsel/human_state");
+    const distance = execution?.separation;
+    if (distance === undefined || distance >= kNobody) {
+      put("separation", humans && humans.people.length === 0 ? (humans.covered ? "nobody near" : "nobody seen, not all in view") : "unknown");
+      put("separation-limit", "");
+      bar(byId("separation-bar"), 0);
+      return;
+    }
+    const limit = execution?.separation_limit ?? 0;
+    put("separation", `${distance.toFixed(2)} m`);
+    put("separation-limit", `limit ${limit.toFixed(2)} m`);
+    const how = nearness(distance, limit), full = Math.max(2 * limit, 1.5);
+    bar(byId("separation-bar"), distance / full, how === "calm" ? "good" : how === "near" ? "warn" : "bad");
+    byId("separation-mark").style.transform = `translateX(${((100 * limit) / full).toFixed(1)}cqw)`;
+  }
+
+  private attention(): void {
+    const attention = this.link.newest("handsel/attention_state"), advice = this.link.newest("handsel/attention_advice");
+    const limiting = advice && advice.speed_factor < 0.999 ? advice.limiting : -1;
+    rows("clocks", (attention?.behaviours ?? []).map((b) => {
+      const fastest = Number(b.activations_at_fastest), share = fastest > 0 ? Number(b.activations) / fastest : 0;
+      const kind = !b.released ? "quiet" : b.behaviour === limiting ? "limiting" : "";
+      return [{ text: this.link.word("Behaviour", b.behaviour), kind }, { text: `${(1 / Math.max(b.period, 1e-3)).toFixed(1)} Hz`, kind: `number ${kind}` },
+        { text: `${(100 * share).toFixed(0)} % of the looks a fixed clock at its fastest would have taken`, share },
+        { text: b.released ? `${(100 * b.speed_factor).toFixed(0)} %` : "–", kind: `number ${kind}` }];
+    }));
+  }
+
+  private health(): void {
+    const now = performance.now();
+    const sorted = [...this.link.health.values()].sort((a, b) => a.message.component.localeCompare(b.message.component));
+    rows("health", sorted.map(({ message: h, at }) => {
+      const silent = (now - at) / 1000 > kSilent;
+      const word = silent ? "silent" : this.link.word("HealthState", h.state);
+      const rate = h.topics.reduce((sum, topic) => sum + topic.rate, 0);
+      const misses = h.topics.reduce((sum, topic) => sum + Number(topic.deadline_misses), 0);
+      const rejected = h.topics.reduce((sum, topic) => sum + Number(topic.rejected), 0);
+      const number = (text: string, bad = false): Cell => ({ text, kind: bad ? "number warn" : "number" });
+      return [{ text: "", kind: `dot ${word}` }, h.component.replaceAll("_", " "), { text: word, kind: word }, number(rate.toFixed(0)),
+        number(String(misses), misses > 0), number(String(rejected), rejected > 0), number(`${(100 * h.cpu).toFixed(0)} %`),
+        number(`${h.memory_mb.toFixed(0)} MB`), { text: h.reason, kind: "why" }];
+    }));
+    const alive = sorted.filter(({ message, at }) => (now - at) / 1000 <= kSilent && this.link.word("HealthState", message.state) === "ok").length;
+    put("health-count", sorted.length > 0 ? `${alive} of ${sorted.length} well` : "");
+  }
+}

@@ -1,0 +1,26 @@
+// Positions along a soft motion: each axis a series of cubic segments.
+import { AxisTrajectory } from "./messages";
+
+// Total time [s].
+export function duration(axis: AxisTrajectory): number {
+  return axis.segments.reduce((sum, segment) => sum + segment.duration, 0);
+}
+
+// Positions at `count` + 1 equal steps from the start to the end of the motion.
+export function sample(axis: AxisTrajectory, count: number): number[] {
+  const total = duration(axis), out: number[] = [];
+  let p = axis.start_position, v = axis.start_velocity, a = axis.start_acceleration, begin = 0, k = 0;
+  for (let i = 0; i <= count; ++i) {
+    const t = (total * i) / count;
+    for (; k < axis.segments.length && begin + axis.segments[k].duration <= t; ++k) {
+      const { duration: h, jerk } = axis.segments[k];
+      p += h * (v + h * (a / 2 + (h * jerk) / 6));
+      v += h * (a + (h * jerk) / 2);
+      a += h * jerk;
+      begin += h;
+    }
+    const s = t - begin, jerk = k < axis.segments.length ? axis.segments[k].jerk : 0;
+    out.push(k < axis.segments.length ? p + s * (v + s * (a / 2 + (s * jerk) / 6)) : p);
+  }
+  return out;
+}
