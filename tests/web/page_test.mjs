@@ -1,0 +1,161 @@
+// The page over a running system, in a headless browser: what it draws, that its numbers are those on DDS, what it says when something is missing.
+import assert from "node:assert/strict";
+import { mkdir } from "node:fs/promises";
+import { dirname } from "node:path";
+import test, { after, before } from "node:test";
+import { difference, kNoGl, launchBrowser, pixels, Program, startSystem } from "./stage.mjs";
+
+const kDomain = Number(process.env.HANDSEL_TEST_DOMAIN ?? 38);
+const kAngle = 1e-3;       // [rad] what is shown may differ from DDS by so much
+const kPatience = 30_000;  // [ms] for a condition to come true
+const kProcesses = 12;
+
+let system, address, browser, page, echo;
+const complaints = [], strangers = [];
+const onDds = new Map();  // stamp -> every RobotState on DDS since the echo began, as a line of JSON
+
+before(async () => {
+  ({ system, address } = await startSystem(kDomain));
+  echo = new Program("handsel", ["topic", "echo", "robot_state", "--domain", String(kDomain)]);
+  echo.onLine = (line) => {
+    echo.lines.length = 0;
+    const stamp = line.match(/"stamp":(\d+)/)?.[1];
+    if (stamp) onDds.set(stamp, line);
+  };
+  browser = await launchBrowser();
+  page = await open(browser);
+});
+
+after(async () => {
+  await browser?.close();
+  await echo?.end();
+  await system?.end();
+});
+
+async function open(where, size = { width: 1280, height: 800 }) {
+  const opened = await where.newPage({ viewport: size, colorScheme: "light" });
+  opened.setDefaultTimeout(kPatience);
+  opened.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+  opened.on("pageerror", (error) => complaints.push(String(error)));
+  opened.on("request", (request) => !/^(data|blob):/.test(request.url()) && !request.url().startsWith(address) && strangers.push(request.url()));
+  await opened.goto(address);
+  await opened.waitForFunction(() => window.handsel?.connected);
+  return opened;
+}
+
+// What the page draws beside what DDS said for the same stamp; undefined when DDS' sample was not among those heard.
+async function compare() {
+  const { stamp, angles } = await page.evaluate(() => ({ stamp: window.handsel.stamp, angles: window.handsel.angles }));
+  const line = onDds.get(stamp);
+  if (!line) return undefined;
+  const { position } = JSON.parse(line);
+  const shown = Object.values(angles);
+  assert.equal(shown.length, position.length);
+  return { stamp, shown, worst: Math.max(...shown.map((angle, i) => Math.abs(angle - position[i]))) };
+}
+
+test("the angles drawn while the arm moves are those on DDS at the same stamp", async () => {
+  const seen = [];
+  const moved = () => (seen.length ? Math.max(...seen[0].shown.map((_, i) => Math.abs(seen[0].shown[i] - seen.at(-1).shown[i]))) : 0);
+  const end = Date.now() + kPatience;
+  while ((seen.length < 20 || moved() < 0.3) && Date.now() < end) {
+    const sample = await compare();
+    if (sample && sample.stamp !== seen.at(-1)?.stamp) seen.push(sample);
+  }
+  const worst = Math.max(...seen.map((sample) => sample.worst));
+  console.log(`moving: ${seen.length} stamps matched, the arm moved ${moved().toFixed(2)} rad, largest difference ${worst.toExponential(1)} rad`);
+  assert.ok(seen.length >= 20 && moved() >= 0.3, "too few matching stamps, or the arm did not move");
+  assert.ok(worst <= kAngle);
+});
+
+test("the tool path and the phases of the task are shown while it runs", async () => {
+  await page.waitForFunction(() => document.querySelector("#phase").textContent === "carry" && document.querySelector("#speed").textContent.endsWith("%"));
+  assert.equal(await page.textContent("#task-title"), "give mug to anna");
+  assert.equal(await page.locator("#plan tr").count(), 3);
+  await page.waitForFunction(() => /^\d/.test(document.querySelector("#separation").textContent));
+  if (process.env.HANDSEL_PICTURE) {
+    await mkdir(dirname(process.env.HANDSEL_PICTURE), { recursive: true });
+    await page.screenshot({ path: process.env.HANDSEL_PICTURE });
+  }
+});
+
+test("at rest the angles drawn and written are those on DDS", async () => {
+  await page.waitForFunction(() => document.querySelector("#task-state").textContent === "succeeded");
+  await system.line(/the system stays up/);
+  let sample;
+  for (const end = Date.now() + kPatience; !sample && Date.now() < end; ) sample = await compare();
+  assert.ok(sample, "no stamp of the page was heard on DDS");
+  assert.ok(sample.worst <= kAngle, `${sample.worst} rad`);
+  const arm = await page.$$eval("#joints tr", (rows) => rows.map((row) => row.lastElementChild.textContent));
+  assert.equal(arm.length, 7);
+  arm.forEach((text, i) => assert.ok(Math.abs(Number(text) - sample.shown[i]) <= kAngle, `${text} beside ${sample.shown[i]}`));
+  console.log(`at rest: largest difference ${sample.worst.toExponential(1)} rad`);
+});
+
+test("robot, person and object are drawn where they are said to be", async () => {
+  await page.waitForFunction(() => ["robot", "person", "object"].every((part) => window.handsel.region(part)));
+  const drawn = async (hidden) => {
+    const frames = await page.evaluate((parts) => {
+      window.handsel.hide(parts);
+      return window.handsel.frames;
+    }, hidden);
+    await page.waitForFunction((before) => window.handsel.frames > before, frames);
+  };
+  for (const [part, least] of [["robot", 0.15], ["person", 0.25], ["object", 0.25]]) {
+    const region = await page.evaluate((name) => window.handsel.region(name), part);
+    const others = ["robot", "person", "object"].filter((name) => name !== part);
+    await drawn(others);
+    const shown = await pixels(page, region);
+    await drawn([...others, part]);
+    const background = await pixels(page, region);
+    const share = difference(shown, background);
+    console.log(`${part}: ${(100 * share).toFixed(0)} % of ${Math.round(region.width)}x${Math.round(region.height)} pixels are not background`);
+    assert.ok(region.width > 8 && region.height > 8, `${part} is too small to see`);
+    assert.ok(share >= least, `${part}: only ${share} of its region`);
+  }
+  await drawn([]);
+});
+
+test("every process is listed and well", async () => {
+  await page.waitForFunction((count) => document.querySelectorAll("#health .dot.ok").length === count, kProcesses);
+  assert.equal(await page.textContent("#mode"), "normal");
+  assert.equal(await page.textContent("#drive"), "drives on");
+  assert.equal(await page.locator("#clocks tr").count(), 7);
+});
+
+test("a narrow window needs no scrolling sideways", async () => {
+  await page.setViewportSize({ width: 480, height: 900 });
+  await page.waitForFunction(() => document.querySelector("#stage canvas").clientWidth < 480);
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
+  await page.setViewportSize({ width: 1280, height: 800 });
+});
+
+test("a browser without WebGL is told so in one sentence and the tables work", async () => {
+  const plain = await launchBrowser(kNoGl);
+  try {
+    const bare = await open(plain);
+    await bare.waitForFunction((count) => document.querySelectorAll("#health tr").length === count, kProcesses);
+    const sentence = await bare.textContent("#stage-note");
+    assert.match(sentence, /^This browser cannot draw the 3-D view \(WebGL [^.]*\.$/);
+    assert.ok(await bare.isVisible("#stage-note"));
+    assert.equal(await bare.evaluate(() => window.handsel.webgl), false);
+    await bare.waitForFunction(() => /^-?\d+\.\d{4}$/.test(document.querySelector("#joints tr")?.lastElementChild.textContent ?? ""));
+  } finally {
+    await plain.close();
+  }
+});
+
+test("nothing was fetched from elsewhere and nothing was complained about", () => {
+  assert.deepEqual(strangers, []);
+  assert.deepEqual(complaints, []);
+});
+
+test("a lost connection is said, and the page comes back by itself", async () => {
+  const health = new Program("handsel", ["topic", "echo", "component_health", "--domain", String(kDomain)]);
+  const match = await health.line(/"component":"bridge"/);
+  await health.end();
+  process.kill(JSON.parse(match.input).pid, "SIGKILL");
+  await page.waitForFunction(() => document.querySelector("#link").className === "lost");
+  assert.match(await page.textContent("#problem"), /connection to the bridge is lost/);
+  await page.waitForFunction(() => document.querySelector("#link").className === "live" && document.querySelector("#problem").hidden);
+});

@@ -1,0 +1,88 @@
+// What the page's tests share: a running system, a headless browser, DDS samples, pictures.
+import { spawn } from "node:child_process";
+import { createRequire } from "node:module";
+import { setPriority } from "node:os";
+import { dirname, join } from "node:path";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
+
+export const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+const { chromium } = createRequire(join(root, "components/bridge/web/package.json"))("playwright-core");
+const bin = process.env.HANDSEL_BIN ?? join(root, "build/release/bin");
+const flags = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"];
+export const kSoftwareGl = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+export const kNoGl = ["--disable-gpu", "--disable-webgl", "--disable-webgl2", "--disable-3d-apis"];
+
+// A program whose lines are looked at as they come.
+export class Program {
+  constructor(name, args) {
+    this.lines = [];
+    this.waiting = [];
+    this.child = spawn(join(bin, name), args, { stdio: ["ignore", "pipe", "pipe"] });
+    this.ended = new Promise((resolve) => this.child.on("exit", resolve));
+    for (const stream of [this.child.stdout, this.child.stderr]) createInterface({ input: stream }).on("line", (line) => this.take(line));
+    void this.ended.then((code) => {
+      for (const { reject, pattern } of this.waiting) reject(new Error(`${name} ended (${code}) before ${pattern}:\n${this.lines.slice(-5).join("\n")}`));
+    });
+  }
+  take(line) {
+    this.lines.push(line);
+    this.onLine?.(line);
+    this.waiting = this.waiting.filter(({ pattern, resolve }) => {
+      const match = line.match(pattern);
+      if (match) resolve(match);
+      return !match;
+    });
+  }
+  line(pattern) {
+    for (const line of this.lines) if (pattern.test(line)) return Promise.resolve(line.match(pattern));
+    return new Promise((resolve, reject) => this.waiting.push({ pattern, resolve, reject }));
+  }
+  async end() {
+    this.child.kill("SIGINT");
+    await this.ended;
+  }
+}
+
+// The system with its page; `address` is where the page is.
+export async function startSystem(domain, scenario = "give_mug") {
+  const system = new Program("handsel", ["run", "--scenario", scenario, "--headless", "--stay", "--domain", String(domain), "--port", "0"]);
+  const [, address] = await system.line(/watch it at (http:\S+)/);
+  return { system, address };
+}
+
+// A browser of low priority: the control processes come first, as on a robot.
+export function launchBrowser(gl = kSoftwareGl) {
+  setPriority(0, 10);
+  return chromium.launch({ executablePath: process.env.HANDSEL_CHROMIUM ?? "/usr/bin/chromium", args: [...flags, ...gl] });
+}
+
+// The part of the page in `region` as RGBA bytes.
+export async function pixels(page, region) {
+  const clip = { x: Math.floor(region.x), y: Math.floor(region.y), width: Math.ceil(region.width), height: Math.ceil(region.height) };
+  const picture = (await page.screenshot({ clip })).toString("base64");
+  const blank = await page.context().browser().newPage();
+  try {
+    return await blank.evaluate(async (data) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const canvas = document.createElement("canvas");
+      [canvas.width, canvas.height] = [image.width, image.height];
+      const context = canvas.getContext("2d");
+      context.drawImage(image, 0, 0);
+      return Array.from(context.getImageData(0, 0, image.width, image.height).data);
+    }, picture);
+  } finally {
+    await blank.close();
+  }
+}
+
+// Share of the pixels of two pictures of one region that clearly differ.
+export function difference(a, b) {
+  let differing = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    if (Math.abs(a[i] - b[i]) + Math.abs(a[i + 1] - b[i + 1]) + Math.abs(a[i + 2] - b[i + 2]) > 24) ++differing;
+  }
+  return differing / (a.length / 4);
+}

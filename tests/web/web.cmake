@@ -1,0 +1,9 @@
+# The page: its types, and what it shows of a running system in a headless browser. build.sh all installs what they need.
+find_program(HANDSEL_NODE node)
+if(HANDSEL_NODE)
+  set(web ${CMAKE_SOURCE_DIR}/components/bridge/web)
+  add_test(NAME page_types COMMAND ${HANDSEL_NODE} ${web}/node_modules/typescript/bin/tsc -p ${web})
+  set_tests_properties(page_types PROPERTIES LABELS unit)
+  add_test(NAME page COMMAND ${HANDSEL_NODE} ${CMAKE_CURRENT_LIST_DIR}/page_test.mjs)
+  set_tests_properties(page PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 180 ENVIRONMENT HANDSEL_BIN=$<TARGET_FILE_DIR:handsel>)
+endif()
