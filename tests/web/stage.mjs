@@ -1,7 +1,6 @@
 // What the page's tests share: a running system, a headless browser, DDS samples, pictures.
 import { spawn } from "node:child_process";
 import { createRequire } from "node:module";
-import { setPriority } from "node:os";
 import { dirname, join } from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
@@ -13,6 +12,8 @@ const flags = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-ba
 export const kSoftwareGl = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 export const kNoGl = ["--disable-gpu", "--disable-webgl", "--disable-webgl2", "--disable-3d-apis"];
 
+for (const signal of ["SIGTERM", "SIGINT"]) process.on(signal, () => process.exit(1));  // nothing started here stays behind
+
 // A program whose lines are looked at as they come.
 export class Program {
   constructor(name, args) {
@@ -20,6 +21,7 @@ export class Program {
     this.waiting = [];
     this.child = spawn(join(bin, name), args, { stdio: ["ignore", "pipe", "pipe"] });
     this.ended = new Promise((resolve) => this.child.on("exit", resolve));
+    process.on("exit", () => this.child.kill("SIGINT"));
     for (const stream of [this.child.stdout, this.child.stderr]) createInterface({ input: stream }).on("line", (line) => this.take(line));
     void this.ended.then((code) => {
       for (const { reject, pattern } of this.waiting) reject(new Error(`${name} ended (${code}) before ${pattern}:\n${this.lines.slice(-5).join("\n")}`));
@@ -51,10 +53,8 @@ export async function startSystem(domain, scenario = "give_mug") {
   return { system, address };
 }
 
-// A browser of low priority: the control processes come first, as on a robot.
 export function launchBrowser(gl = kSoftwareGl) {
-  setPriority(0, 10);
-  return chromium.launch({ executablePath: process.env.HANDSEL_CHROMIUM ?? "/usr/bin/chromium", args: [...flags, ...gl] });
+  return chromium.launch({ executablePath: join(root, "tests/web/niced_chromium.sh"), args: [...flags, ...gl] });
 }
 
 // The part of the page in `region` as RGBA bytes.

@@ -8,7 +8,7 @@ import { Scene, SceneBox, SceneObject } from "./messages";
 import { dispose, kSphere, setPose } from "./shapes";
 
 const kUnknownSize = 0.04;  // [m] radius of what has no mesh
-const kObject = 0xd6336c, kWood = 0xc9a97c, kEdge = 0x8a6d45;
+const kObject = 0xd6336c, kWood = 0xdcc39b, kEdge = 0xa08259;
 
 async function loadMesh(url: string): Promise<THREE.BufferGeometry> {
   const answer = await fetch(url);
@@ -52,7 +52,7 @@ export class Things {
   }
 
   *labels(): Iterable<[string, THREE.Vector3]> {
-    for (const [id, mesh] of this.objects) yield [id, mesh.position.clone().add(new THREE.Vector3(0, 0, 0.09))];
+    for (const [id, mesh] of this.objects) yield [id, mesh.position.clone().add(new THREE.Vector3(0, 0, 0.13))];
   }
   first(): THREE.Object3D | undefined {
     return [...this.objects.values()][0];
