@@ -226,7 +226,7 @@ struct CollisionWorld::Impl {
       if (holding && bodies[pair.a].hand && bodies[pair.b].hand) continue;  // fingers may lean on each other around what they hold
       if (std::none_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return changed[axis]; })) continue;
       if (!touch(*bodies[pair.a].shape, T_world_body[pair.a], *bodies[pair.b].shape, T_world_body[pair.b])) continue;
-      if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b)};
+      if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b), ""};
       return true;
     }
     return false;
@@ -239,7 +239,7 @@ struct CollisionWorld::Impl {
       const bool lowered = held && thing.lowered;
       const CollisionShape& shape = lowered ? *thing.lowered : *thing.shape;
       if (!touch(*bodies[i].shape, T_world_body[i], shape, lowered ? thing.T_world_lowered : thing.T_world_shape)) continue;
-      if (verdict) *verdict = {false, name_of(i), (thing.is_object ? "object " : "box ") + thing.id};
+      if (verdict) *verdict = {false, name_of(i), (thing.is_object ? "object " : "box ") + thing.id, thing.id};
       return true;
     }
     return false;
@@ -249,7 +249,7 @@ struct CollisionWorld::Impl {
     for (const PersonBody& person : people) {
       if (!person.obstacle || (person.allowed && person.arm)) continue;
       if (!touch(*bodies[i].shape, T_world_body[i], *person.shape, person.T_world_shape)) continue;
-      if (verdict) *verdict = {false, name_of(i), "person " + person.id};
+      if (verdict) *verdict = {false, name_of(i), "person " + person.id, person.id};
       return true;
     }
     return false;

@@ -22,6 +22,7 @@ using ObjectLibrary = std::function<const ObjectModel*(const std::string&)>;
 struct CollisionVerdict {
   bool free{true};
   std::string first, second;  ///< what touches what, when not free: "link forearm", "object mug", "box table", "person anna"
+  std::string id;             ///< of the object, box or person touched; empty when the robot touches itself
 };
 
 /// A fixed obstacle of any shape (problem files, tests); T_parent_shape is in the world.

@@ -50,11 +50,12 @@ struct PathReply {
   Stamp stamp{};
   RequestId id;
   bool solved{};
-  std::string reason;        ///< why not, one sentence
-  std::uint32_t goal{};      ///< index of the goal reached
-  std::vector<Vector> path;  ///< group axes, path.front() = start
-  double cost{}, length{};   ///< integral human-aware cost; joint-space length [rad]
-  std::uint64_t checks{};    ///< states judged
+  std::string reason;         ///< why not, one sentence
+  std::string start_touches;  ///< id of the object, box or person the robot touches at the start; empty: none
+  std::uint32_t goal{};       ///< index of the goal reached
+  std::vector<Vector> path;   ///< group axes, path.front() = start
+  double cost{}, length{};    ///< integral human-aware cost; joint-space length [rad]
+  std::uint64_t checks{};     ///< states judged
 };
 
 /// Topic TrajectoryRequest, profile request: a broken line to soft motion.

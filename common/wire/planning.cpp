@@ -52,6 +52,7 @@ void describe(WireIo& io, PathReply& m, handsel_PathReply& w) {
   io.part("id", m.id, w.id);
   io.flag("solved", m.solved, w.solved);
   io.text("reason", m.reason, w.reason, Text::sentence);
+  io.text("start_touches", m.start_touches, w.start_touches, Text::maybe_empty);
   io.integer("goal", m.goal, w.goal, 0, 63);
   io.list("path", m.path, w.path, 4096);
   io.number("cost", m.cost, w.cost, {0, 1e9});

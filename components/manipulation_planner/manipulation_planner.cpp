@@ -189,6 +189,7 @@ Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const V
     const bool come = co_await waiting_.until([this] { return path_reply_.has_value(); }, settings_.request_retry());
     if (!come) continue;
     planned.nodes = path_reply_->path;
+    planned.start_touches = path_reply_->start_touches;
     if (!path_reply_->solved) planned.outcome = Outcome::failure(path_reply_->reason);
     co_return planned;
   }
@@ -267,11 +268,70 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
       if (last.good) co_return last;
     } else {
       last = planned.outcome;
+      if (!planned.start_touches.empty()) {
+        refuse(motion.phase, last.reason);
+        Outcome freed = co_await withdraw(planned.start_touches, motion);
+        if (freed.good) continue;
+        last.reason += "; " + freed.reason;
+      }
     }
     refuse(motion.phase, last.reason);
     co_await waiting_.pause(0.3);
   }
   co_return last;
+}
+
+std::vector<Vector3> ManipulationPlanner::ways_out(const std::string& touched) const {
+  const Pose T_tool = T_world_tool();
+  const Vector3 p_tool = T_tool.translation();
+  Vector3 from = p_tool + T_tool.linear().col(2);
+  if (const Person* who = person(touched))
+    from = who->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  else if (const SceneObject* thing = object(touched))
+    from = thing->T_world_object.translation();
+  Vector3 level = p_tool - from;
+  level.z() = 0;
+  if (level.norm() < 1e-3) level = scene_.T_world_base.translation() - p_tool;
+  level.z() = 0;
+  level.normalize();
+  const Vector3 up = Vector3::UnitZ(), aside = up.cross(level), hand_back = -T_tool.linear().col(2);
+  return {hand_back,
+          level,
+          (level + up).normalized(),
+          up,
+          (level - up).normalized(),
+          (level + aside).normalized(),
+          (level - aside).normalized()};
+}
+
+Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const Motion& next) {
+  Motion out;
+  out.phase = "drawing back";
+  out.straight = true;
+  out.speed = settings_.approach_speed();
+  out.allowed = next.allowed;
+  out.allowed.push_back(touched);
+  const Pose T_now = T_world_tool();
+  const Vector start = posture();
+  const std::vector<Vector3> ways = ways_out(touched);
+  for (const double share : {0.5, 1.0, 1.5}) {
+    for (const Vector3& way : ways) {
+      Pose T = T_now;
+      T.translation() += share * settings_.retreat_distance() * way;
+      const auto joints = reach(T);
+      if (!joints) continue;
+      out.goals = {*joints};
+      PlannedPath first = co_await plan_path(start, out);
+      if (!first.outcome.good) continue;
+      const Vector clear = RobotModel::with(start, arm_, *joints);
+      PlannedPath then = co_await plan_path(clear, next);
+      if (!then.outcome.good) continue;
+      status_.phase = out.phase;
+      Outcome outcome = co_await execute(first.nodes, out);
+      co_return outcome;
+    }
+  }
+  co_return Outcome::failure("no straight way leads off " + touched);
 }
 
 Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout) {
@@ -322,6 +382,7 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
   motion.straight = true;
   motion.allowed = {object_id};
   if (!allowed_person.empty()) motion.allowed.push_back(allowed_person);
+  std::string why = "no posture of the arm lies there";
   for (const double share : {1.0, 0.75, 0.5, 0.3}) {
     Pose T = T_now;
     T.translation() += share * settings_.retreat_distance() * away;
@@ -329,9 +390,10 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
       motion.goals = {*joints};
       Outcome outcome = co_await move(motion);
       if (outcome.good) co_return outcome;
+      why = outcome.reason;
     }
   }
-  co_return Outcome::failure("the hand finds no straight way back from " + object_id);
+  co_return Outcome::failure("the hand finds no straight way back from " + object_id + ": " + why);
 }
 
 Routine<Outcome> ManipulationPlanner::go_to_rest() {

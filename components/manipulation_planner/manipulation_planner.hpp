@@ -69,6 +69,7 @@ class ManipulationPlanner {
   struct PlannedPath {
     Outcome outcome;
     std::vector<Vector> nodes;
+    std::string start_touches;  // why there is no path: the robot touches this where it stands
   };
   struct GraspList {
     Outcome outcome;
@@ -95,6 +96,7 @@ class ManipulationPlanner {
   Routine<Outcome> move(const Motion& motion);
   Routine<Outcome> execute(const std::vector<Vector>& nodes, const Motion& motion);
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout);
+  Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);
 
@@ -109,6 +111,7 @@ class ManipulationPlanner {
   RequestId next_request() { return {client_, ++requests_}; }
   Pose T_world_tool() const;
   std::optional<Vector> reach(const Pose& T_world_tool) const;
+  std::vector<Vector3> ways_out(const std::string& touched) const;  // directions in the world, the likeliest first
 
   config::ManipulationPlannerSettings settings_;
   std::shared_ptr<const RobotModel> robot_;

@@ -43,6 +43,7 @@ PathReply reply_of(const PathRequest& request, const Result& result) {
   reply.id = request.id;
   reply.solved = result.solved;
   reply.reason = result.reason;
+  reply.start_touches = result.start_touches;
   reply.goal = static_cast<std::uint32_t>(result.goal);
   reply.path = result.path;
   reply.cost = result.cost;

@@ -92,7 +92,10 @@ class Planning {
     const Vector start = space_.start();
     if (std::string why = space_.outside_limits(start); !why.empty()) return refuse("the start: " + why);
     const CollisionVerdict at_start = space_.verdict(start);
-    if (!at_start.free) return refuse("the start is in collision: " + contact(at_start));
+    if (!at_start.free) {
+      result_.start_touches = at_start.id;
+      return refuse("the start is in collision: " + contact(at_start));
+    }
     std::string first;
     for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
       std::string why = space_.outside_limits(problem_.goals[i]);

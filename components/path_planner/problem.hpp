@@ -45,14 +45,15 @@ struct Hooks {
 
 struct Result {
   bool solved{};
-  std::string reason;        ///< why not, one sentence
-  std::size_t goal{};        ///< index of the goal reached
-  std::vector<Vector> path;  ///< `axes` only; front() = start, back() = goals[goal]
-  double cost{};             ///< integral of the human-aware cost along the path [rad]
-  double work{};             ///< mechanical work: sum of the rises of the cost
-  double length{};           ///< joint-space length, Euclidean [rad]
-  std::uint64_t checks{};    ///< states judged
-  std::string planner;       ///< that found it
+  std::string reason;         ///< why not, one sentence
+  std::string start_touches;  ///< id of the object, box or person the robot touches at the start; empty: none
+  std::size_t goal{};         ///< index of the goal reached
+  std::vector<Vector> path;   ///< `axes` only; front() = start, back() = goals[goal]
+  double cost{};              ///< integral of the human-aware cost along the path [rad]
+  double work{};              ///< mechanical work: sum of the rises of the cost
+  double length{};            ///< joint-space length, Euclidean [rad]
+  std::uint64_t checks{};     ///< states judged
+  std::string planner;        ///< that found it
 };
 
 }  // namespace handsel::path_planner

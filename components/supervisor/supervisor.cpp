@@ -32,21 +32,39 @@ void Supervisor::refuse(const TaskGoal& goal, const std::string& reason, Outbox&
   if (!task_) last_ = status;
 }
 
-void Supervisor::begin(const TaskGoal& goal, Outbox& out) {
+void Supervisor::begin(const TaskGoal& goal, TimePoint now, Outbox& out) {
   if (task_) return refuse(goal, "busy with task " + std::to_string(task_->status.id) + "; cancel it first", out);
   if (!facts_) return refuse(goal, "the state of the world is not known yet", out);
   TaskPlan plan = plan_task(goal, *facts_);
   if (!plan.reason.empty()) return refuse(goal, plan.reason, out);
   Task task;
+  task.goal = goal;
+  task.accepted = now;
   task.status.id = goal.id;
   task.status.kind = goal.kind;
   task.status.state = TaskState::running;
   for (const auto& action : plan.actions) task.status.plan.push_back(action.text());
-  task.actions = std::move(plan.actions);
+  if (plan.needs_person)
+    task.status.phase = "looking for somebody";
+  else
+    task.actions = std::move(plan.actions);
   for (const auto& fact : facts_->facts)
     if (fact.kind == FactKind::on_surface && fact.subject == goal.object) task.home = fact.object;
   task_ = std::move(task);
   report(out);
+}
+
+void Supervisor::look_for_person(TimePoint now, Outbox& out) {
+  TaskPlan plan = plan_task(task_->goal, *facts_);
+  if (plan.needs_person) {
+    if (to_seconds(now - task_->accepted) >= settings_.person_timeout())
+      finish(TaskState::failed, "nobody is in sight to give " + task_->goal.object + " to", out);
+    return;
+  }
+  if (!plan.reason.empty()) return finish(TaskState::failed, plan.reason, out);
+  task_->status.plan.clear();
+  for (const auto& action : plan.actions) task_->status.plan.push_back(action.text());
+  task_->actions = std::move(plan.actions);
 }
 
 void Supervisor::control(const TaskGoal& goal, Outbox& out) {
@@ -128,6 +146,7 @@ void Supervisor::action_ended(Outbox& out) {
 void Supervisor::advance(TimePoint now, Outbox& out) {
   Task& task = *task_;
   if (task.status.state == TaskState::paused) return;
+  if (task.actions.empty()) return look_for_person(now, out);
   if (!task.begun) {
     if (!permission_.missing().empty()) return;
     task.begun = true;
@@ -158,7 +177,7 @@ void Supervisor::advance(TimePoint now, Outbox& out) {
 
 void Supervisor::step(TimePoint now, Outbox& out) {
   const Go& go = permission_.step(now);
-  for (const auto& goal : std::exchange(inbox_, {})) is_control(goal.kind) ? control(goal, out) : begin(goal, out);
+  for (const auto& goal : std::exchange(inbox_, {})) is_control(goal.kind) ? control(goal, out) : begin(goal, now, out);
   if (task_) advance(now, out);
 
   const bool changed = go.epoch != sent_go_.epoch || go.allowed != sent_go_.allowed || go.override_factor != sent_go_.override_factor;

@@ -38,15 +38,18 @@ class Supervisor {
 
  private:
   struct Task {
+    TaskGoal goal;
+    TimePoint accepted{};
     TaskStatus status;
-    std::vector<PlannedAction> actions;
-    std::string home;     // surface the object came from
-    std::string failure;  // set once an action failed; what is left only recovers
-    bool begun{false};    // the current action was sent
+    std::vector<PlannedAction> actions;  // none while somebody to give to is looked for
+    std::string home;                    // surface the object came from
+    std::string failure;                 // set once an action failed; what is left only recovers
+    bool begun{false};                   // the current action was sent
     std::uint64_t action{};
     TimePoint sent{};
   };
-  void begin(const TaskGoal& goal, Outbox& out);
+  void begin(const TaskGoal& goal, TimePoint now, Outbox& out);
+  void look_for_person(TimePoint now, Outbox& out);
   void refuse(const TaskGoal& goal, const std::string& reason, Outbox& out);
   void control(const TaskGoal& goal, Outbox& out);
   void advance(TimePoint now, Outbox& out);

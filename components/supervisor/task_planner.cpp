@@ -45,6 +45,7 @@ TaskPlan plan_task(const TaskGoal& goal, const Facts& facts) {
   switch (goal.kind) {
     case TaskKind::give: {
       const std::string human = goal.human.empty() ? someone(facts) : goal.human;
+      plan.needs_person = human.empty();
       if (!held) plan.actions.push_back({ActionKind::pick, goal.object, human, ""});
       plan.actions.push_back({ActionKind::give, goal.object, human, ""});
       plan.actions.push_back(kRest);

@@ -17,7 +17,8 @@ struct PlannedAction {
 
 struct TaskPlan {
   std::vector<PlannedAction> actions;
-  std::string reason;  ///< why the goal cannot be pursued; empty when it can
+  std::string reason;        ///< why the goal cannot be pursued; empty when it can
+  bool needs_person{false};  ///< somebody is meant and nobody is there yet
 };
 
 /// Starts from what is already so: an object in the robot's hand is not picked again.

@@ -97,6 +97,12 @@ class Rig {
     PathReply reply;
     reply.id = request.id;
     reply.solved = path_requests > failing_paths;
+    const bool allowed_to_touch =
+        std::find(request.allowed_contacts.begin(), request.allowed_contacts.end(), touched) != request.allowed_contacts.end();
+    if (!touched.empty() && !allowed_to_touch && (request.start - touching_posture).norm() < 1e-9) {
+      reply.solved = false;
+      reply.start_touches = touched;
+    }
     reply.reason = "goal 0 in collision: link forearm and box table";
     reply.path = {RobotModel::part(request.start, robot->require_group("arm")), request.goals.front()};
     planner.on(reply);
@@ -138,6 +144,8 @@ class Rig {
   HumanState people;
   ExecutionStatus execution;
   Vector q, target;
+  std::string touched;  // by the robot as long as it is in touching_posture
+  Vector touching_posture;
   Pose T_tool_mug{Pose::Identity()};
   TimePoint now{};
   std::uint64_t actions{0};
@@ -207,6 +215,25 @@ TEST(ManipulationPlanner, AMotionThatIsStoppedIsPlannedAgain) {
   rig.run(30);
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
   EXPECT_EQ(rig.path_requests, 3);
+}
+
+TEST(ManipulationPlanner, FromAPersonItTouchesItDrawsBackFirst) {
+  Rig rig;
+  rig.touched = "anna";
+  rig.touching_posture = rig.q;
+  const Vector3 torso = rig.people.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const double before = (rig.tool().translation() - torso).norm();
+  rig.start(ActionKind::go_to);
+  double farthest = before;
+  for (int i = 0; i < 500 && (i < 5 || rig.planner.status().state == ActionState::running); ++i) {
+    rig.cycle();
+    farthest = std::max(farthest, (rig.tool().translation() - torso).norm());
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"drawing back", "to rest"}));
+  EXPECT_EQ(rig.allowed.front(), std::vector<std::string>{"anna"});
+  EXPECT_TRUE(rig.allowed.back().empty());
+  EXPECT_GT(farthest, before + 0.03);
 }
 
 TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {

@@ -13,6 +13,7 @@ config::SupervisorSettings settings() {
   s.set_goal_retry(0.5);
   s.set_health_timeout(0.3);
   s.set_resume_delay(0.1);
+  s.set_person_timeout(2.0);
   s.add_required("spark");
   s.set_speed_override(1.0);
   return s;
@@ -22,8 +23,12 @@ config::SupervisorSettings settings() {
 class Rig {
  public:
   Rig() : supervisor(settings(), 100) {
-    Facts facts;
     facts.facts.push_back({FactKind::on_surface, "mug", "table", 1, 0});
+    supervisor.on(facts, now);
+  }
+
+  void see(const std::string& person) {
+    facts.facts.push_back({FactKind::attentive, person, "", 1, 0});
     supervisor.on(facts, now);
   }
 
@@ -50,12 +55,12 @@ class Rig {
     }
   }
 
-  void give(std::uint64_t id) {
+  void give(std::uint64_t id, const std::string& to = "anna") {
     TaskGoal goal;
     goal.id = id;
     goal.kind = TaskKind::give;
     goal.object = "mug";
-    goal.human = "anna";
+    goal.human = to;
     supervisor.on(goal, now);
   }
 
@@ -72,6 +77,7 @@ class Rig {
   const TaskStatus& last() const { return statuses.back(); }
 
   TimePoint now{};
+  Facts facts;
   Supervisor supervisor;
   ExecutionStatus execution;
   std::optional<ActionStatus> action;
@@ -99,6 +105,31 @@ TEST(Supervisor, GivesAMugInThreeActionsOneAfterTheOther) {
   rig.end_action(ActionState::succeeded);
   EXPECT_EQ(rig.last().state, TaskState::succeeded);
   EXPECT_EQ(rig.last().plan.size(), 3u);
+}
+
+TEST(Supervisor, AGiftForNobodyInParticularWaitsForSomebodyAndIsPickedForThem) {
+  Rig rig;
+  rig.run(0.5);
+  rig.give(1, "");
+  rig.run(1.0);
+  EXPECT_TRUE(rig.goals.empty());
+  EXPECT_EQ(rig.last().phase, "looking for somebody");
+  rig.see("bert");
+  rig.run(0.1);
+  ASSERT_EQ(rig.goals.size(), 1u);
+  EXPECT_EQ(rig.goals[0].kind, ActionKind::pick);
+  EXPECT_EQ(rig.goals[0].human, "bert");
+  EXPECT_EQ(rig.last().plan[1], "give mug to bert");
+}
+
+TEST(Supervisor, WhenNobodyComesTheGiftFailsBeforeAnythingMoves) {
+  Rig rig;
+  rig.run(0.5);
+  rig.give(1, "");
+  rig.run(2.2);
+  EXPECT_TRUE(rig.goals.empty());
+  EXPECT_EQ(rig.last().state, TaskState::failed);
+  EXPECT_NE(rig.last().reason.find("nobody is in sight"), std::string::npos) << rig.last().reason;
 }
 
 TEST(Supervisor, AnUntakenObjectIsPutBackAndTheTaskFailsWithTheFirstReason) {
