@@ -68,6 +68,42 @@ Trajectory split_alike(const Trajectory& whole) {
   return out;
 }
 
+Trajectory shifted(const Trajectory& whole, double by) {
+  if (by < 0) return cut(whole, -by, whole.duration());
+  Trajectory out = whole;
+  if (by > 0) {
+    for (AxisTrajectory& axis : out.axes) axis.segments.insert(axis.segments.begin(), {by, 0.0});
+  }
+  return out;
+}
+
+Trajectory reversed(const Trajectory& whole) {
+  Trajectory out;
+  for (const AxisTrajectory& axis : whole.axes) {
+    const AxisState end = end_of(axis);
+    AxisTrajectory back{{end.position, -end.velocity, end.acceleration}, axis.segments};
+    std::reverse(back.segments.begin(), back.segments.end());
+    for (Segment& s : back.segments) s.jerk = -s.jerk;
+    out.axes.push_back(std::move(back));
+  }
+  return out;
+}
+
+Trajectory to_trajectory(const SegmentTable& table) {
+  Trajectory out;
+  const auto n = static_cast<std::size_t>(table.axes());
+  std::vector<double> v(n), a(n), j(n);
+  MotionState3 start = rest_state(Eigen::VectorXd::Zero(table.axes()));
+  int cursor = 0;
+  table.evaluate(0, cursor, start);
+  for (int i = 0; i < table.axes(); ++i) out.axes.push_back({{start.position[i], start.velocity[i], start.acceleration[i]}, {}});
+  for (int k = 0; k < table.segments(); ++k) {
+    table.rates(table.knot(k), k, v.data(), a.data(), j.data());
+    for (std::size_t i = 0; i < n; ++i) out.axes[i].segments.push_back({table.knot(k + 1) - table.knot(k), j[i]});
+  }
+  return out;
+}
+
 MotionState3 final_state(const Trajectory& whole) {
   MotionState3 out;
   out.position.resize(whole.size());

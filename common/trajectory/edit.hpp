@@ -1,6 +1,7 @@
 // Cutting, joining and comparing trajectories.
 #pragma once
 
+#include "common/trajectory/segment_table.hpp"
 #include "common/trajectory/trajectory.hpp"
 
 namespace handsel {
@@ -11,6 +12,12 @@ Trajectory cut(const Trajectory&, double from, double to);
 void append(Trajectory& first, const Trajectory& next);
 /// The same motion with all axes split at the same N instants (chapter section 4.2.1).
 Trajectory split_alike(const Trajectory&);
+/// The same motion begun `by` later [s], standing until then (it must start at rest); by < 0: its first -by seconds are left out.
+Trajectory shifted(const Trajectory&, double by);
+/// The same way from its end to its beginning.
+Trajectory reversed(const Trajectory&);
+/// All axes with the segments of the table.
+Trajectory to_trajectory(const SegmentTable&);
 /// State at the end.
 MotionState3 final_state(const Trajectory&);
 /// A trajectory of no duration at rest.

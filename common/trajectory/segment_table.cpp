@@ -29,6 +29,28 @@ SegmentTable::SegmentTable(const Trajectory& trajectory) : axes_(trajectory.size
   }
 }
 
+void SegmentTable::reserve(int axes, int segments) {
+  knots_.reserve(static_cast<std::size_t>(segments) + 1);
+  data_.reserve(static_cast<std::size_t>(segments) * 4 * axes);
+}
+
+int SegmentTable::room() const noexcept {
+  if (axes_ == 0 || knots_.capacity() == 0) return 0;
+  return static_cast<int>(std::min(knots_.capacity() - 1, data_.capacity() / (4 * static_cast<std::size_t>(axes_))));
+}
+
+void SegmentTable::clear(int axes) noexcept {
+  axes_ = axes;
+  knots_.clear();
+  knots_.push_back(0.0);
+  data_.clear();
+}
+
+void SegmentTable::add(double duration, const double* x, const double* v, const double* a, const double* j) noexcept {
+  knots_.push_back(knots_.back() + duration);
+  for (const double* part : {x, v, a, j}) data_.insert(data_.end(), part, part + axes_);
+}
+
 int SegmentTable::find(double t, int hint) const noexcept {
   const int last = segments() - 1;
   int k = std::clamp(hint, 0, last);

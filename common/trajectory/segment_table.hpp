@@ -12,6 +12,13 @@ class SegmentTable {
   SegmentTable() = default;
   explicit SegmentTable(const Trajectory&);  ///< allocates; nothing afterwards does
 
+  /// Built piece by piece instead: room for so many segments (allocates), then no allocation up to there.
+  void reserve(int axes, int segments);
+  int room() const noexcept;  ///< segments that fit without allocation
+  void clear(int axes) noexcept;
+  /// One more segment, from its states at its start (arrays of axes()).
+  void add(double duration, const double* x, const double* v, const double* a, const double* j) noexcept;
+
   int axes() const noexcept { return axes_; }
   int segments() const noexcept { return static_cast<int>(knots_.size()) - 1; }
   double duration() const noexcept { return knots_.empty() ? 0.0 : knots_.back(); }

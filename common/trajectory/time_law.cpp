@@ -1,6 +1,7 @@
 #include "common/trajectory/time_law.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -10,32 +11,42 @@
 namespace handsel {
 
 namespace {
-constexpr double kMargin = 0.99;    // of the guard, for what happens between two steps
+// Of the guard: what is planned with leaves something for what happens between two steps, and for rounding of what was planned.
+constexpr double kMargin = 0.99;
+constexpr std::array<double, 2> kSpareMargins{0.994, 0.998};
 constexpr double kMaxPush = 100.0;  // [1/s^2]
 constexpr double kMaxRate = 20.0;   // [1/s]
 constexpr int kHorizon = 600;       // steps of a way back to constant alpha
 constexpr double kLanded = 1e-9;
+
+bool still(const MotionState3& s) noexcept {
+  return s.velocity.cwiseAbs().maxCoeff() < 1e-6 && s.acceleration.cwiseAbs().maxCoeff() < 1e-5;
+}
 }  // namespace
 
-std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& guard, double step, double alpha) {
-  if (std::string why = why_not_within(trajectory, guard, 1e-6); !why.empty()) return why;
-  if (!(step > 0) || !(std::abs(alpha) <= 1)) return "the step must be positive and alpha in [-1, 1]";
-  const MotionState3 end = final_state(trajectory);
-  const auto still = [&](const Eigen::VectorXd& v, const Eigen::VectorXd& a) {
-    return v.cwiseAbs().maxCoeff() < 1e-6 && a.cwiseAbs().maxCoeff() < 1e-5;
-  };
+std::string why_not_runnable(const Trajectory& trajectory, const KinematicLimits& guard) {
   if (trajectory.size() == 0) return "the trajectory has no axes";
-  if (!still(end.velocity, end.acceleration)) return "the trajectory does not end at rest";
+  if (std::string why = why_not_within(trajectory, guard, 1e-6); !why.empty()) return why;
+  if (!still(final_state(trajectory))) return "the trajectory does not end at rest";
+  return {};
+}
+
+std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& guard, double step, double alpha) {
+  if (std::string why = why_not_runnable(trajectory, guard); !why.empty()) return why;
+  if (!(step > 0) || !(std::abs(alpha) <= 1)) return "the step must be positive and alpha in [-1, 1]";
   const MotionState3 start = trajectory.at(0);
-  const bool starts_still = still(start.velocity, start.acceleration);
+  const bool starts_still = still(start);
   if (!starts_still && alpha != 1) return "a trajectory that starts moving must start with alpha 1";
   table_ = SegmentTable(trajectory);
   const int n = table_.axes();
-  moving_.clear();
-  for (int i = 0; i < n; ++i) {
-    const AxisExtremes e = extremes(trajectory.axes[i]);
-    if (e.velocity > 0 || e.jerk > 0) moving_.push_back(i);
-  }
+  table_.reserve(n, kRoom);
+  spare_.clear(n);
+  spare_.reserve(n, kRoom);
+  connection_ = TrajectorySwitch(n);
+  guard_ = guard;
+  from_ = row_ = state_ = start;
+  row_jerk_ = jerk_ = Eigen::VectorXd::Zero(n);
+  moving_.reserve(n);
   A_.assign(guard.acceleration.data(), guard.acceleration.data() + n);
   J_.assign(guard.jerk.data(), guard.jerk.data() + n);
   for (Rates* r : {&begin_, &end_, &between_, &here_}) {
@@ -44,16 +55,90 @@ std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& g
     r->j.assign(n, 0.0);
     r->segment = 0;
   }
-  state_ = start;
-  jerk_ = Eigen::VectorXd::Zero(n);
+  find_moving();
   step_ = step;
   lowest_ = starts_still ? -1 : 0;
   now_ = {0, alpha, 0};
   target_ = alpha;
-  push_ = phase_ = 0;
+  push_ = phase_ = offset_ = joined_at_ = 0;
   cursor_ = 0;
   publish();
   return {};
+}
+
+void TimeLaw::find_moving() noexcept {
+  moving_.clear();
+  for (int i = 0; i < table_.axes(); ++i) jerk_[i] = 0;
+  for (int k = 0; k < table_.segments(); ++k) {
+    table_.rates(table_.knot(k), k, between_.v.data(), between_.a.data(), between_.j.data());
+    for (int i = 0; i < table_.axes(); ++i) jerk_[i] += std::abs(between_.v[i]) + std::abs(between_.a[i]) + std::abs(between_.j[i]);
+  }
+  for (int i = 0; i < table_.axes(); ++i) {
+    if (jerk_[i] > 0) moving_.push_back(i);
+    jerk_[i] = 0;
+  }
+}
+
+SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double keep_from, const SegmentTable& next,
+                                 const SwitchSettings& settings) noexcept {
+  if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings); found != SwitchOutcome::ok) return found;
+  const int coming = connection_.segments() + next.segments() + 1;
+  if (coming > spare_.room()) return SwitchOutcome::too_long;
+  const int before = keep_from < at.tau ? table_.find(at.tau, 0) - table_.find(keep_from, 0) + 1 : 0;
+  spare_.clear(table_.axes());
+  if (before > 0 && before + coming <= spare_.room()) add_part(table_, keep_from, at.tau, spare_, row_, row_jerk_);
+  const Now begin{spare_.segments() > 0 ? spare_.duration() : 0.0, at.alpha, at.beta};
+  const bool has_past = spare_.segments() > 0;
+  connection_.add_to(spare_, next);
+  if (spare_.segments() == 0)
+    spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), row_jerk_.setZero().data());
+  const Now old = now_;
+  const double old_lowest = lowest_;
+  std::swap(table_, spare_);
+  find_moving();
+  now_ = begin;
+  lowest_ = has_past ? lowest_ : still(from) ? -1 : 0;
+  double unused, end;
+  if (at.beta != 0 && !recover(now_, &unused, &end)) {
+    std::swap(table_, spare_);
+    find_moving();
+    now_ = old;
+    lowest_ = old_lowest;
+    publish();
+    return SwitchOutcome::not_now;
+  }
+  joined_at_ = connection_.joins_at();
+  offset_ = begin.tau + connection_.duration() - joined_at_;
+  target_ = std::max(target_, lowest_);
+  push_ = phase_ = 0;
+  cursor_ = 0;
+  publish();
+  return SwitchOutcome::ok;
+}
+
+SwitchOutcome TimeLaw::switch_to(const SegmentTable& next, const SwitchSettings& settings) noexcept {
+  if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
+  table_.evaluate(now_.tau, cursor_, from_);
+  const bool ended = now_.tau <= 0 ? lowest_ < 0 && still(from_) : now_.tau >= duration();
+  if (ended || standing()) {
+    from_.velocity.setZero();
+    from_.acceleration.setZero();
+    return take_over(from_, {0, std::max(0.0, target_), 0}, 0, next, settings);
+  }
+  if (now_.alpha < 0 || (now_.alpha == 0 && now_.beta < 0)) {
+    from_.velocity = -from_.velocity;
+    return take_over(from_, {0, -now_.alpha, -now_.beta}, 0, next, settings);
+  }
+  return take_over(from_, now_, lowest_ < 0 ? 0.0 : now_.tau, next, settings);
+}
+
+SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+  if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
+  const double target = target_;
+  target_ = 1;
+  const SwitchOutcome outcome = take_over(state, {0, 1, 0}, 0, next, settings);
+  if (outcome != SwitchOutcome::ok) target_ = target;
+  return outcome;
 }
 
 void TimeLaw::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
@@ -86,21 +171,30 @@ bool TimeLaw::bounds(const Now& s, const Rates& begin, const Rates& end, double*
   };
   const double h = step_;
   const double a0 = s.alpha, a1 = s.alpha + h * s.beta;
-  const double a0_cubed = a0 * a0 * a0, a1_squared = a1 * a1, a1_cubed = a1_squared * a1;
+  const double a0_squared = a0 * a0, a0_cubed = a0 * a0_squared, a1_squared = a1 * a1, a1_cubed = a1_squared * a1;
   const int from = std::min(begin.segment, end.segment), to = std::max(begin.segment, end.segment);
   for (const int i : moving_) {
     const double steady0 = a0_cubed * begin.j[i];
-    within(steady0 + 3 * a0 * s.beta * begin.a[i], begin.v[i], std::max(kMargin * J_[i], std::abs(steady0)));
+    within(steady0 + 3 * a0 * s.beta * begin.a[i], begin.v[i], std::max(margin_ * J_[i], std::abs(steady0)));
     const double steady1 = a1_cubed * end.j[i];
-    within(steady1 + 3 * a1 * s.beta * end.a[i], end.v[i] + 3 * a1 * end.a[i] * h, std::max(kMargin * J_[i], std::abs(steady1)));
-    const double push1 = a1_squared * end.a[i];
-    within(push1 + s.beta * end.v[i], h * end.v[i], std::max(kMargin * A_[i], std::abs(push1)));
+    within(steady1 + 3 * a1 * s.beta * end.a[i], end.v[i] + 3 * h * (end.a[i] * (a1 + h * s.beta / 2) + h * a1_squared * end.j[i] / 2),
+           std::max(margin_ * J_[i], std::abs(steady1)));
+    const double push1 = a1_squared * end.a[i], gain1 = h * (end.v[i] + h * a1 * end.a[i]);
+    within(push1 + s.beta * end.v[i], gain1, std::max(margin_ * A_[i], std::abs(push1)));
+    const double change = push1 - a0_squared * begin.a[i];
+    within(change + s.beta * (end.v[i] - begin.v[i]), gain1, std::max(margin_ * J_[i] * h, std::abs(change)));
   }
-  for (int k = from + 1; k < to; ++k) {
-    table_.rates(table_.knot(k), k, between_.v.data(), between_.a.data(), between_.j.data());
-    for (const int i : moving_) {
-      const double steady = a1_cubed * between_.j[i];
-      within(steady + 3 * a1 * s.beta * between_.a[i], between_.v[i], std::max(kMargin * J_[i], std::abs(steady)));
+  const double span = h * (a0 + h * s.beta / 2);
+  for (int k = from; k < to; ++k) {
+    const double knot = table_.knot(k + 1), at = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
+    const double ak = a0 + at * s.beta, ak_cubed = ak * ak * ak;
+    for (const int side : {k, k + 1}) {
+      table_.rates(knot, side, between_.v.data(), between_.a.data(), between_.j.data());
+      for (const int i : moving_) {
+        const double steady = ak_cubed * between_.j[i];
+        within(steady + 3 * ak * s.beta * between_.a[i], between_.v[i] + 3 * ak * between_.a[i] * at,
+               std::max(margin_ * J_[i], std::abs(steady)));
+      }
     }
   }
   *lo = std::max(low, (-kMaxRate - s.beta) / h);
@@ -118,7 +212,10 @@ bool TimeLaw::recover(Now s, double* first, double* alpha_end) noexcept {
     }
     rates_at(s.tau + step_ * (s.alpha + step_ * s.beta / 2), end_);
     double lo, hi;
-    if (!bounds(s, begin_, end_, &lo, &hi)) return false;
+    if (!bounds(s, begin_, end_, &lo, &hi)) {
+      if (k == 0) *first = 0.5 * (lo + hi);
+      return false;
+    }
     const double u = std::clamp(-s.beta / step_, lo, hi);
     if (k == 0) *first = u;
     s = next_of(s, u);
@@ -139,7 +236,15 @@ double TimeLaw::choose() noexcept {
     return 0;
   }
   double safe, end_safe;
-  if (!recover(now_, &safe, &end_safe)) return safe;
+  if (!recover(now_, &safe, &end_safe)) {
+    bool found = false;
+    for (std::size_t k = 0; k < kSpareMargins.size() && !found; ++k) {
+      margin_ = kSpareMargins[k];
+      found = recover(now_, &safe, &end_safe);
+    }
+    margin_ = kMargin;
+    return safe;
+  }
   const double want = target_ - end_safe;
   if (std::abs(want) <= kLanded) return safe;
   rates_at(now_.tau, begin_);

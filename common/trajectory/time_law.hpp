@@ -3,23 +3,38 @@
 // alpha'' is chosen every step. Before a choice is taken, the way back to a constant alpha is run ahead on the trajectory itself and must
 // keep every limit; a constant alpha always does, so there is always a way out, whatever is asked for and when. The choice that
 // gets toward the target fastest is taken; so slowing is as fast as the path permits at that place.
+//
+// A switch to another trajectory is made in the path's own time: path so far, connecting motion (switch.hpp), rest of the new trajectory,
+// twice continuously differentiable; so velocity and acceleration are continuous at any alpha, and running back leads over the old path.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/switch.hpp"
 #include "common/trajectory/trajectory.hpp"
 
 namespace handsel {
+
+/// Empty when a time law can run it: it keeps `guard`, has axes and ends at rest; else one sentence.
+std::string why_not_runnable(const Trajectory&, const KinematicLimits& guard);
 
 class TimeLaw {
  public:
   TimeLaw() = default;
   /// The trajectory must keep `guard` (it is planned at guard / 1.1: the rest is what alpha can be changed with) and end at rest.
-  /// One that starts moving begins with alpha = 1 and is never run backwards. Returns why not, or nothing. Allocates; nothing else does.
+  /// One that starts moving begins with alpha = 1 and is never run backwards. Returns why not, or nothing. Allocates; nothing else does
+  /// as long as what a switch makes stays below kRoom segments (all axes split alike).
   /// `step`: how often alpha'' is chosen [s]; best the control period. `alpha`: in force at first.
   std::string init(const Trajectory&, const KinematicLimits& guard, double step = 0.001, double alpha = 1.0);
+
+  /// Goes over to another trajectory from where the path is now; alpha is kept. At rest it starts from rest; while running back it goes on
+  /// in the direction of the motion, and never runs back beyond here. The way so far is forgotten only when there is no room for it.
+  /// `next` is runnable and laid out beforehand. On anything but ok nothing has changed.
+  SwitchOutcome switch_to(const SegmentTable& next, const SwitchSettings& = {}) noexcept;
+  /// Starts on a trajectory from any state of the axes, moving or not, whatever ran before; alpha is 1, and it never runs back beyond here.
+  SwitchOutcome start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& = {}) noexcept;
 
   /// [-1, 1], clamped; anything not finite means 0.
   void set_target(double alpha) noexcept;
@@ -28,7 +43,11 @@ class TimeLaw {
 
   const MotionState3& state() const noexcept { return state_; }  ///< of all axes now
   const Eigen::VectorXd& jerk() const noexcept { return jerk_; }
-  double time() const noexcept { return now_.tau; }  ///< along the trajectory [s]
+  double time() const noexcept { return now_.tau; }  ///< along path() [s]
+  /// On the own time of the trajectory given last; while the connecting motion of a switch runs: before joined_at() [s].
+  double own_time() const noexcept { return now_.tau - offset_; }
+  double joined_at() const noexcept { return joined_at_; }      ///< own time at which the trajectory given last was joined [s]
+  const SegmentTable& path() const noexcept { return table_; }  ///< what is run: trajectories given and connecting motions
   double alpha() const noexcept { return now_.alpha; }
   double alpha_rate() const noexcept { return now_.beta; }  ///< [1/s]
   double duration() const noexcept { return table_.duration(); }
@@ -48,14 +67,23 @@ class TimeLaw {
   bool bounds(const Now&, const Rates& begin, const Rates& end, double* lo, double* hi) noexcept;
   bool recover(Now s, double* first, double* alpha_end) noexcept;
   Now next_of(const Now& s, double u) const noexcept;
+  SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, const SegmentTable& next,
+                          const SwitchSettings& settings) noexcept;
+  void find_moving() noexcept;
   double choose() noexcept;
   static Now moved(const Now& s, double u, double t) noexcept;
   void publish() noexcept;
 
-  SegmentTable table_;
+  static constexpr int kRoom = 2000;
+  SegmentTable table_, spare_;
+  TrajectorySwitch connection_;
+  KinematicLimits guard_;
+  MotionState3 from_, row_;
+  Eigen::VectorXd row_jerk_;
+  double offset_{}, joined_at_{};
   std::vector<int> moving_;
   std::vector<double> A_, J_;
-  double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{};
+  double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{}, margin_{0.99};
   Now now_, tick_;
   Rates begin_, end_, between_, here_;
   MotionState3 state_;
