@@ -89,6 +89,16 @@ Trajectory reversed(const Trajectory& whole) {
   return out;
 }
 
+Trajectory stretched(const Trajectory& whole, double factor) {
+  Trajectory out = whole;
+  for (AxisTrajectory& axis : out.axes) {
+    axis.start.velocity /= factor;
+    axis.start.acceleration /= factor * factor;
+    for (Segment& s : axis.segments) s = {s.duration * factor, s.jerk / (factor * factor * factor)};
+  }
+  return out;
+}
+
 Trajectory to_trajectory(const SegmentTable& table) {
   Trajectory out;
   const auto n = static_cast<std::size_t>(table.axes());

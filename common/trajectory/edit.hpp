@@ -16,6 +16,8 @@ Trajectory split_alike(const Trajectory&);
 Trajectory shifted(const Trajectory&, double by);
 /// The same way from its end to its beginning.
 Trajectory reversed(const Trajectory&);
+/// The same way, every duration times `factor` > 0: velocities / factor, accelerations / factor^2, jerks / factor^3.
+Trajectory stretched(const Trajectory&, double factor);
 /// All axes with the segments of the table.
 Trajectory to_trajectory(const SegmentTable&);
 /// State at the end.

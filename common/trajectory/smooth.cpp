@@ -129,17 +129,19 @@ std::vector<Candidate> candidates(const Leg& a, const Leg& b, const KinematicLim
   const double reach_b = std::min(settings.tau.value_or(b.slowing), b.duration / 2);
   double best = kLeastSaving, first_excess = 0;
   for (const double reach : kReaches) {
+    if (!settings.three_segments && !settings.stretching) break;
     const double before = reach * reach_a, after = reach * reach_b, stop = before + after;
     corner.place(before, after);
     const double least = corner.least_duration();
     if (least <= 0 || stop - least <= best) continue;
     const double excess = corner.three_excess(least, 1e9);
     if (reach == kReaches.front()) first_excess = excess;
-    if (excess <= settings.allowed_excess) {
+    if (excess <= settings.allowed_excess && settings.three_segments) {
       found.push_back({CornerMethod::three_segment, before, after, least, std::max(0.0, excess)});
       best = std::max(best, found.back().saved());
       continue;
     }
+    if (!settings.stretching) continue;
     double bad = least, good = 0;
     for (int k = 1; k <= 10 && good == 0; ++k) {
       const double T = least + (stop - best - least) * k / 10;
@@ -154,7 +156,7 @@ std::vector<Candidate> candidates(const Leg& a, const Leg& b, const KinematicLim
     found.push_back({CornerMethod::stretched, before, after, good, std::max(0.0, corner.three_excess(good, 1e9))});
     best = std::max(best, found.back().saved());
   }
-  const double most = std::min({a.duration / 2, b.duration / 2, settings.tau.value_or(a.duration)});
+  const double most = !settings.overlapping ? 0.0 : std::min({a.duration / 2, b.duration / 2, settings.tau.value_or(a.duration)});
   double good = 0, bad = most;
   for (int k = 10; k >= 1 && good == 0; --k) {
     const double shared = most * k / 10;
@@ -169,8 +171,9 @@ std::vector<Candidate> candidates(const Leg& a, const Leg& b, const KinematicLim
   if (good > kLeastSaving) found.push_back({CornerMethod::overlap, good, good, good, 0});
   std::stable_sort(found.begin(), found.end(), [](const Candidate& x, const Candidate& y) { return x.saved() > y.saved(); });
   if (found.empty()) {
-    why = most <= kLeastSaving ? "tau leaves no room"
-                               : "no transition keeps the limits; three segments exceed them by " + percent(first_excess);
+    why = std::min(reach_a, reach_b) <= kLeastSaving
+              ? "tau leaves no room"
+              : "no transition keeps the limits; three segments exceed them by " + percent(first_excess);
   }
   return found;
 }

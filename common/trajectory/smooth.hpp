@@ -30,8 +30,9 @@ struct CornerReport {
 };
 
 struct SmoothSettings {
-  std::optional<double> tau;   ///< transition reaches this far from the node, at most to the middle of a leg [s]; 0 stops.
-                               ///< Left out: the transition starts and ends where the legs cruise.
+  std::optional<double> tau;  ///< transition reaches this far from the node, at most to the middle of a leg [s]; 0 stops.
+                              ///< Left out: the transition starts and ends where the legs cruise.
+  bool three_segments{true}, stretching{true}, overlapping{true};  ///< which transitions are tried
   double allowed_excess{0.1};  ///< of three segments (planning limits <= guard limits / 1.1, so the guarantee stands)
 };
 

@@ -37,7 +37,7 @@ const char* reason(SwitchOutcome outcome) noexcept {
 }
 
 TrajectorySwitch::TrajectorySwitch(int axes)
-    : n_(axes), axes_(axes), profiles_(axes), start_(axes), there_(rest_state(Eigen::VectorXd::Zero(axes))), at_(axes), left_(axes) {
+    : n_(axes), problems_(axes), profiles_(axes), start_(axes), there_(rest_state(Eigen::VectorXd::Zero(axes))), at_(axes), left_(axes) {
   jerk_ = Eigen::VectorXd::Zero(axes);
   reduced_ = {jerk_, jerk_, jerk_};
 }
@@ -45,12 +45,17 @@ TrajectorySwitch::TrajectorySwitch(int axes)
 double TrajectorySwitch::meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t,
                                  double least) noexcept {
   next.evaluate(t, cursor_, there_);
-  if (!axes_.read(now, there_, limits)) return kNever;
-  double common = std::max(axes_.least_common(), least);
+  double common = least;
+  for (int i = 0; i < n_; ++i) {
+    const AxisState from{now.position[i], now.velocity[i], now.acceleration[i]};
+    const AxisState to{there_.position[i], there_.velocity[i], there_.acceleration[i]};
+    if (problems_[i].init(from, to, limits_of(limits, i)) != AxisOutcome::ok) return kNever;
+    common = std::max(common, problems_[i].minimum());
+  }
   for (bool grown = true; grown;) {
     grown = false;
     for (int i = 0; i < n_; ++i) {
-      const double later = axes_.problem(i).earliest(common);
+      const double later = problems_[i].earliest(common);
       if (later > common) common = later, grown = true;
     }
   }
@@ -103,7 +108,7 @@ bool TrajectorySwitch::earliest_meeting(const MotionState3& now, const SegmentTa
 
 bool TrajectorySwitch::make_profiles(const MotionState3& now, const KinematicLimits& guard) noexcept {
   for (int i = 0; i < n_; ++i) {
-    if (axes_.problem(i).profile(connect_, profiles_[i]) != AxisOutcome::ok) return false;
+    if (problems_[i].profile(connect_, profiles_[i]) != AxisOutcome::ok) return false;
     start_[i] = {now.position[i], now.velocity[i], now.acceleration[i]};
     const AxisExtremes e = rate_extremes(start_[i], profiles_[i].segments.data(), profiles_[i].count);
     const double allowed = 1 + kTolerance;

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
+#include "common/trajectory/min_time.hpp"
 #include "common/trajectory/segment_table.hpp"
-#include "common/trajectory/solve.hpp"
 
 namespace handsel {
 
@@ -54,7 +54,7 @@ class TrajectorySwitch {
   bool make_profiles(const MotionState3& now, const KinematicLimits& guard) noexcept;
 
   int n_;
-  SynchronisedAxes axes_;
+  std::vector<AxisProblem> problems_;
   std::vector<AxisProfile> profiles_;
   std::vector<AxisState> start_;
   KinematicLimits reduced_;

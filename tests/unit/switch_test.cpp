@@ -8,6 +8,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "common/trajectory/setpoint_filter.hpp"
 #include "common/trajectory/smooth.hpp"
+#include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/time_law.hpp"
 #include "tests/support/allocation_counter.hpp"
