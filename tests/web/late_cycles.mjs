@@ -4,7 +4,7 @@
 import { mkdtemp, readFile, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { launchBrowser, Program } from "./stage.mjs";
+import { launchBrowser, startSystem } from "./stage.mjs";
 
 const runs = Number(process.argv[2] ?? 5), domain = process.argv[3] ?? "37";
 const folder = await mkdtemp(join(tmpdir(), "handsel-late-"));
@@ -12,8 +12,7 @@ const sums = { without: [0, 0], with: [0, 0] };
 
 async function perform(browser) {
   const file = join(folder, "report.json");
-  const system = new Program("handsel", ["run", "--scenario", "give_mug", "--headless", "--domain", domain, "--port", "0", "--report", file]);
-  const [, address] = await system.line(/watch it at (http:\S+)/);
+  const { system, address } = await startSystem("run", domain, "--report", file);
   const page = await browser?.newPage({ viewport: { width: 1280, height: 800 } });
   await page?.goto(address);
   await system.ended;

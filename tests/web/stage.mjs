@@ -1,6 +1,7 @@
 // What the page's tests share: a running system, a headless browser, DDS samples, pictures.
 import { spawn } from "node:child_process";
 import { createRequire } from "node:module";
+import { createServer } from "node:net";
 import { dirname, join } from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
@@ -46,9 +47,17 @@ export class Program {
   }
 }
 
-// The system with its page; `address` is where the page is.
-export async function startSystem(domain, scenario = "give_mug") {
-  const system = new Program("handsel", ["run", "--scenario", scenario, "--headless", "--stay", "--domain", String(domain), "--port", "0"]);
+async function freePort() {
+  const server = createServer();
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const { port } = server.address();
+  await new Promise((resolve) => server.close(resolve));
+  return String(port);
+}
+
+// `handsel <command> …` with its page, once it is ready; `address` is where the page is.
+export async function startSystem(command, domain, ...options) {
+  const system = new Program("handsel", [command, "--scenario", "give_mug", "--headless", "--domain", domain, "--port", await freePort(), ...options]);
   const [, address] = await system.line(/watch it at (http:\S+)/);
   return { system, address };
 }

@@ -29,6 +29,8 @@ export class Robot {
     this.model = loader.parse(urdf);
     loader.parseVisual = false;
     this.ghost = loader.parse(urdf);
+    for (const robot of [this.model, this.ghost])
+      for (const joint of Object.values(robot.joints)) joint.ignoreLimits = true;  // what was measured is shown
     this.paint();
     this.group.add(this.model);
   }
