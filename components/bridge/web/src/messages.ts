@@ -35,7 +35,7 @@ export interface ActiveTrajectory {
   axes: ArrayLike<number>;
   rest: { axes: AxisTrajectory[] };
 }
-export interface TrajectoryForecast { collides: boolean; time_to_collision: number; reason: string }
+export interface TrajectoryForecast { collides: boolean; time_to_collision: number; clearance: number; reason: string }
 
 export interface ExecutionStatus {
   mode: number;

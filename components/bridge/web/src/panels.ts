@@ -127,18 +127,21 @@ export class Panels {
 
   private distance(): void {
     const execution = this.link.newest("handsel/execution_status"), humans = this.link.newest("handsel/human_state");
-    const distance = execution?.separation;
+    const forecast = this.link.newest("handsel/trajectory_forecast");
+    const distance = execution?.separation ?? forecast?.clearance;
     if (distance === undefined || distance >= kNobody) {
       put("separation", humans && humans.people.length === 0 ? (humans.covered ? "nobody near" : "nobody seen, not all in view") : "unknown");
       put("separation-limit", "");
+      byId("separation-mark").hidden = true;
       bar(byId("separation-bar"), 0);
       return;
     }
     const limit = execution?.separation_limit ?? 0;
     put("separation", `${distance.toFixed(2)} m`);
-    put("separation-limit", `limit ${limit.toFixed(2)} m`);
+    put("separation-limit", limit > 0 ? `limit ${limit.toFixed(2)} m` : "");
     const how = nearness(distance, limit), full = Math.max(2 * limit, 1.5);
     bar(byId("separation-bar"), distance / full, how === "calm" ? "good" : how === "near" ? "warn" : "bad");
+    byId("separation-mark").hidden = limit === 0;
     byId("separation-mark").style.transform = `translateX(${((100 * limit) / full).toFixed(1)}cqw)`;
   }
 

@@ -144,6 +144,8 @@ export class World {
     const execution = link.newest("handsel/execution_status");
     const known = execution?.nearest_on_robot !== undefined && execution.separation < kNobody && link.age("handsel/execution_status") < 1;
     this.separation.mesh.visible = false;
+    const legend = this.stage.querySelector<HTMLElement>(".legend .near");
+    if (legend) legend.hidden = !known;
     this.labels.clear();
     for (const [id, at] of this.people.labels()) this.labels.add(id, at, "person");
     for (const [id, at] of this.things.labels()) this.labels.add(id, at, "object");
