@@ -5,7 +5,7 @@ import { Panels } from "./panels";
 import { Part, Region, World } from "./world";
 
 const kFrame = 33, kTables = 200;  // [ms] least time between pictures, between updates of the tables
-const kRest = 2;                   // pictures take at most a share of 1 / (1 + kRest) of the time
+const kRest = 5, kLongest = 500;   // times as long as the last picture took until the next; [ms] at most
 const kNoWebGl = "This browser cannot draw the 3-D view (WebGL is missing or switched off); everything else on this page works.";
 
 // For whoever looks from outside.
@@ -50,11 +50,11 @@ async function start(): Promise<void> {
   const name = document.getElementById("scene-name");
   if (name) name.textContent = [config.robot, config.scenario.replaceAll("_", " ")].filter(Boolean).join(" · ");
 
-  let world: World | undefined, pending = false, drawnAt = 0, cost = 0, tablesAt = 0;
+  let world: World | undefined, pending = false, drawnAt = 0, tablesAt = 0;
   const wake = (): void => {
     if (pending) return;
     pending = true;
-    const due = drawnAt + Math.max(kFrame, kRest * cost) - performance.now();
+    const due = drawnAt + Math.max(kFrame, Math.min(kRest * (world?.cost ?? 0), kLongest)) - performance.now();
     if (due > 4) setTimeout(() => requestAnimationFrame(frame), due - 4);
     else requestAnimationFrame(frame);
   };
@@ -66,9 +66,8 @@ async function start(): Promise<void> {
   const frame = (): void => {
     pending = false;
     const begin = performance.now();
-    if (world?.update(link)) world.render();
-    cost += 0.2 * (performance.now() - begin - cost);
     drawnAt = begin;
+    if (world?.ready() && world.update(link)) world.render();
     if (begin - tablesAt >= kTables) {
       tablesAt = begin;
       panels.show(angleOf);

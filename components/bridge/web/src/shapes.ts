@@ -2,8 +2,8 @@
 import * as THREE from "three";
 import { Pose, Vector3 } from "./messages";
 
-export const kSphere = new THREE.SphereGeometry(1, 20, 14);
-export const kCylinder = new THREE.CylinderGeometry(1, 1, 1, 20, 1, true);  // along y, from -0.5 to 0.5
+export const kSphere = new THREE.SphereGeometry(1, 16, 12);
+export const kCylinder = new THREE.CylinderGeometry(1, 1, 1, 16, 1, true);  // along y, from -0.5 to 0.5
 
 const up = new THREE.Vector3(0, 1, 0), along = new THREE.Vector3(), middle = new THREE.Vector3(), turn = new THREE.Quaternion();
 

@@ -19,6 +19,7 @@ export interface Region { x: number; y: number; width: number; height: number }
 
 export class World {
   frames = 0;
+  cost = 0;  // [ms] the last picture took
   readonly robot: Robot;
   private readonly renderer: THREE.WebGLRenderer;
   private readonly scene = new THREE.Scene();
@@ -29,6 +30,8 @@ export class World {
   private readonly separation = new Rod(0.005, kCalm);
   private readonly exchange = new THREE.Mesh(kSphere, new THREE.MeshBasicMaterial({ color: 0x8a5cf6, transparent: true, opacity: 0.45 }));
   private readonly labels: Labels;
+  private fence: WebGLSync | null = null;
+  private begun = 0;
   private framed = false;
   private dirty = true;
 
@@ -36,12 +39,13 @@ export class World {
   constructor(private readonly stage: HTMLElement, urdf: string, config: Config, private readonly wake: () => void,
               onProblem: (sentence: string) => void) {
     const canvas = document.createElement("canvas");
-    const context = canvas.getContext("webgl2", { antialias: true, powerPreference: "low-power" });
+    const software = drawsInSoftware();
+    const context = canvas.getContext("webgl2", { antialias: !software, powerPreference: "low-power" });
     if (!context) throw new Error("no WebGL");
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.PCFShadowMap;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.shadowMap.type = software ? THREE.BasicShadowMap : THREE.PCFShadowMap;
+    this.renderer.setPixelRatio(software ? 1 : Math.min(devicePixelRatio, 2));
     canvas.setAttribute("role", "img");
     canvas.setAttribute("aria-label", "The robot, the people around it and what it handles, in three dimensions");
     stage.prepend(canvas);
@@ -82,8 +86,23 @@ export class World {
   render(): void {
     this.dirty = false;
     this.renderer.render(this.scene, this.camera);
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    this.begun = performance.now();
     this.labels.place(this.camera, this.renderer.domElement.clientWidth, this.renderer.domElement.clientHeight);
     this.frames += 1;
+  }
+
+  // False while the last picture is still being drawn.
+  ready(): boolean {
+    if (!this.fence) return true;
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    if (!gl.isContextLost() && gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    gl.deleteSync(this.fence);
+    this.fence = null;
+    this.cost = performance.now() - this.begun;
+    return true;
   }
 
   // Puts robot, people and furniture into the middle of the view.
@@ -206,6 +225,13 @@ export class World {
     this.floor.receiveShadow = true;
     this.scene.add(this.floor, this.grid);
   }
+}
+
+function drawsInSoftware(): boolean {
+  const gl = document.createElement("canvas").getContext("webgl2"), info = gl?.getExtension("WEBGL_debug_renderer_info");
+  const name = gl && info ? String(gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|software|basic render/i.test(name);
 }
 
 // A square grid that fades out toward its rim.
