@@ -8,6 +8,7 @@
 
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/limits_check.hpp"
+#include "common/trajectory/min_time.hpp"
 #include "common/trajectory/three_segment.hpp"
 
 namespace handsel {
@@ -190,28 +191,29 @@ Derived differentiate(const std::vector<double>& times, const std::vector<Eigen:
   for (int k = 0; k < count; ++k) {
     const int first = std::clamp(k - reach, 0, std::max(0, count - 2 * reach - 1)), last = std::min(count - 1, first + 2 * reach);
     const double scale = times[last] - times[first];
-    Eigen::MatrixXd powers(last - first + 1, 4), values(last - first + 1, axes);
+    Eigen::MatrixX4d powers(last - first + 1, 4);
+    Eigen::MatrixXd values(last - first + 1, axes);
     for (int i = first; i <= last; ++i) {
       const double u = (times[i] - times[k]) / scale;
       powers.row(i - first) << 1, u, u * u, u * u * u;
       values.row(i - first) = positions[i].transpose();
     }
-    const Eigen::MatrixXd c = powers.colPivHouseholderQr().solve(values);
+    const Eigen::Matrix4d square = powers.transpose() * powers;
+    const Eigen::MatrixXd c = square.ldlt().solve(powers.transpose() * values);
+    out.samples[k].position = c.row(0).transpose();
     out.samples[k].velocity = c.row(1).transpose() / scale;
     out.samples[k].acceleration = 2 * c.row(2).transpose() / (scale * scale);
   }
   return out;
 }
 
-SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits) {
+namespace {
+/// `bound`: of alpha at each sample; lowered where needed.
+SlowedDown slow_down_from(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits,
+                          std::vector<double>& bound) {
   SlowedDown out;
-  out.reason = why_bad(times, samples);
-  if (out.ok()) out.reason = why_bad_limits(limits, static_cast<int>(samples[0].position.size()));
-  if (!out.ok()) return out;
   const std::size_t n = samples.size();
-  std::vector<double> bound(n, 1.0);
-  const double whole = times.back() - times.front();
-  double reach = std::min(0.2, whole / 4);
+  const double reach = std::min(0.2, (times.back() - times.front()) / 4);
   for (int round = 0; round < 200; ++round) {
     out.alpha = mean_around(times, least_around(times, bound, reach), reach);
     run_through(times, samples, out);
@@ -237,25 +239,54 @@ SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionS
   run_through(times, samples, out);
   return out;
 }
+}  // namespace
+
+SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits) {
+  SlowedDown out;
+  out.reason = why_bad(times, samples);
+  if (out.ok()) out.reason = why_bad_limits(limits, static_cast<int>(samples[0].position.size()));
+  if (!out.ok()) return out;
+  std::vector<double> bound(samples.size(), 1.0);
+  return slow_down_from(times, samples, limits, bound);
+}
 
 Executable approximate_within(const std::vector<double>& times, const std::vector<MotionState3>& samples,
                               const ApproximationTolerance& tolerance, const KinematicLimits& limits) {
   Executable out;
-  const SlowedDown slowed = slow_down(times, samples, limits);
-  if (!slowed.ok()) {
-    out.approximation.reason = slowed.reason;
+  const SlowedDown first = slow_down(times, samples, limits);
+  if (!first.ok()) {
+    out.approximation.reason = first.reason;
     return out;
   }
-  out.slowest = *std::min_element(slowed.alpha.begin(), slowed.alpha.end());
-  out.approximation = approximate(slowed.times, slowed.samples, tolerance);
-  if (!out.approximation.ok()) return out;
-  for (const AxisTrajectory& axis : out.approximation.trajectory.axes) {
-    const auto i = &axis - out.approximation.trajectory.axes.data();
-    const AxisExtremes e = extremes(axis);
-    out.stretch = std::max({out.stretch, e.velocity / limits.velocity[i], std::sqrt(e.acceleration / limits.acceleration[i]),
-                            std::cbrt(e.jerk / limits.jerk[i])});
+  std::vector<double> bound(samples.size(), 1.0);
+  for (int round = 0; round < 12; ++round) {
+    const SlowedDown slowed = slow_down_from(times, samples, limits, bound);
+    out.slowest = *std::min_element(slowed.alpha.begin(), slowed.alpha.end());
+    out.approximation = approximate(slowed.times, slowed.samples, tolerance);
+    if (!out.approximation.ok()) return out;
+    out.stretch = 1;
+    for (const AxisTrajectory& axis : out.approximation.trajectory.axes) {
+      const auto i = &axis - out.approximation.trajectory.axes.data();
+      AxisState s = axis.start;
+      double t = times[0];
+      for (std::size_t k = 0; k < axis.segments.size(); ++k) {
+        const Segment& g = axis.segments[k];
+        const AxisExtremes e = rate_extremes(s, &g, 1);
+        const double beyond = std::max(
+            {e.velocity / limits.velocity[i], std::sqrt(e.acceleration / limits.acceleration[i]), std::cbrt(e.jerk / limits.jerk[i])});
+        s = advanced(s, g.duration, g.jerk);
+        t += g.duration;
+        out.stretch = std::max(out.stretch, beyond);
+        if (!(beyond > 1)) continue;
+        const auto begin = std::lower_bound(slowed.times.begin(), slowed.times.end(), t - 3 * g.duration) - slowed.times.begin();
+        for (auto m = begin; m < static_cast<std::ptrdiff_t>(bound.size()) && slowed.times[m] <= t + 3 * g.duration; ++m) {
+          bound[m] = std::min(bound[m], 0.98 * slowed.alpha[m] / beyond);
+        }
+      }
+    }
+    if (!(out.stretch > 1)) return out;
   }
-  if (out.stretch > 1) out.approximation.trajectory = stretched(out.approximation.trajectory, out.stretch);
+  out.approximation.trajectory = stretched(out.approximation.trajectory, out.stretch);
   return out;
 }
 

@@ -33,8 +33,8 @@ struct Derived {
   bool ok() const { return reason.empty(); }
 };
 
-/// Velocity and acceleration of sampled positions: the least-squares cubic through each sample and `reach` neighbours on either side. The
-/// positions are kept. At least 4 samples. Reach 2 for exact samples; more takes out the noise of measured ones.
+/// Velocity and acceleration of sampled positions: the least-squares cubic through each sample and `reach` neighbours on either side.
+/// Positions are those of the cubic too. At least 4 samples. Reach 2 for exact samples; more takes out the noise of measured ones.
 Derived differentiate(const std::vector<double>& times, const std::vector<Eigen::VectorXd>& positions, int reach = 2);
 
 struct SlowedDown {

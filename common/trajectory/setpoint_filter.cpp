@@ -39,8 +39,9 @@ const AxisState& SetpointFilter::toward_velocity(double velocity, double acceler
 
 const AxisState& SetpointFilter::toward(const AxisState& target, double dt) noexcept {
   const double carried = usable(target.velocity, limits_.velocity);
-  const AxisLimits left{limits_.velocity - std::abs(carried), limits_.acceleration, limits_.jerk};
-  const AxisState relative{state_.position - target.position, state_.velocity - carried, state_.acceleration};
+  const double pushed = usable(target.acceleration, limits_.acceleration / 2);
+  const AxisLimits left{limits_.velocity - std::abs(carried), limits_.acceleration - std::abs(pushed), limits_.jerk};
+  const AxisState relative{state_.position - target.position, state_.velocity - carried, state_.acceleration - pushed};
   AxisProfile profile;
   if (!(left.velocity > 1e-9 * limits_.velocity) || solve_axis(relative, {}, left, profile) != AxisOutcome::ok) {
     return toward_velocity(carried, 0, dt);
@@ -48,8 +49,8 @@ const AxisState& SetpointFilter::toward(const AxisState& target, double dt) noex
   const AxisState before = state_;
   follow(profile, dt);
   const double rest = state_.velocity + state_.acceleration * std::abs(state_.acceleration) / (2 * limits_.jerk);
-  const double bound = limits_.velocity * (1 + 1e-9);
-  if (std::abs(state_.velocity) > bound || std::abs(rest) > bound) {
+  const double bound = limits_.velocity * (1 + 1e-9), push = limits_.acceleration * (1 + 1e-9);
+  if (std::abs(state_.velocity) > bound || std::abs(rest) > bound || std::abs(state_.acceleration) > push) {
     state_ = before;
     return toward_velocity(carried, 0, dt);
   }

@@ -13,7 +13,9 @@ class SetpointFilter {
 
   /// One tick toward a velocity and acceleration (clamped to the limits; not finite: 0).
   const AxisState& toward_velocity(double velocity, double acceleration, double dt) noexcept;
-  /// One tick toward a target that goes on with its velocity: minimum time in the frame that moves with it (its acceleration is not used).
+  /// One tick toward a target, as it is now, that goes on with its velocity and acceleration: minimum time in the frame that moves with it,
+  /// so at its rest, and an acceleration of the target asked for anew each tick makes no difference in kind. Its acceleration counts up to
+  /// half the limit. Once caught, a target of constant acceleration is followed without error.
   const AxisState& toward(const AxisState& target, double dt) noexcept;
 
   const AxisState& state() const noexcept { return state_; }

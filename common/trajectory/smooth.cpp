@@ -15,6 +15,7 @@ namespace {
 using detail::Leg;
 
 constexpr double kLeastSaving = 1e-4;  // [s]
+constexpr double kFarthest = 1e9;
 constexpr std::array<double, 4> kReaches{1.0, 0.7, 0.45, 0.25};
 
 struct Candidate {
@@ -200,8 +201,10 @@ std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes, const Smoot
       return "node " + std::to_string(k) + " has " + std::to_string(nodes[k].size()) + " axes, node 0 " + std::to_string(nodes[0].size());
     }
     if (!nodes[k].allFinite()) return "node " + std::to_string(k) + " has a number that is not finite";
+    if (nodes[k].lpNorm<Eigen::Infinity>() > kFarthest) return "node " + std::to_string(k) + " has a number that is too large";
   }
-  if (settings.tau && !(*settings.tau >= 0)) return "tau must not be negative";
+  if (settings.tau && !(*settings.tau >= 0)) return "tau must be a number that is not negative";
+  if (nodes[0].size() == 0) return "the nodes have no axes";
   return {};
 }
 
@@ -246,6 +249,10 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
     node_of.push_back(static_cast<int>(k));
     last = &nodes[k];
     out.duration_ptp += legs.back().duration;
+    if (!(legs.back().duration > 0) || !std::isfinite(legs.back().duration)) {
+      out.reason = "the way to node " + std::to_string(k) + " cannot be computed with such limits";
+      return out;
+    }
   }
   for (const double x : nodes[0]) {
     out.trajectory.axes.push_back({{x, 0, 0}, {}});

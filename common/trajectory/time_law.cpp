@@ -13,7 +13,8 @@ namespace handsel {
 namespace {
 // Of the guard: what is planned with leaves something for what happens between two steps, and for rounding of what was planned.
 constexpr double kMargin = 0.99;
-constexpr std::array<double, 2> kSpareMargins{0.994, 0.998};
+constexpr std::array<double, 3> kSpareMargins{0.994, 0.998, 0.9995};
+constexpr double kWhole = 1 - 1e-4;
 constexpr double kMaxPush = 100.0;  // [1/s^2]
 constexpr double kMaxRate = 20.0;   // [1/s]
 constexpr int kHorizon = 600;       // steps of a way back to constant alpha
@@ -178,14 +179,17 @@ bool TimeLaw::bounds(const Now& s, const Rates& begin, const Rates& end, double*
     within(steady0 + 3 * a0 * s.beta * begin.a[i], begin.v[i], std::max(margin_ * J_[i], std::abs(steady0)));
     const double steady1 = a1_cubed * end.j[i];
     within(steady1 + 3 * a1 * s.beta * end.a[i], end.v[i] + 3 * h * (end.a[i] * (a1 + h * s.beta / 2) + h * a1_squared * end.j[i] / 2),
-           std::max(margin_ * J_[i], std::abs(steady1)));
+           std::max(margin_ * J_[i], std::min(std::abs(steady1), std::abs(end.j[i]))));
     const double push1 = a1_squared * end.a[i], gain1 = h * (end.v[i] + h * a1 * end.a[i]);
-    within(push1 + s.beta * end.v[i], gain1, std::max(margin_ * A_[i], std::abs(push1)));
+    within(push1 + s.beta * end.v[i], gain1, std::max(margin_ * A_[i], std::min(std::abs(push1), std::abs(end.a[i]))));
     const double change = push1 - a0_squared * begin.a[i];
-    within(change + s.beta * (end.v[i] - begin.v[i]), gain1, std::max(margin_ * J_[i] * h, std::abs(change)));
+    within(change + s.beta * (end.v[i] - begin.v[i]), gain1, std::max(margin_ * J_[i] * h, std::min(std::abs(change), kWhole * J_[i] * h)));
   }
-  const double span = h * (a0 + h * s.beta / 2);
-  for (int k = from; k < to; ++k) {
+  // Where a step ends is known up to what alpha'' adds; a knot that near is passed, or not.
+  const double span = h * (a0 + h * s.beta / 2), unsure = kMaxPush * h * h * h / 6, stop = s.tau + span;
+  const bool on = span >= 0 && to + 1 < table_.segments() && table_.knot(to + 1) - stop < unsure;
+  const bool back = span < 0 && from > 0 && stop - table_.knot(from) < unsure;
+  for (int k = from - back; k < to + on; ++k) {
     const double knot = table_.knot(k + 1), at = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
     const double ak = a0 + at * s.beta, ak_cubed = ak * ak * ak;
     for (const int side : {k, k + 1}) {
@@ -193,7 +197,7 @@ bool TimeLaw::bounds(const Now& s, const Rates& begin, const Rates& end, double*
       for (const int i : moving_) {
         const double steady = ak_cubed * between_.j[i];
         within(steady + 3 * ak * s.beta * between_.a[i], between_.v[i] + 3 * ak * between_.a[i] * at,
-               std::max(margin_ * J_[i], std::abs(steady)));
+               std::max(margin_ * J_[i], std::min(std::abs(steady), std::abs(between_.j[i]))));
       }
     }
   }

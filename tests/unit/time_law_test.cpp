@@ -189,5 +189,43 @@ TEST(SetpointFilter, CatchesAMovingTarget) {
   EXPECT_NEAR(filter.state().velocity, 0.3, 1e-3);
 }
 
+TEST(SetpointFilter, CatchesWhatAHandHoldsAndStaysOnIt) {
+  const std::uint64_t seed = 35;
+  Draw draw{std::mt19937_64(seed)};
+  const double dt = 0.001;
+  double worst = 0, slowest = 0;
+  for (int k = 0; k < 100; ++k) {
+    const AxisLimits l{draw(0.5, 2), draw(2, 5), draw(10, 30)};
+    // A hand that sways: well within the limits, and the target is seen with the noise of a camera in every other case.
+    const double w = draw(0.5, 1.5), size = 0.4 * std::min(l.velocity / w, l.acceleration / (w * w)), phase = draw(0, 6),
+                 noise = k % 2 ? 1e-4 : 0;
+    SetpointFilter filter({draw(-1, 1), 0, 0}, l);
+    double caught = -1;
+    for (int i = 0; i < 8000; ++i) {
+      const double t = i * dt, s = w * t + phase;
+      const AxisState target{size * std::sin(s) + noise * draw(-1, 1), size * w * std::cos(s), -size * w * w * std::sin(s)};
+      const AxisState before = filter.state(), after = filter.toward(target, dt);
+      ASSERT_LE(std::abs(after.velocity), l.velocity * (1 + 1e-6)) << "seed " << seed << " case " << k << " tick " << i;
+      ASSERT_LE(std::abs(after.acceleration), l.acceleration * (1 + 1e-6)) << "seed " << seed << " case " << k << " tick " << i;
+      ASSERT_LE(std::abs(after.acceleration - before.acceleration), l.jerk * dt * (1 + 1e-6));
+      const double miss = std::abs(after.position - size * std::sin(s + w * dt));
+      if (caught < 0 && miss < 1e-3) caught = t;
+      if (caught >= 0 && t > caught + 1) worst = std::max(worst, miss);
+    }
+    ASSERT_GE(caught, 0) << "seed " << seed << " case " << k;
+    slowest = std::max(slowest, caught);
+  }
+  printf("caught after at most %.2f s, then off by at most %.2e\n", slowest, worst);
+  EXPECT_LT(worst, 2e-3);
+}
+
+TEST(SetpointFilter, NumbersThatAreNoneLeadToRest) {
+  SetpointFilter filter({0, 0.5, 0}, {1, 2, 10});
+  for (int i = 0; i < 3000; ++i) filter.toward({std::nan(""), std::nan(""), std::nan("")}, 0.001);
+  EXPECT_NEAR(filter.state().velocity, 0, 1e-9);
+  for (int i = 0; i < 3000; ++i) filter.toward_velocity(INFINITY, std::nan(""), 0.001);
+  EXPECT_NEAR(filter.state().velocity, 0, 1e-9);
+}
+
 }  // namespace
 }  // namespace handsel

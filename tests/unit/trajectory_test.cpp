@@ -91,6 +91,33 @@ TEST(Edit, CutAndAppendGiveTheSameMotion) {
   }
 }
 
+TEST(Edit, ShiftedReversedStretchedAndTabledMotionsAreTheSameWay) {
+  Draw draw{std::mt19937_64(27)};
+  for (int k = 0; k < 300; ++k) {
+    const KinematicLimits l = draw.limits(3);
+    const Trajectory whole = solve(draw.state(l, 0.5), draw.state(l, 0.5), l).trajectory;
+    const Trajectory rest = solve(rest_state(VectorXd::Zero(3)), rest_state(VectorXd::Ones(3)), l).trajectory;
+    const double T = whole.duration(), by = draw(0, 2), factor = draw(0.2, 5);
+    const Trajectory late = shifted(rest, by), early = shifted(whole, -by), back = reversed(whole), slow = stretched(whole, factor),
+                     tabled = to_trajectory(SegmentTable(whole));
+    ASSERT_NEAR(late.duration(), rest.duration() + by, 1e-9);
+    ASSERT_NEAR(slow.duration(), T * factor, 1e-9 * factor * T);
+    ASSERT_EQ(back.axes[0].segments.size(), whole.axes[0].segments.size());
+    for (int i = 0; i <= 20; ++i) {
+      const double t = T * i / 20;
+      const MotionState3 x = whole.at(t), b = back.at(T - t), s = slow.at(t * factor), m = tabled.at(t);
+      ASSERT_LT((x.position - b.position).norm() + (x.velocity + b.velocity).norm() + (x.acceleration - b.acceleration).norm(), 1e-7);
+      ASSERT_LT((x.position - s.position).norm() + (x.velocity - s.velocity * factor).norm(), 1e-8);
+      ASSERT_LT((x.acceleration - s.acceleration * factor * factor).norm(), 1e-8);
+      ASSERT_LT((x.position - m.position).norm() + (x.velocity - m.velocity).norm() + (x.acceleration - m.acceleration).norm(), 1e-8);
+      ASSERT_LT((late.at(t + by).position - rest.at(t).position).norm() + late.at(std::min(t, by)).position.norm() * (t < by), 1e-9);
+      if (t >= by) {
+        ASSERT_LT((early.at(t - by).position - x.position).norm(), 1e-9);
+      }
+    }
+  }
+}
+
 TEST(ThreeSegment, MeetsBothEnds) {
   Draw draw{std::mt19937_64(23)};
   for (int k = 0; k < 10000; ++k) {

@@ -1,0 +1,1 @@
+handsel_test(trajectory_lines SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_lines_test.cpp LINK handsel_batch handsel_wire LABEL unit)
