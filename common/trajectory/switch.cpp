@@ -173,6 +173,21 @@ void TrajectorySwitch::add_to(SegmentTable& out, const SegmentTable& next) noexc
   add_part(next, join_, next.duration(), out, there_, jerk_);
 }
 
+AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept {
+  AxisProblem problem, wider;
+  const AxisOutcome outcome = problem.init(from, to, limits);
+  if (outcome != AxisOutcome::ok) return outcome;
+  problem.minimum_profile(out);
+  for (const double by : {1e-9, 1e-7}) {
+    const AxisLimits l{limits.velocity * (1 + by), limits.acceleration * (1 + by), limits.jerk * (1 + by)};
+    if (wider.init(from, to, l) == AxisOutcome::ok && wider.minimum() < problem.minimum() * (1 - 1e-3) - 1e-9) {
+      wider.minimum_profile(out);
+      break;
+    }
+  }
+  return AxisOutcome::ok;
+}
+
 void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state, Eigen::VectorXd& jerk) noexcept {
   if (!(end - begin > kShortest)) return;
   int cursor = 0;

@@ -66,6 +66,11 @@ class TrajectorySwitch {
   int cursor_{};
 };
 
+/// solve_axis for a start that is already on a time-optimal way to an end in motion, as when a motion is planned anew each tick. Such a way
+/// is often the only one for its duration, and rounding decides whether it is found; so limits wider by 1e-9, then 1e-7, are tried too, and
+/// taken where the motion is then shorter by more than that could make it.
+AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept;
+
 /// The rows of `from` in [begin, its end], or up to `end`, added to `out`. No allocation within the room of `out`.
 void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state, Eigen::VectorXd& jerk) noexcept;
 

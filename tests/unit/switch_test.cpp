@@ -144,6 +144,44 @@ TEST(Switch, KeepsThePathBehindAndTheOwnTimeOfWhatRuns) {
   }
 }
 
+TEST(Replan, DoesNotJumpWhenStartAndEndAccelerateAlike) {
+  const std::uint64_t seed = 55;
+  Draw draw{std::mt19937_64(seed)};
+  const double dt = 0.004;
+  int jumps = 0, plain = 0;
+  const int cases = 1500;
+  for (int k = 0; k < cases; ++k) {
+    const KinematicLimits limits = draw.limits(1);
+    const AxisLimits l = limits_of(limits, 0);
+    const auto any = [&] {
+      const double v = draw(-0.9, 0.9) * l.velocity;
+      return AxisState{draw(-1, 1), v, draw(-0.9, 0.9) * std::min(l.acceleration, std::sqrt(2 * l.jerk * (l.velocity - std::abs(v))))};
+    };
+    AxisState s = any();
+    const AxisState end = any();
+    AxisProfile p;
+    ASSERT_EQ(replan_axis(s, end, l, p), AxisOutcome::ok);
+    for (double left = p.duration() - dt; left > dt; left -= dt) {
+      double t = dt;
+      for (int i = 0; i < p.count && t > 0; ++i) {
+        const double step = std::min(t, p.segments[i].duration);
+        s = advanced(s, step, p.segments[i].jerk);
+        t -= step;
+      }
+      AxisProfile q;
+      plain += solve_axis(s, end, l, q) == AxisOutcome::ok && q.duration() > left + 1e-3;
+      ASSERT_EQ(replan_axis(s, end, l, p), AxisOutcome::ok);
+      ASSERT_LE(rate_extremes(s, p.segments.data(), p.count).jerk, l.jerk * (1 + 1e-6));
+      if (p.duration() > left + 1e-3) {
+        ++jumps;
+        break;
+      }
+    }
+  }
+  printf("%d jumps in %d motions planned anew each tick; solve_axis at the same states: %d\n", jumps, cases, plain);
+  EXPECT_LE(jumps, 1);
+}
+
 TEST(Switch, NothingThatRunsInACycleAllocates) {
   Draw draw{std::mt19937_64(54)};
   const KinematicLimits guard = draw.limits(7);
@@ -170,6 +208,7 @@ TEST(Switch, NothingThatRunsInACycleAllocates) {
       axes.solve(a, b, guard);
       const AxisLimits l = limits_of(guard, i % 7);
       solve_axis({0.1, 0.1, 0.2}, {1, -0.1, 0.1}, l, profile);
+      replan_axis({0.1, 0.1, 0.2}, {1, -0.1, 0.1}, l, profile);
       stop.init({0, 0.2, 0.1}, l);
     }
     stop.step(0.001);

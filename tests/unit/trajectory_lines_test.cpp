@@ -27,15 +27,15 @@ json answer_to(const std::string& kind, const json& line) {
   return sample_line(line, 0.01);
 }
 
-struct Run {
+struct Answers {
   std::vector<json> answers;
   int exit_code{};
 };
 
-Run run(const std::string& kind, const std::string& text) {
+Answers run(const std::string& kind, const std::string& text) {
   std::istringstream in(text);
   std::ostringstream out;
-  Run result;
+  Answers result;
   result.exit_code = for_each_line(in, out, [&](const json& line) { return answer_to(kind, line); });
   std::istringstream lines(out.str());
   for (std::string line; std::getline(lines, line);) result.answers.push_back(json::parse(line));
@@ -49,7 +49,7 @@ std::string with(const std::string& field, const std::string& value) {
 }
 
 std::string error_of(const std::string& kind, const std::string& text) {
-  const Run r = run(kind, text);
+  const Answers r = run(kind, text);
   if (r.exit_code != 2 || r.answers.size() != 1 || !r.answers[0].contains("error")) return "no error: " + r.answers.at(0).dump();
   return r.answers[0]["error"];
 }
@@ -77,7 +77,7 @@ TEST(TrajectoryLines, EveryFaultHasItsOwnSentence) {
 }
 
 TEST(TrajectoryLines, StartsBeyondTheLimitsComeBackInside) {
-  const Run r = run("solve", with("v0", "[1.5,0]"));
+  const Answers r = run("solve", with("v0", "[1.5,0]"));
   ASSERT_EQ(r.exit_code, 0);
   const Trajectory t = trajectory_in(r.answers[0]);
   EXPECT_NEAR(t.at(0).velocity[0], 1.5, 1e-12);
@@ -87,7 +87,7 @@ TEST(TrajectoryLines, StartsBeyondTheLimitsComeBackInside) {
 TEST(TrajectoryLines, AnswersHaveWhatTheContractNames) {
   json imposed = json::parse(with("impose", "true"));
   imposed["duration"] = 12.5;
-  const Run solved = run("solve", with("sync", "\"time\"") + with("sync", "\"none\"") + "\n" + imposed.dump() + "\n");
+  const Answers solved = run("solve", with("sync", "\"time\"") + with("sync", "\"none\"") + "\n" + imposed.dump() + "\n");
   ASSERT_EQ(solved.exit_code, 0);
   ASSERT_EQ(solved.answers.size(), 3u);
   for (const json& a : solved.answers) {
@@ -96,7 +96,7 @@ TEST(TrajectoryLines, AnswersHaveWhatTheContractNames) {
   }
   EXPECT_NEAR(solved.answers[2]["duration"].get<double>(), 12.5, 1e-9);
   EXPECT_EQ(solved.answers[2]["excess"], 0);
-  const Run smoothed = run("smooth", R"({"nodes":[[0,0],[1,0],[1,1],[0,1]],"vmax":[1,1],"amax":[1,1],"jmax":[2,2]})");
+  const Answers smoothed = run("smooth", R"({"nodes":[[0,0],[1,0],[1,1],[0,1]],"vmax":[1,1],"amax":[1,1],"jmax":[2,2]})");
   ASSERT_EQ(smoothed.exit_code, 0);
   const json& a = smoothed.answers[0];
   ASSERT_EQ(a["corners"].size(), 2u);
@@ -106,7 +106,7 @@ TEST(TrajectoryLines, AnswersHaveWhatTheContractNames) {
     saved += c["saved_s"].get<double>();
   }
   EXPECT_NEAR(a["duration_ptp"].get<double>() - a["duration"].get<double>(), saved, 1e-9);
-  const Run sampled = run("sample", a.dump());
+  const Answers sampled = run("sample", a.dump());
   ASSERT_EQ(sampled.exit_code, 0);
   const json& s = sampled.answers[0];
   EXPECT_EQ(s["t"].size(), s["p"].size());
@@ -114,7 +114,7 @@ TEST(TrajectoryLines, AnswersHaveWhatTheContractNames) {
 }
 
 TEST(TrajectoryLines, ABadLineIsAnsweredAndTheRestStillRuns) {
-  const Run r = run("solve", with("p0", "[0,0]") + "{\n" + with("p0", "[0,0]"));
+  const Answers r = run("solve", with("p0", "[0,0]") + "{\n" + with("p0", "[0,0]"));
   EXPECT_EQ(r.exit_code, 2);
   ASSERT_EQ(r.answers.size(), 3u);
   EXPECT_EQ(r.answers[1]["line"], 2);
@@ -125,7 +125,7 @@ TEST(TrajectoryLines, ABadLineIsAnsweredAndTheRestStillRuns) {
 
 /// Nothing is thrown, every line has one answer: an error, or numbers that are numbers.
 void expect_sound(const std::string& kind, const std::string& text, const std::string& what) {
-  const Run r = run(kind, text);
+  const Answers r = run(kind, text);
   for (const json& answer : r.answers) {
     if (answer.contains("error")) {
       EXPECT_FALSE(answer["error"].get<std::string>().empty()) << what;
