@@ -41,8 +41,8 @@ class Reader {
     for (const auto& box : scenario_.boxes()) read_box(box);
     for (const auto& object : scenario_.objects()) read_object(object);
     for (const auto& person : scenario_.people()) read_person(person);
-    for (const auto& sensor : scenario_.human_sensors()) out_.human_sensors.push_back(sensor_of(sensor, coverage));
-    for (const auto& sensor : scenario_.object_sensors()) out_.object_sensors.push_back(sensor_of(sensor, coverage));
+    for (const auto& sensor : scenario_.human_sensors()) out_.human_sensors.push_back(sensor_of(sensor, coverage, true));
+    for (const auto& sensor : scenario_.object_sensors()) out_.object_sensors.push_back(sensor_of(sensor, coverage, false));
     for (const auto& d : scenario_.disturbances())
       out_.disturbances.push_back({d.at(), {0, sim_action(d.action()), d.subject(), d.value()}});
     std::stable_sort(out_.disturbances.begin(), out_.disturbances.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
@@ -113,15 +113,11 @@ class Reader {
     if (person.pull() > 0) s.pull = person.pull();
     s.left_handed = person.left_handed();
     if (s.kind == PersonKind::recording) {
-      std::filesystem::path folder = person.recording();
-      if (folder.empty()) fail("person " + s.id + " plays a recording but names none");
-      if (folder.is_relative()) {
-        if (data_root_.empty())
-          throw MissingError("recording " + folder.string() +
-                             " is relative, HANDSEL_DATA is not set and there is no ../shared/data beside the project");
-        folder = data_root_ / folder;
-      }
-      s.recording = std::make_shared<const Recording>(load_recording(folder));
+      if (person.recording().empty()) fail("person " + s.id + " plays a recording but names none");
+      Recording recording = load_recording(resolve_recording(person.recording(), data_root_));
+      if (person.stature() > 0) recording = retarget(recording, s.stature);
+      s.stature = recording.stature;
+      s.recording = std::make_shared<const Recording>(std::move(recording));
     }
     if (s.kind == PersonKind::giver) {
       p.holds = person.object();
@@ -132,14 +128,61 @@ class Reader {
     out_.people.push_back(std::move(p));
   }
 
-  SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage) const {
-    if (!(sensor.rate() > 0) || sensor.latency() < 0 || sensor.noise() < 0) {
-      fail("sensor " + sensor.source() + " needs a rate above 0, latency and noise not below 0");
-    }
-    SensorSettings s{sensor.source(), sensor.rate(), sensor.latency(), sensor.noise(), {}};
+  SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage, bool of_people) const {
+    const auto within = [&](double value, const char* key, double low, double high) {
+      if (value >= low && value <= high) return value;
+      char range[64];
+      std::snprintf(range, sizeof range, "%g, must be between %g and %g", value, low, high);
+      fail("sensor " + sensor.source() + ": " + key + " is " + range);
+    };
+    constexpr double kMost = 0.999;
+    SensorSettings s;
+    s.source = sensor.source();
+    if (s.source.empty()) fail("a sensor has no source: it needs a name");
+    s.rate = within(sensor.rate(), "rate", 1, 1000);
+    s.latency = within(sensor.latency(), "latency", 0, 10);
+    s.noise = within(sensor.noise(), "noise", 0, 1);
+    s.jitter = within(sensor.jitter(), "jitter", 0, 10);
+    s.dropout = within(sensor.dropout(), "dropout", 0, kMost);
+    s.burst_rate = within(sensor.burst_rate(), "burst_rate", 0, 1000);
+    s.burst_length = within(sensor.burst_length(), "burst_length", s.burst_rate > 0 ? 1e-3 : 0, 100);
+    s.joint_dropout = within(sensor.joint_dropout(), "joint_dropout", 0, kMost);
+    if (sensor.has_pose()) s.T_world_sensor = pose_of(sensor.pose());
+    s.fov_horizontal = within(sensor.fov_horizontal(), "fov_horizontal", 0, M_PI);
+    s.fov_vertical = within(sensor.fov_vertical(), "fov_vertical", 0, M_PI);
+    s.range = within(sensor.range(), "range", 0, 100);
+    s.occlusion = sensor.occlusion();
+    if (!s.T_world_sensor && (s.occlusion || s.range > 0 || s.fov_horizontal > 0 || s.fov_vertical > 0))
+      fail("sensor " + s.source + ": occlusion, range and field of view need its pose");
     const Vector3 centre = out_.T_world_base.translation();
     s.coverage.low = Vector3(centre.x() - coverage, centre.y() - coverage, -0.1);
     s.coverage.high = Vector3(centre.x() + coverage, centre.y() + coverage, 2.5);
+    if (sensor.has_coverage_low() != sensor.has_coverage_high())
+      fail("sensor " + s.source + ": coverage_low and coverage_high go together");
+    if (sensor.has_coverage_low()) s.coverage = {vec(sensor.coverage_low()), vec(sensor.coverage_high())};
+    if ((s.coverage.low.array() > s.coverage.high.array()).any()) fail("sensor " + s.source + ": coverage_high lies below coverage_low");
+    if (of_people) {
+      if (const std::string why = claims_too_much(s); !why.empty()) fail("sensor " + s.source + ": " + why);
+    }
+    for (const std::string& joint : sensor.joints()) {
+      if (body_joint_index(joint) < 0) fail("sensor " + s.source + " tracks " + joint + ", which is no REP-155 joint of a body");
+      s.joints.push_back(joint);
+    }
+    s.gaze = sensor.gaze() == config::NO_GAZE     ? GazeOutput::none
+             : sensor.gaze() == config::ONLY_GAZE ? GazeOutput::only
+                                                  : GazeOutput::with_body;
+    s.gaze_noise = within(sensor.gaze_noise(), "gaze_noise", 0, 1);
+    s.gaze_dropout = within(sensor.gaze_dropout(), "gaze_dropout", 0, 1);
+    s.swap_rate = within(sensor.swap_rate(), "swap_rate", 0, s.rate);
+    const bool only_people = !s.joints.empty() || s.joint_dropout > 0 || sensor.gaze() != config::GAZE_WITH_BODY || s.gaze_noise > 0 ||
+                             s.gaze_dropout > 0 || s.swap_rate > 0;
+    if (!of_people && only_people)
+      fail("sensor " + s.source + " sees objects: joints, joint_dropout, gaze and swap_rate are for sensors of people");
+    for (const auto& fault : sensor.faults()) {
+      s.faults.push_back({static_cast<SensorFaultKind>(fault.kind()), within(fault.at(), "at of a fault", 0, 1e6),
+                          within(fault.length(), "length of a fault", 1e-3, 1e6), vec(fault.shift()),
+                          within(fault.delay(), "delay of a fault", 0, 10)});
+    }
     return s;
   }
 

@@ -7,6 +7,12 @@
 
 namespace handsel::sim {
 
+std::filesystem::path data_root() {
+  if (const char* data = std::getenv("HANDSEL_DATA")) return data;
+  const std::filesystem::path beside = resource_root() / "../../shared/data";
+  return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+}
+
 SimSettings load_settings(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "sim.txtpb";
   config::SimSettings read;
@@ -35,11 +41,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.coverage = positive(read.coverage(), "coverage");
   s.ssm.reaction = positive(read.reaction(), "reaction");
   s.setpoint_period = read.setpoint_period();
-  const std::filesystem::path beside = resource_root() / "../../shared/data";
-  if (const char* data = std::getenv("HANDSEL_DATA"))
-    s.data_root = data;
-  else if (std::filesystem::exists(beside))
-    s.data_root = beside;
+  s.data_root = data_root();
   return s;
 }
 

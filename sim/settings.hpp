@@ -29,7 +29,10 @@ struct SimSettings {
   std::filesystem::path data_root;  ///< where relative recordings are found; empty: nowhere
 };
 
-/// Reads <folder>/sim.txtpb and the environment's HANDSEL_DATA. Throws ConfigError naming file and field.
+/// The environment's HANDSEL_DATA, else ../shared/data beside the project, else empty.
+std::filesystem::path data_root();
+
+/// Reads <folder>/sim.txtpb; data_root as above. Throws ConfigError naming file and field.
 SimSettings load_settings(const std::filesystem::path& folder);
 
 }  // namespace handsel::sim

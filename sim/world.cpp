@@ -8,6 +8,7 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
+#include "common/model/robot_capsules.hpp"
 #include "sim/contacts.hpp"
 #include "sim/handover_oracle.hpp"
 #include "sim/limits_oracle.hpp"
@@ -91,6 +92,7 @@ struct SimWorld::Impl {
     robot_grip = Grip(settings.robot_grip);
     build_objects();
     build_people();
+    prepare_sight();
     std::uint64_t salt = seed;
     for (const SensorSettings& sensor : setup.human_sensors) human_sensors.emplace_back(sensor, salt += 0x1000193);
     for (const SensorSettings& sensor : setup.object_sensors) object_sensors.emplace_back(sensor, salt += 0x1000193);
@@ -429,13 +431,41 @@ struct SimWorld::Impl {
   }
 
   void sense() {
-    std::vector<const Person*> seen;
-    for (const PersonBody& person : people) seen.push_back(&person.model.body());
-    for (HumanSensor& sensor : human_sensors) sensor.observe(now(), seen);
-    true_objects.resize(objects.size());
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      true_objects[i] = {objects[i].start.id, objects[i].start.model_name, objects[i].T_world_object};
-    for (ObjectSensor& sensor : object_sensors) sensor.observe(now(), true_objects);
+    bool looked = false;
+    const auto observe = [&](auto& sensor) {
+      if (!sensor.due(now())) return;
+      if (!looked) look();
+      looked = true;
+      sensor.observe(now(), sight);
+    };
+    for (HumanSensor& sensor : human_sensors) observe(sensor);
+    for (ObjectSensor& sensor : object_sensors) observe(sensor);
+  }
+
+  void look() {
+    sight.people.clear();
+    sight.bodies.clear();
+    sight.objects.clear();
+    for (const PersonBody& person : people) {
+      sight.people.push_back(&person.model.body());
+      sight.bodies.push_back(person.capsules);
+    }
+    for (const ObjectBody& object : objects) sight.objects.push_back({object.start.id, object.start.model_name, object.T_world_object});
+    for (std::size_t i = 0; i < hiding_links.size(); ++i) {
+      const LinkCapsule& c = hiding_links[i];
+      const Pose& T = robot->T_world_link(c.link);
+      sight.robot[i] = {T * c.a, T * c.b, c.radius};
+    }
+  }
+
+  void prepare_sight() {
+    const auto hidden = [](const SensorSettings& s) { return s.occlusion; };
+    if (std::none_of(setup.human_sensors.begin(), setup.human_sensors.end(), hidden) &&
+        std::none_of(setup.object_sensors.begin(), setup.object_sensors.end(), hidden))
+      return;
+    hiding_links = robot_capsules(model);
+    sight.robot.resize(hiding_links.size());
+    for (const StartBox& box : setup.boxes) sight.boxes.push_back({box.T_world_box, box.size});
   }
 
   void step() {
@@ -528,7 +558,8 @@ struct SimWorld::Impl {
   double human_silent_until{0}, state_silent_until{0};
   std::vector<Touch> touches;
   std::vector<PersonVolume> person_volumes;
-  std::vector<TrueObject> true_objects;
+  Sight sight;
+  std::vector<LinkCapsule> hiding_links;
   std::vector<HumanSensor> human_sensors;
   std::vector<ObjectSensor> object_sensors;
 

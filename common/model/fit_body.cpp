@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "common/model/human_body.hpp"
+#include "common/model/two_bones.hpp"
 
 namespace handsel {
 namespace {
@@ -86,21 +87,6 @@ int tree_distance(int a, int b) {
     ++n;
   }
   return n;
-}
-
-/// The middle joint of a two-bone limb whose ends are known, on the side where `hint` is.
-Vector3 bend(const Vector3& a, const Vector3& b, double first, double second, const Vector3& hint) {
-  const Vector3 line = b - a;
-  const double d = line.norm();
-  if (d < 1e-6) return hint;
-  const Vector3 along = line / d;
-  const double total = first + second;
-  if (d >= total) return a + (first / total) * line;
-  const double x = (d * d + first * first - second * second) / (2 * d);
-  Vector3 aside = hint - a - along * along.dot(hint - a);
-  if (aside.norm() < 1e-6) aside = -Vector3::UnitZ() + along * along.z();
-  if (aside.norm() < 1e-6) aside = Vector3::UnitX();
-  return a + x * along + std::sqrt(std::max(first * first - x * x, 0.0)) * aside.normalized();
 }
 
 }  // namespace

@@ -177,9 +177,9 @@ class BadRecording : public ::testing::Test {
   void SetUp() override {
     std::filesystem::create_directories(folder_);
     for (const char* part : {"hip", "chest", "neck", "head", "LUArm", "RUArm", "LFArm", "RFArm", "LHand", "RHand"}) {
-      const bool left = part[0] == 'L';
-      write(part,
-            std::string("x,y,z,q0,q1,q2,q3\n0,") + (left ? "0.2" : "-0.2") + ",1,0,0,0,1\n0," + (left ? "0.2" : "-0.2") + ",1,0,0,0,1\n");
+      const std::string row =
+          std::string("0,") + (part[0] == 'L' ? "0.2" : "-0.2") + (part == std::string("head") ? ",1.65" : ",1") + ",0,0,0,1\n";
+      write(part, "x,y,z,q0,q1,q2,q3\n" + row + row);
     }
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }

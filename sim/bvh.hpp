@@ -1,0 +1,38 @@
+// BVH motion files: the hierarchy, its channels and frames. Pure: text in, positions out. Format after Meredith and Maddock, "Motion
+// capture file formats explained".
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/geometry/pose.hpp"
+
+namespace handsel::sim {
+
+enum class BvhChannel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
+
+struct BvhJoint {
+  std::string name;  ///< without a prefix before ':'; of an end site: its parent's name + "_End"
+  int parent{-1};
+  Vector3 offset{Vector3::Zero()};   ///< from the parent, file units
+  std::vector<BvhChannel> channels;  ///< rotations apply in this order, the first outermost
+  int first_channel{};               ///< in a frame
+};
+
+struct Bvh {
+  std::vector<BvhJoint> joints;  ///< parents before children
+  int channels{};                ///< of a frame
+  double frame_time{};           ///< [s]
+  std::vector<double> values;    ///< frames x channels: file units and degrees
+
+  std::size_t frames() const { return channels > 0 ? values.size() / static_cast<std::size_t>(channels) : 0; }
+  int find(std::string_view joint) const;  ///< -1: none
+  /// World positions of all joints, in file units and axes.
+  void positions(std::size_t frame, std::vector<Vector3>& out) const;
+};
+
+/// Throws ConfigError "name:line: what is wrong, what would be right".
+Bvh parse_bvh(std::string_view text, const std::string& name);
+
+}  // namespace handsel::sim
