@@ -45,7 +45,11 @@ config::BridgeSettings read_settings(const std::filesystem::path& folder) {
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
-    : bus_(bus), raw_(dynamic_cast<RawBus*>(&bus)), site_(find_page(), resource_root()), readers_(topics().size()) {
+    : bus_(bus),
+      raw_(dynamic_cast<RawBus*>(&bus)),
+      site_(find_page(), resource_root()),
+      readers_(topics().size()),
+      drawing_(context.robot, context.objects) {
   const config::BridgeSettings settings = read_settings(context.settings);
   settings_.port = port_of(settings);
   settings_.max_clients = settings.max_clients();
@@ -56,6 +60,7 @@ Node::Node(Bus& bus, const NodeContext& context)
                           .version = HANDSEL_VERSION,
                           .session = std::to_string(bus.stamp_now())};
   catalogue_ = make_catalogue(*context.robot, resource_root(), facts);
+  for (Channel& channel : Drawing::channels()) catalogue_.channels.push_back(std::move(channel));
   config_ = config_json(*context.robot, resource_root(), facts);
 
   bus_.subscribe<ComponentHealth>(
@@ -67,7 +72,9 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus_.every(kRetry, [this](TimePoint) { open_page(); });
   bus_.every(from_seconds(1.0 / settings.rate()), [this](TimePoint) { look(); });
   bus_.every(kClock, [this](TimePoint) {
-    if (server_ && server_->any_client()) server_->set_time(bus_.stamp_now());
+    if (!server_ || !server_->any_client()) return;
+    server_->set_time(bus_.stamp_now());
+    draw();
   });
   bus_.every(kGraphPeriod, [this](TimePoint now) {
     if (server_) server_->set_graph(graph(now));
@@ -100,6 +107,29 @@ void Node::look() {
       samples.push_back(std::move(sample));
     }
   }
+  server_->publish(std::move(samples));
+}
+
+void Node::draw() {
+  const std::size_t transforms = topics().size(), scene = transforms + 1;
+  if (!server_->wanted(transforms) && !server_->wanted(scene)) return;
+  if (!drawing_listens_) {
+    drawing_listens_ = true;
+    bus_.subscribe<RobotState>([this](const RobotState& m, const Receipt&) { drawing_.take(m); }, {.period = kClock});
+    bus_.subscribe<HumanState>([this](const HumanState& m, const Receipt&) { drawing_.take(m); }, {.period = kClock});
+    bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { drawing_.take(m); }, {.period = kClock});
+  }
+  std::vector<Sample> samples;
+  const auto add = [&](std::size_t channel, const std::string& bytes) {
+    if (bytes.empty() || !server_->wanted(channel)) return;
+    samples.push_back({.channel = channel,
+                       .instance = 0,
+                       .gone = false,
+                       .stamp = bus_.stamp_now(),
+                       .bytes = std::make_shared<const std::vector<std::uint8_t>>(bytes.begin(), bytes.end())});
+  };
+  add(transforms, drawing_.transforms(bus_.stamp_now()));
+  add(scene, drawing_.scene(bus_.stamp_now()));
   server_->publish(std::move(samples));
 }
 

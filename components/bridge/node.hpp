@@ -9,6 +9,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/bus/raw.hpp"
+#include "components/bridge/drawing.hpp"
 #include "components/bridge/server.hpp"
 
 namespace handsel::bridge {
@@ -21,6 +22,7 @@ class Node {
  private:
   void open_page();
   void look();
+  void draw();
   Graph graph(TimePoint now) const;
 
   Bus& bus_;
@@ -31,6 +33,8 @@ class Node {
   std::string config_;
   std::vector<std::unique_ptr<RawReader>> readers_;  ///< by place in the table of topics; null: nobody watches
   std::map<std::string, TimePoint> heard_;           ///< components, by their health
+  Drawing drawing_;
+  bool drawing_listens_{false};  ///< from the first viewer that wants it
   std::unique_ptr<Server> server_;
 };
 

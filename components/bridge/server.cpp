@@ -155,17 +155,7 @@ class Client : public std::enable_shared_from_this<Client> {
  private:
   void read() {
     ws_.async_read(buffer_, [self = shared_from_this()](Error error, std::size_t) {
-      if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
-        ++self->shared_.counters.refused_messages;
-        return self->cut("it sent a message of more than " + std::to_string(kLargestMessage) + " bytes");
-      }
-      if (error) {
-        if (error.category() == websocket::make_error_code(websocket::error::closed).category() && error != websocket::error::closed) {
-          ++self->shared_.counters.refused_messages;
-          self->shared_.say("frame", "a client sent what is no WebSocket frame (" + error.message() + ")");
-        }
-        return self->end();
-      }
+      if (error) return self->leave(error);
       if (self->ws_.got_binary()) {
         self->viewer_.binary(monotonic());
       } else {
@@ -177,6 +167,16 @@ class Client : public std::enable_shared_from_this<Client> {
       self->flush();
       if (self->viewer_.cut().empty()) self->read();
     });
+  }
+
+  /// Beast ends a broken conversation itself and says so, unless the client does not answer that in time.
+  void leave(Error error) {
+    const bool went = error == websocket::error::closed || error == asio::error::eof || error == asio::error::connection_reset ||
+                      error == asio::error::operation_aborted || error == asio::error::broken_pipe;
+    if (went) return end();
+    ++shared_.counters.refused_messages;
+    cut("it broke the protocol, sent a message of more than " + std::to_string(kLargestMessage) + " bytes or fell silent (" +
+        error.message() + ")");
   }
 
   void cut(const std::string& why) {

@@ -1,0 +1,370 @@
+// The protocol without a socket: what a viewer is told, what it may ask, what waits for it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "common/config/resources.hpp"
+#include "common/model/human_body.hpp"
+#include "common/wire/schema.hpp"
+#include "components/bridge/catalogue.hpp"
+#include "components/bridge/drawing.hpp"
+#include "components/bridge/drawing.pb.h"
+#include "components/bridge/foxglove.hpp"
+#include "components/bridge/site.hpp"
+
+namespace handsel::bridge {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+Bytes bytes(const std::string& text) { return std::make_shared<const std::vector<std::uint8_t>>(text.begin(), text.end()); }
+std::string body(const Frame& frame) { return frame.body ? std::string(frame.body->begin(), frame.body->end()) : std::string(); }
+Frame with(const std::string& text) { return {nullptr, {}, bytes(text)}; }
+
+TEST(Outbox, keeps_only_the_newest_of_each_instance_in_its_place) {
+  Outbox outbox;
+  outbox.put_newest(1, 1, with("a1"));
+  outbox.put_newest(1, 2, with("b1"));
+  outbox.put_newest(1, 1, with("a2 longer"));
+  EXPECT_EQ(outbox.dropped(), 1u);
+  EXPECT_EQ(outbox.bytes(), 11u);
+  EXPECT_EQ(body(outbox.pop()), "a2 longer");
+  EXPECT_EQ(body(outbox.pop()), "b1");
+  EXPECT_TRUE(outbox.empty());
+  EXPECT_EQ(outbox.bytes(), 0u);
+}
+
+TEST(Outbox, queues_are_bounded_and_lose_their_oldest) {
+  Outbox outbox({.most_controls = 2, .most_queued = 3, .most_bytes = 1000});
+  for (int i = 0; i < 5; ++i) outbox.put_queued(7, with(std::to_string(i)));
+  EXPECT_EQ(outbox.dropped(), 2u);
+  EXPECT_TRUE(outbox.put(with("first")));
+  EXPECT_TRUE(outbox.put(with("second")));
+  EXPECT_FALSE(outbox.put(with("third")));
+  for (const char* next : {"first", "second", "2", "3", "4"}) EXPECT_EQ(body(outbox.pop()), next);
+}
+
+/// Whatever comes, the bounds hold and the books agree with what is handed out.
+TEST(Outbox, bounds_hold_for_random_traffic) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    const OutboxSettings settings{.most_controls = 8, .most_queued = 4, .most_bytes = 500};
+    Outbox outbox(settings);
+    std::uint64_t in = 0, out = 0, forgotten = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const std::uint32_t subscription = random() % 5;
+      const std::string text(random() % 200, 'x');
+      switch (random() % 6) {
+        case 0:
+        case 1:
+          outbox.put_newest(subscription, random() % 3, with(text));
+          ++in;
+          break;
+        case 2:
+        case 3:
+          outbox.put_queued(subscription + 10, with(text));
+          ++in;
+          break;
+        case 4:
+          if (!outbox.empty()) {
+            outbox.pop();
+            ++out;
+          }
+          break;
+        default:
+          if (random() % 20 == 0) {
+            const std::size_t before = outbox.bytes();
+            outbox.forget(subscription);
+            EXPECT_LE(outbox.bytes(), before);
+            forgotten += 3;  // at most so many instances
+          }
+      }
+      EXPECT_LE(outbox.bytes(), std::max<std::size_t>(settings.most_bytes, 200));
+    }
+    std::size_t waiting = 0;
+    while (!outbox.empty()) {
+      outbox.pop();
+      ++waiting;
+    }
+    EXPECT_EQ(outbox.bytes(), 0u);
+    EXPECT_LE(out + waiting + outbox.dropped(), in);
+    EXPECT_GE(out + waiting + outbox.dropped() + forgotten, in);
+  }
+}
+
+struct ViewerTest : testing::Test {
+  Hub hub{[] {
+            Catalogue c;
+            c.name = "handsel test";
+            c.metadata = {{"robot", "jido"}};
+            c.parameters = {{"robot", "jido"}, {"domain", "5"}};
+            c.channels = {
+                {.topic = "newest", .encoding = "cdr", .schema_name = "A", .schema = "a", .schema_encoding = "omgidl"},
+                {.topic = "queued", .encoding = "cdr", .schema_name = "B", .schema = "b", .schema_encoding = "omgidl", .queued = true},
+                {.topic = "kept", .encoding = "cdr", .schema_name = "C", .schema = "c", .schema_encoding = "omgidl", .kept = true}};
+            return c;
+          }(),
+          [](const std::string& uri) {
+            return uri == "package://there" ? Asset{bytes("mesh"), {}} : Asset{nullptr, "there is no such asset"};
+          }};
+  Viewer viewer{hub};
+  TimePoint now{std::chrono::seconds(10)};
+
+  Json next() {
+    const Frame frame = viewer.outbox().pop();
+    return frame.text ? Json::parse(*frame.text) : Json();
+  }
+  void skip_greeting() {
+    next();
+    next();
+  }
+  void say(const Json& json) { viewer.text(json.dump(), now += std::chrono::milliseconds(10)); }
+  std::string refusal(const std::string& text) {
+    viewer.text(text, now += std::chrono::milliseconds(10));
+    if (viewer.outbox().empty()) return "silence";
+    const Json status = next();
+    return status["op"] == "status" && status["level"] == 2 ? status["message"].get<std::string>() : "no refusal";
+  }
+  Sample sample(std::size_t channel, const std::string& text, std::uint64_t instance = 1) {
+    return {.channel = channel, .instance = instance, .gone = false, .stamp = 0x0102030405060708, .bytes = bytes(text)};
+  }
+};
+
+TEST_F(ViewerTest, is_greeted_with_the_server_and_its_channels) {
+  const Json server = next(), channels = next();
+  EXPECT_EQ(server["op"], "serverInfo");
+  EXPECT_EQ(server["name"], "handsel test");
+  EXPECT_EQ(server["metadata"]["robot"], "jido");
+  for (const char* capability : {"time", "connectionGraph", "assets", "parameters"})
+    EXPECT_THAT(server["capabilities"].dump(), HasSubstr(capability));
+  EXPECT_THAT(server["capabilities"].dump(), testing::Not(HasSubstr("clientPublish")));
+  EXPECT_EQ(channels["op"], "advertise");
+  EXPECT_EQ(
+      channels["channels"][1],
+      (Json{{"id", 2}, {"topic", "queued"}, {"encoding", "cdr"}, {"schemaName", "B"}, {"schema", "b"}, {"schemaEncoding", "omgidl"}}));
+}
+
+TEST_F(ViewerTest, gets_only_what_it_subscribed_to_and_the_bytes_as_they_were) {
+  skip_greeting();
+  say({{"op", "subscribe"}, {"subscriptions", {{{"id", 300}, {"channelId", 1}}}}});
+  viewer.sample(sample(0, "cdr"));
+  viewer.sample(sample(1, "other"));
+  const Frame frame = viewer.outbox().pop();
+  EXPECT_EQ(frame.head, (std::vector<std::uint8_t>{1, 0x2c, 1, 0, 0, 8, 7, 6, 5, 4, 3, 2, 1}));
+  EXPECT_EQ(body(frame), "cdr");
+  EXPECT_TRUE(viewer.outbox().empty());
+  viewer.sample(sample(0, "waits"));
+  say({{"op", "unsubscribe"}, {"subscriptionIds", {300}}});
+  EXPECT_TRUE(viewer.outbox().empty());
+  EXPECT_FALSE(viewer.wants(0));
+}
+
+TEST_F(ViewerTest, a_late_one_gets_what_is_kept_of_living_instances) {
+  skip_greeting();
+  hub.keep(sample(2, "old", 1));
+  hub.keep(sample(2, "new", 1));
+  hub.keep(sample(2, "dead", 2));
+  hub.keep({.channel = 2, .instance = 2, .gone = true, .stamp = 0, .bytes = nullptr});
+  hub.keep(sample(0, "not kept"));
+  say({{"op", "subscribe"}, {"subscriptions", {{{"id", 1}, {"channelId", 3}}, {{"id", 2}, {"channelId", 1}}}}});
+  EXPECT_EQ(body(viewer.outbox().pop()), "new");
+  EXPECT_TRUE(viewer.outbox().empty());
+}
+
+TEST_F(ViewerTest, queued_topics_keep_order_and_newest_topics_the_newest) {
+  skip_greeting();
+  say({{"op", "subscribe"}, {"subscriptions", {{{"id", 1}, {"channelId", 1}}, {{"id", 2}, {"channelId", 2}}}}});
+  for (const char* text : {"1", "2", "3"}) {
+    viewer.sample(sample(0, text));
+    viewer.sample(sample(1, text));
+  }
+  for (const char* next : {"3", "1", "2", "3"}) EXPECT_EQ(body(viewer.outbox().pop()), next);
+}
+
+TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
+  skip_greeting();
+  EXPECT_THAT(refusal("{"), HasSubstr("JSON object"));
+  EXPECT_THAT(refusal("[1]"), HasSubstr("JSON object"));
+  EXPECT_THAT(refusal("\xff\xfe"), HasSubstr("JSON object"));
+  EXPECT_THAT(refusal(std::string(60000, '[')), HasSubstr("JSON object"));
+  EXPECT_THAT(refusal("{}"), HasSubstr("\"op\""));
+  EXPECT_THAT(refusal(R"({"op":"advertise","channels":[]})"), HasSubstr("\"advertise\" is not offered"));
+  EXPECT_THAT(refusal(R"({"op":"setParameters","parameters":[]})"), HasSubstr("only shows"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe"})"), HasSubstr("the field subscriptions is missing"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[7]})"), HasSubstr("list of objects"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":-1,"channelId":1}]})"), HasSubstr("id must be a whole number"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":0}]})"), HasSubstr("no channel 0"));
+  EXPECT_THAT(refusal(R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":4}]})"), HasSubstr("no channel 4"));
+  EXPECT_THAT(refusal(R"({"op":"unsubscribe","subscriptionIds":[9]})"), HasSubstr("no subscription 9"));
+  EXPECT_THAT(refusal(R"({"op":"fetchAsset","uri":7,"requestId":1})"), HasSubstr("uri must be a text"));
+  EXPECT_EQ(viewer.refused(), 14u);
+  EXPECT_EQ(viewer.cut(), "");
+  for (unsigned i = 0; i < Viewer::kMostErrors; ++i) viewer.binary(now += std::chrono::milliseconds(10));
+  EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
+}
+
+TEST_F(ViewerTest, subscriptions_messages_and_answers_are_bounded) {
+  skip_greeting();
+  Json many = Json::array();
+  for (unsigned i = 0; i < 300; ++i) many.push_back({{"id", i}, {"channelId", 1}});
+  EXPECT_THAT(refusal(Json{{"op", "subscribe"}, {"subscriptions", many}}.dump()), HasSubstr("more than 256"));
+  for (int i = 0; i < 1200 && viewer.cut().empty(); ++i) say({{"op", "getParameters"}, {"parameterNames", Json::array()}});
+  EXPECT_THAT(viewer.cut(), HasSubstr("does not read"));
+  Viewer other(hub);
+  for (unsigned i = 0; i < Viewer::kMostMessages + 1; ++i) other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
+  EXPECT_THAT(other.cut(), HasSubstr("messages in a second"));
+}
+
+TEST_F(ViewerTest, answers_with_assets_and_parameters) {
+  skip_greeting();
+  say({{"op", "fetchAsset"}, {"uri", "package://there"}, {"requestId", 5}});
+  const Frame good = viewer.outbox().pop();
+  EXPECT_EQ(good.head, (std::vector<std::uint8_t>{4, 5, 0, 0, 0, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(body(good), "mesh");
+  say({{"op", "fetchAsset"}, {"uri", "package://elsewhere"}, {"requestId", 6}});
+  const Frame bad = viewer.outbox().pop();
+  EXPECT_EQ(bad.head[5], 1);
+  EXPECT_EQ(std::string(bad.head.begin() + 10, bad.head.end()), "there is no such asset");
+  say({{"op", "getParameters"}, {"parameterNames", {"domain"}}, {"id", "q"}});
+  EXPECT_EQ(next(), (Json{{"op", "parameterValues"}, {"id", "q"}, {"parameters", {{{"name", "domain"}, {"value", "5"}}}}}));
+}
+
+TEST_F(ViewerTest, is_told_what_changed_in_the_graph) {
+  skip_greeting();
+  hub.set_graph({.writers = {{"a", {"sim"}}, {"b", {"spark"}}}, .readers = {{"a", {"spark"}}}});
+  viewer.graph_changed();
+  EXPECT_TRUE(viewer.outbox().empty());  // it did not ask
+  say({{"op", "subscribeConnectionGraph"}});
+  const Json all = next();
+  EXPECT_EQ(all["publishedTopics"].size(), 2u);
+  EXPECT_EQ(all["subscribedTopics"][0], (Json{{"name", "a"}, {"subscriberIds", {"spark"}}}));
+  hub.set_graph({.writers = {{"a", {"sim", "twin"}}}, .readers = {{"a", {"spark"}}}});
+  viewer.graph_changed();
+  const Json change = next();
+  EXPECT_EQ(change["publishedTopics"].size(), 1u);
+  EXPECT_TRUE(change["subscribedTopics"].empty());
+  EXPECT_EQ(change["removedTopics"], Json{"b"});
+}
+
+TEST_F(ViewerTest, tells_the_time) {
+  skip_greeting();
+  viewer.time(1);
+  viewer.time(258);
+  EXPECT_EQ(viewer.outbox().pop().head, (std::vector<std::uint8_t>{2, 2, 1, 0, 0, 0, 0, 0, 0}));
+  EXPECT_TRUE(viewer.outbox().empty());
+}
+
+TEST(Drawing, is_what_a_panel_needs_to_draw_robot_person_and_object) {
+  setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
+  const auto robot = std::make_shared<RobotModel>(RobotModel::load(robot_description("jido")));
+  const ObjectModel mug = ObjectModel::load(object_description("mug"));
+  Drawing drawing(robot, [&](const std::string& name) { return name == "mug" ? &mug : nullptr; });
+  EXPECT_EQ(drawing.transforms(1), "");
+  RobotState state;
+  state.position = robot->rest_posture();
+  state.T_world_base.translation() = Vector3(1, 2, 0);
+  drawing.take(state);
+  HumanState people;
+  people.people.resize(1);
+  people.people[0].id = "anna";
+  people.people[0].joints = standing_body(Vector3(3, 0, 0), M_PI, 1.75);
+  drawing.take(people);
+  Scene scene;
+  scene.objects.push_back(
+      {.id = "cup", .model = "mug", .T_world_object = Pose::Identity(), .holder = Holder::nobody, .holder_id = {}, .age = 0});
+  scene.objects.back().T_world_object.translation() = Vector3(0.5, 0, 0.8);
+  drawing.take(scene);
+
+  // Chained from the world, the transforms give every link where the model has it.
+  foxglove::FrameTransforms transforms;
+  ASSERT_TRUE(transforms.ParseFromString(drawing.transforms(5'000'000'007)));
+  ASSERT_EQ(static_cast<std::size_t>(transforms.transforms_size()), robot->links().size());
+  EXPECT_EQ(transforms.transforms(0).timestamp().seconds(), 5);
+  EXPECT_EQ(transforms.transforms(0).timestamp().nanos(), 7);
+  std::map<std::string, Pose> T_world{{"world", Pose::Identity()}};
+  for (const auto& t : transforms.transforms()) {
+    ASSERT_TRUE(T_world.contains(t.parent_frame_id())) << t.child_frame_id();
+    Pose T = Pose::Identity();
+    T.translation() = Vector3(t.translation().x(), t.translation().y(), t.translation().z());
+    T.linear() = Eigen::Quaterniond(t.rotation().w(), t.rotation().x(), t.rotation().y(), t.rotation().z()).toRotationMatrix();
+    T_world[t.child_frame_id()] = T_world[t.parent_frame_id()] * T;
+  }
+  std::vector<Pose> T_root_link;
+  robot->forward(state.position, T_root_link);
+  for (std::size_t i = 0; i < T_root_link.size(); ++i)
+    EXPECT_TRUE(T_world[robot->links()[i].name].isApprox(state.T_world_base * T_root_link[i], 1e-9)) << robot->links()[i].name;
+
+  foxglove::SceneUpdate update;
+  ASSERT_TRUE(update.ParseFromString(drawing.scene(1)));
+  std::map<std::string, int> primitives;
+  for (const auto& entity : update.entities()) {
+    EXPECT_TRUE(T_world.contains(entity.frame_id())) << entity.id();
+    primitives[entity.id().substr(0, entity.id().find('/'))] += entity.cubes_size() + entity.spheres_size() + entity.cylinders_size();
+  }
+  EXPECT_GT(primitives["robot"], 20);
+  EXPECT_EQ(primitives["person"], 3 * kBodyCapsules);
+  EXPECT_EQ(primitives["object"], 10);  // a cylinder and three capsules
+  EXPECT_EQ(update.entities(update.entities_size() - 1).cylinders(0).pose().position().x(), 0.5);
+}
+
+struct CatalogueTest : testing::Test {
+  CatalogueTest() { setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1); }
+};
+
+TEST_F(CatalogueTest, has_a_self_contained_schema_for_every_topic) {
+  const RobotModel robot = RobotModel::load(robot_description("jido"));
+  const Catalogue catalogue = make_catalogue(robot, resource_root(), {.scenario = "s", .domain = 3, .version = "1", .session = "x"});
+  ASSERT_EQ(catalogue.channels.size(), topics().size());
+  for (std::size_t i = 0; i < topics().size(); ++i) {
+    const Channel& channel = catalogue.channels[i];
+    EXPECT_EQ(channel.schema_name, std::string("handsel::") + topics()[i].type);
+    EXPECT_THAT(channel.schema, HasSubstr(std::string("struct ") + topics()[i].type + " {"));
+    EXPECT_THAT(channel.schema, testing::Not(HasSubstr("#")));
+    for (const char* unreadable : {"@optional", "@external", "union ", "wchar", "wstring", "long double"})
+      EXPECT_THAT(channel.schema, testing::Not(HasSubstr(unreadable))) << channel.topic;
+    EXPECT_EQ(channel.schema.find("struct Vector3 {"), channel.schema.rfind("struct Vector3 {")) << channel.topic;
+  }
+  EXPECT_THAT(catalogue.parameters.at("/robot_description"), HasSubstr("<robot"));
+}
+
+TEST_F(CatalogueTest, the_page_is_told_where_things_are) {
+  const RobotModel robot = RobotModel::load(robot_description("jido"));
+  const Json config =
+      Json::parse(config_json(robot, resource_root(), {.scenario = "give_mug", .domain = 3, .version = "1", .session = "x"}));
+  const Site site({}, resource_root());
+  EXPECT_TRUE(site.find(config["urdf"].get<std::string>()));
+  EXPECT_EQ(config["axes"].size(), robot.axes().size());
+  EXPECT_EQ(config["topics"].size(), topics().size());
+  for (const auto& [name, object] : config["objects"].items()) EXPECT_TRUE(site.find(object["mesh"].get<std::string>())) << name;
+  EXPECT_TRUE(config["objects"].contains("mug"));
+}
+
+TEST_F(CatalogueTest, assets_are_of_robots_and_hands_only) {
+  const Site site({}, resource_root());
+  const Asset urdf = site.fetch("package://handsel/robots/jido/jido.urdf");
+  ASSERT_TRUE(urdf.bytes);
+  EXPECT_THAT(std::string(urdf.bytes->begin(), urdf.bytes->end()), HasSubstr("<robot"));
+  EXPECT_TRUE(site.fetch("package://handsel/hands/sah/sah.urdf").bytes);
+  for (const char* uri :
+       {"package://handsel/objects/mug/mug.obj", "package://handsel/config/bridge.txtpb", "package://handsel/robots/../config/bridge.txtpb",
+        "package://handsel/robots/jido/../../../README.md", "package://other/robots/jido/jido.urdf", "file:///etc/passwd", "/etc/passwd",
+        "", "package://handsel/robots/jido/jido.txtpb", "package://handsel/robots//jido/jido.urdf"}) {
+    const Asset refused = site.fetch(uri);
+    EXPECT_FALSE(refused.bytes) << uri;
+    EXPECT_FALSE(refused.reason.empty()) << uri;
+  }
+}
+
+TEST(Subprotocol, is_one_of_two) {
+  EXPECT_EQ(choose_subprotocol("foxglove.websocket.v1"), "foxglove.websocket.v1");
+  EXPECT_EQ(choose_subprotocol("x, foxglove.sdk.v1 ,foxglove.websocket.v1"), "foxglove.sdk.v1");
+  for (const char* none : {"", ",", "foxglove.websocket.v10", "foxglove"}) EXPECT_EQ(choose_subprotocol(none), "");
+}
+
+}  // namespace
+}  // namespace handsel::bridge

@@ -1,0 +1,113 @@
+// What the bridge sends is what was written: a viewer's own libraries decode one random sample of every message type, compared field by
+// field with what the writer printed. node decode_test.mjs SAMPLES BRIDGE [DOMAIN [SEED...]]
+import { strict as assert } from "node:assert";
+import { spawn } from "node:child_process";
+import { createInterface } from "node:readline";
+import { createRequire } from "node:module";
+
+const require = createRequire(import.meta.url);
+const { parseIDL } = require("@foxglove/omgidl-parser");
+const { MessageReader } = require("@foxglove/omgidl-serialization");
+const { FoxgloveClient } = require("@foxglove/ws-protocol");
+const WebSocket = require("ws");
+
+const [samplesBinary, bridgeBinary, domain = "36", ...seeds] = process.argv.slice(2);
+const patience = 20_000; // [ms] for the whole of one wait
+const renamed = { "RobotState.sequence": "sequence_number", "JointCommand.sequence": "sequence_number" };
+
+function within(what, promise) {
+  let timer;
+  const late = new Promise((_, reject) => (timer = setTimeout(() => reject(new Error(`${what}: nothing in ${patience / 1000} s`)), patience)));
+  return Promise.race([promise, late]).finally(() => clearTimeout(timer));
+}
+
+function start(binary, args, stream, environment = {}) {
+  const child = spawn(binary, args, { env: { ...process.env, ...environment }, stdio: ["pipe", "pipe", "pipe"] });
+  const lines = createInterface({ input: child[stream] });
+  child[stream === "stdout" ? "stderr" : "stdout"].resume();
+  const ended = new Promise((resolve) => child.on("exit", resolve));
+  return { child, lines, ended };
+}
+
+// {a: {b: [1, "x"]}} -> {"a.b[0]": 1, "a.b[1]": "x"}
+function leavesOf(value, path = "", out = {}) {
+  if (ArrayBuffer.isView(value) || Array.isArray(value)) value.forEach((one, i) => leavesOf(one, `${path}[${i}]`, out));
+  else if (value !== null && typeof value === "object") for (const [name, one] of Object.entries(value)) leavesOf(one, path ? `${path}.${name}` : name, out);
+  else out[path] = typeof value === "bigint" ? String(value) : value;
+  return out;
+}
+
+function expectedLeaves({ type, leaves }) {
+  const out = {};
+  for (const [path, value] of Object.entries(leaves)) {
+    const inside = path.startsWith(`${type}.`) ? path.slice(type.length + 1) : path;
+    out[renamed[`${type}.${inside}`] ?? inside] = value;
+  }
+  return out;
+}
+
+async function check(seed) {
+  const bridge = start(bridgeBinary, ["--domain", domain], "stderr", { HANDSEL_WEB_PORT: "0" });
+  let samples;
+  try {
+    const port = await within("the bridge", new Promise((resolve, reject) => {
+      bridge.lines.on("line", (line) => {
+        const match = line.match(/http:\/\/127\.0\.0\.1:(\d+)/);
+        if (match) resolve(match[1]);
+      });
+      bridge.ended.then((code) => reject(new Error(`the bridge ended with ${code}`)));
+    }));
+    const client = new FoxgloveClient({ ws: new WebSocket(`ws://127.0.0.1:${port}/`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
+    const channels = await within("advertise", new Promise((resolve, reject) => {
+      client.on("advertise", resolve);
+      client.on("error", reject);
+    }));
+
+    samples = start(samplesBinary, [domain, String(seed)], "stdout");
+    const written = new Map();
+    for await (const line of samples.lines) {
+      const sample = JSON.parse(line);
+      written.set(sample.topic, sample);
+      if (written.size === channels.length) break;
+    }
+    assert.equal(written.size, channels.length, "a sample for every channel");
+
+    const readers = new Map();
+    const waiting = new Set(written.keys());
+    let fields = 0;
+    const all = new Promise((resolve, reject) => {
+      client.on("message", ({ subscriptionId, data }) => {
+        const { channel, reader } = readers.get(subscriptionId);
+        if (!waiting.has(channel.topic)) return;
+        try {
+          const decoded = leavesOf(reader.readMessage(data));
+          const expected = expectedLeaves(written.get(channel.topic));
+          if (decoded.stamp !== expected.stamp) return; // the bridge's own health
+          assert.deepEqual(decoded, expected, channel.topic);
+          fields += Object.keys(expected).length;
+          waiting.delete(channel.topic);
+          if (waiting.size === 0) resolve();
+        } catch (error) {
+          reject(error);
+        }
+      });
+    });
+    for (const channel of channels) {
+      assert.equal(channel.encoding, "cdr");
+      assert.equal(channel.schemaEncoding, "omgidl");
+      const reader = new MessageReader(channel.schemaName, parseIDL(channel.schema));
+      readers.set(client.subscribe(channel.id), { channel, reader });
+    }
+    await within("all samples", all).catch((error) => {
+      throw waiting.size > 0 && !(error instanceof assert.AssertionError) ? new Error(`${error.message}; missing: ${[...waiting].join(", ")}`) : error;
+    });
+    console.log(`seed ${seed}: ${written.size} types, ${fields} fields equal`);
+    client.close();
+  } finally {
+    samples?.child.stdin.end();
+    bridge.child.kill("SIGTERM");
+    await Promise.all([samples?.ended, bridge.ended]);
+  }
+}
+
+for (const seed of seeds.length > 0 ? seeds : [Date.now() % 1_000_000]) await check(seed);
