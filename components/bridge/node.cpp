@@ -100,7 +100,7 @@ void Node::look() {
       readers_[i].reset();
       continue;
     }
-    if (!readers_[i]) readers_[i] = raw_->read_raw(message_type(i));
+    if (!readers_[i] && !read(i)) continue;
     for (RawSample raw; readers_[i]->take(raw);) {
       Sample sample{.channel = i, .instance = raw.instance, .gone = raw.gone, .stamp = raw.stamp, .bytes = {}};
       if (!raw.gone) sample.bytes = std::make_shared<const std::vector<std::uint8_t>>(std::move(raw.cdr));
@@ -108,6 +108,16 @@ void Node::look() {
     }
   }
   server_->publish(std::move(samples));
+}
+
+bool Node::read(std::size_t topic) {
+  try {
+    readers_[topic] = raw_->read_raw(message_type(topic));
+    return true;
+  } catch (const MissingError& error) {
+    bus_.set_degraded(error.what());
+    return false;
+  }
 }
 
 void Node::draw() {

@@ -22,6 +22,7 @@ class Node {
  private:
   void open_page();
   void look();
+  bool read(std::size_t topic);
   void draw();
   Graph graph(TimePoint now) const;
 

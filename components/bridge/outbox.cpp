@@ -17,6 +17,7 @@ void Outbox::put_newest(std::uint32_t subscription, std::uint64_t instance, Fram
     bytes_ = bytes_ - sample.frame.size() + frame.size();
     sample.frame = std::move(frame);
     ++dropped_;
+    trim();
     return;
   }
   add({subscription, instance, true, std::move(frame)});
@@ -68,6 +69,10 @@ void Outbox::add(Sample sample) {
   } else {
     ++queued_[place->subscription];
   }
+  trim();
+}
+
+void Outbox::trim() {
   while (bytes_ > settings_.most_bytes && samples_.size() > 1) {
     remove(samples_.begin());
     ++dropped_;

@@ -58,6 +58,7 @@ class Outbox {
   };
   using Place = std::list<Sample>::iterator;
   void add(Sample sample);
+  void trim();
   void remove(Place place);
 
   OutboxSettings settings_;

@@ -172,8 +172,8 @@ class Client : public std::enable_shared_from_this<Client> {
   /// Beast ends a broken conversation itself and says so, unless the client does not answer that in time.
   void leave(Error error) {
     const bool went = error == websocket::error::closed || error == asio::error::eof || error == asio::error::connection_reset ||
-                      error == asio::error::operation_aborted || error == asio::error::broken_pipe;
-    if (went) return end();
+                      error == asio::error::broken_pipe;
+    if (ended_ || went || !viewer_.cut().empty()) return end();
     ++shared_.counters.refused_messages;
     cut("it broke the protocol, sent a message of more than " + std::to_string(kLargestMessage) + " bytes or fell silent (" +
         error.message() + ")");
@@ -480,7 +480,7 @@ void Server::publish(std::vector<Sample> samples) {
     Shared& shared = impl_->shared;
     const auto clients = shared.clients;
     for (const Sample& sample : samples) {
-      shared.hub.keep(sample);
+      if (shared.wanted[sample.channel]) shared.hub.keep(sample);
       for (const auto& client : clients) client->viewer().sample(sample);
     }
     for (const auto& client : clients) client->flush();

@@ -26,7 +26,13 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
 
 void announce_page(System& system, bool headless) {
   const std::string address = system.web_address();
-  if (address.empty()) return;
+  if (address.empty()) {
+    const Snapshot& now = system.session().snapshot();
+    const auto bridge = now.health.find("bridge");
+    const bool said = bridge != now.health.end() && !bridge->second.sample.reason.empty();
+    std::fprintf(stderr, "no page: %s\n", said ? bridge->second.sample.reason.c_str() : "the bridge has not opened it");
+    return;
+  }
   std::fprintf(stderr, "watch it at %s\n", address.c_str());
   const bool display = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   if (headless || !display) return;

@@ -1,6 +1,9 @@
 // The command as its user meets it: exit codes, one sentence for each mistake, no process left behind.
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -101,6 +104,25 @@ TEST(Command, a_domain_in_use_is_refused_and_the_system_there_lives_on) {
   EXPECT_EQ(status.exit_code, 0) << status.out;
   EXPECT_EQ(up.interrupt(), 0);
   EXPECT_EQ(processes_running(), 0);
+}
+
+TEST(Command, a_taken_port_costs_the_page_and_nothing_else) {
+  const int taken = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(bind(taken, reinterpret_cast<sockaddr*>(&address), size), 0);
+  ASSERT_EQ(listen(taken, 1), 0);
+  getsockname(taken, reinterpret_cast<sockaddr*>(&address), &size);
+  const std::string port = std::to_string(ntohs(address.sin_port));
+  Background up({kHandsel, "up", "--headless", "--port", port, "--domain", "39"});
+  ASSERT_TRUE(up.wait_for("no page: port " + port + " on 127.0.0.1 cannot be used")) << up.said();
+  const Outcome status = shell(kHandsel + " status" + kDomain);
+  EXPECT_EQ(status.exit_code, 0) << status.out;
+  EXPECT_THAT(status.out, HasSubstr("cannot be used for the page"));
+  EXPECT_EQ(up.interrupt(), 0);
+  close(taken);
 }
 
 TEST(Command, one_process_a_box_runs_and_the_page_shows_them) {

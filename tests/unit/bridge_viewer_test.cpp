@@ -208,6 +208,39 @@ TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
   EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
 }
 
+/// Messages of a client, damaged at random: none is fatal, and what is refused is answered as long as the viewer is not cut.
+TEST_F(ViewerTest, damaged_messages_are_never_fatal) {
+  const std::vector<std::string> good{
+      R"({"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":3}]})",
+      R"({"op":"unsubscribe","subscriptionIds":[1,2]})", R"({"op":"getParameters","parameterNames":["robot"],"id":"x"})",
+      R"({"op":"fetchAsset","uri":"package://there","requestId":5})", R"({"op":"subscribeConnectionGraph"})"};
+  const std::string letters = "{}[]\":,\\0123456789-.eE truefalsn\xff\x80\x01/";
+  for (unsigned seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random(seed);
+    Viewer one(hub);
+    std::uint64_t refused = 0;
+    for (int i = 0; i < 60; ++i) {
+      std::string message = good[random() % good.size()];
+      for (unsigned n = random() % 6; n > 0; --n) {
+        const std::size_t at = random() % message.size();
+        if (random() % 3 == 0) {
+          message.erase(at, random() % 8);
+          if (message.empty()) message = "x";
+        } else {
+          message[at] = letters[random() % letters.size()];
+        }
+      }
+      while (!one.outbox().empty()) one.outbox().pop();
+      one.text(message, now += std::chrono::milliseconds(1));
+      EXPECT_EQ(one.cut(), "");
+      EXPECT_TRUE(one.refused() == refused || !one.outbox().empty()) << message;
+      refused = one.refused();
+    }
+    EXPECT_GT(refused, 0u);
+  }
+}
+
 TEST_F(ViewerTest, subscriptions_messages_and_answers_are_bounded) {
   skip_greeting();
   Json many = Json::array();

@@ -13,7 +13,8 @@ const WebSocket = require("ws");
 
 const [samplesBinary, bridgeBinary, domain = "36", ...seeds] = process.argv.slice(2);
 const patience = 20_000; // [ms] for the whole of one wait
-const renamed = { "RobotState.sequence": "sequence_number", "JointCommand.sequence": "sequence_number" };
+// Fields of the writer's that have another name in the IDL.
+const renamed = { "RobotState.sequence": "sequence_number", "JointCommand.sequence": "sequence_number", "Facts.facts": "holding" };
 
 function within(what, promise) {
   let timer;
@@ -40,8 +41,8 @@ function leavesOf(value, path = "", out = {}) {
 function expectedLeaves({ type, leaves }) {
   const out = {};
   for (const [path, value] of Object.entries(leaves)) {
-    const inside = path.startsWith(`${type}.`) ? path.slice(type.length + 1) : path;
-    out[renamed[`${type}.${inside}`] ?? inside] = value;
+    const first = path.match(/^\w+/)[0];
+    out[(renamed[`${type}.${first}`] ?? first) + path.slice(first.length)] = value;
   }
   return out;
 }
@@ -58,10 +59,11 @@ async function check(seed) {
       bridge.ended.then((code) => reject(new Error(`the bridge ended with ${code}`)));
     }));
     const client = new FoxgloveClient({ ws: new WebSocket(`ws://127.0.0.1:${port}/`, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-    const channels = await within("advertise", new Promise((resolve, reject) => {
+    const offered = await within("advertise", new Promise((resolve, reject) => {
       client.on("advertise", resolve);
       client.on("error", reject);
     }));
+    const channels = offered.filter((channel) => channel.topic.startsWith("handsel/"));
 
     samples = start(samplesBinary, [domain, String(seed)], "stdout");
     const written = new Map();
