@@ -280,10 +280,36 @@ double TimeLaw::choose() noexcept {
   return safe + under * full;
 }
 
+bool TimeLaw::holds(const Now& s, double u) noexcept {
+  constexpr double kAllowed = 1 + 5e-7;
+  const Now next = next_of(s, u);
+  rates_at(s.tau, begin_);
+  rates_at(next.tau, end_);
+  for (const int i : moving_) {
+    const double a0 = s.alpha * s.alpha * begin_.a[i] + s.beta * begin_.v[i];
+    const double a1 = next.alpha * next.alpha * end_.a[i] + next.beta * end_.v[i];
+    const double j1 = next.alpha * (next.alpha * next.alpha * end_.j[i] + 3 * next.beta * end_.a[i]) + u * end_.v[i];
+    if (std::max({std::abs(a1) / A_[i], std::abs(a1 - a0) / (J_[i] * step_), std::abs(j1) / J_[i]}) > kAllowed) return false;
+  }
+  return true;
+}
+
+/// The choice, or one near it where curvature within the step would carry it beyond a limit.
+double TimeLaw::amended(double u) noexcept {
+  if (holds(now_, u)) return u;
+  double unused, end;
+  for (double by = 0.05; by < 60; by *= 2) {
+    for (const double other : {u - by, u + by}) {
+      if (holds(now_, other) && recover(next_of(now_, other), &unused, &end)) return other;
+    }
+  }
+  return u;
+}
+
 void TimeLaw::advance(double dt) noexcept {
   while (dt > 0) {
     if (phase_ == 0) {
-      push_ = choose();
+      push_ = amended(choose());
       tick_ = now_;
     }
     if (phase_ + dt >= step_ * (1 - 1e-9)) {

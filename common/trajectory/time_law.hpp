@@ -71,6 +71,8 @@ class TimeLaw {
                           const SwitchSettings& settings) noexcept;
   void find_moving() noexcept;
   double choose() noexcept;
+  bool holds(const Now& s, double u) noexcept;
+  double amended(double u) noexcept;
   static Now moved(const Now& s, double u, double t) noexcept;
   void publish() noexcept;
 
