@@ -45,6 +45,7 @@ const Go& Permission::step(TimePoint now) {
   constexpr std::uint32_t kNoGo = 1U << static_cast<unsigned>(Cause::no_go);
   const bool waits = status_.mode >= Mode::hold || !go_.allowed;
   const bool fault = status_.mode == Mode::fault;
+  if (!fault) acknowledge_ = false;  // said before there was a fault: does not count for the next
   const bool now_clear = waits && (status_.causes & ~kNoGo) == 0 && (!fault || acknowledge_);
   if (now_clear && !clear_) clear_since_ = now;
   clear_ = now_clear;

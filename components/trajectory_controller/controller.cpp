@@ -28,6 +28,18 @@ HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
   return {settings, axes, lower, upper, robot.comfort_limits(), robot.stop_limits()};
 }
 
+/// All axes but those of hand and head.
+std::vector<int> trajectory_axes(const RobotModel& robot) {
+  std::vector<char> other(static_cast<std::size_t>(robot.dof()), 0);
+  for (const char* name : {"hand", "head"})
+    if (const Group* group = robot.group(name))
+      for (int axis : group->axes) other[static_cast<std::size_t>(axis)] = 1;
+  std::vector<int> axes;
+  for (int i = 0; i < robot.dof(); ++i)
+    if (!other[static_cast<std::size_t>(i)]) axes.push_back(i);
+  return axes;
+}
+
 void require(bool good, const char* sentence) {
   if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
 }
@@ -42,11 +54,13 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       runner_(settings.period),
       movers_(static_cast<std::size_t>(robot_->dof())),
       hand_(make_hand(settings.hand, *robot_)),
+      contact_(settings.contact, trajectory_axes(*robot_)),
       modes_(settings.timeouts) {
   require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
   require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
   require(settings.forecast_slow > settings.forecast_hold, "forecast_slow must be above forecast_hold");
   require(settings.late_limit > 0, "late_limit must be above 0");
+  for (const Wall& wall : settings.walls) require(std::abs(wall.normal.norm() - 1.0) < 1e-6, "the normal of a wall must have length 1");
   const int n = robot_->dof();
   const auto mark = [&](const char* group_name, Part part) {
     if (const Group* group = robot_->group(group_name))
@@ -54,15 +68,14 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   };
   mark("hand", Part::hand);
   mark("head", Part::head);
-  for (int i = 0; i < n; ++i)
-    if (part_[static_cast<std::size_t>(i)] == Part::arm) arm_axes_.push_back(i);
+  arm_axes_ = trajectory_axes(*robot_);
   if (const Group* head = robot_->group("head")) head_axes_ = head->axes;
   head_target_.assign(head_axes_.size(), 0.0);
   set_point_ = rest_state(Vector::Zero(n));
   next_ = set_point_;
-  full_velocity_ = full_acceleration_ = posture_ = posture_ahead_ = Vector::Zero(n);
+  full_velocity_ = full_acceleration_ = posture_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
-  robot_->forward(posture_, links_ahead_);
+  link_twists(*robot_, full_velocity_, links_, twists_);
 }
 
 KinematicLimits Controller::of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const {
@@ -198,6 +211,9 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
   const auto n = static_cast<Eigen::Index>(robot_->dof());
   if (state.robot != robot_->name() || state.position.size() != n || !state.position.allFinite()) return;
   constexpr double kRestart = 0.5;
+  // In an exchange the person's pull is wanted; at rest a push does no harm.
+  const double since = robot_seen_.ever ? std::clamp(to_seconds(sampled - robot_seen_.at), 0.0, 0.1) : 0.0;
+  touched_ = contact_.update(state.external_torque, since) && exchanging_.empty();
   const bool restarted = robot_seen_.ever && state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart;
   state_ = state;
   robot_seen_.mark(sampled);
@@ -217,6 +233,7 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
 
 void Controller::on(const HumanState& people, TimePoint sampled) {
   people_ = people;
+  new_people_ = true;
   human_seen_.mark(sampled);
   points_.clear();
   for (const Person& p : people.people)
@@ -295,14 +312,28 @@ void Controller::run_guard(TimePoint now) noexcept {
     full_velocity_.setZero();
     full_acceleration_.setZero();
   }
-  // Alternates between where the path is and where it will be a little later.
+  // Alternates between where the path is and where it will be a little later; people just seen are judged for both at once.
   guard_ahead_ = !guard_ahead_ && arm_ == Arm::running;
-  const double later = guard_ahead_ ? settings_.look_ahead * std::max(runner_.factor(), 0.2) : 0.0;
+  judge_path(guard_ahead_, age);
+  if (new_people_ && arm_ == Arm::running) judge_path(!guard_ahead_, age);
+  new_people_ = false;
+  guard_verdict_ = verdict_now_;
+  guard_verdict_.forward = std::min(verdict_now_.forward, verdict_ahead_.forward);
+  guard_verdict_.backward = std::max(verdict_now_.backward, verdict_ahead_.backward);
+  guard_verdict_.separation = verdict_now_.separation || verdict_ahead_.separation;
+  guard_verdict_.wall = verdict_now_.wall || verdict_ahead_.wall;
+  if (!guard_ahead_ && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
+    exchanging_.clear();
+    for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
+  }
+}
+
+void Controller::judge_path(bool ahead, double age) noexcept {
   posture_ = set_point_.position;
   if (arm_ == Arm::running) {
     full_velocity_.setZero();
     full_acceleration_.setZero();
-    runner_.trajectory().sample(runner_.time() + later, path_);
+    runner_.trajectory().sample(runner_.time() + (ahead ? settings_.look_ahead * std::max(runner_.factor(), 0.2) : 0.0), path_);
     for (std::size_t i = 0; i < command_.axes.size(); ++i) {
       const auto axis = static_cast<Eigen::Index>(command_.axes[i]);
       const auto k = static_cast<Eigen::Index>(i);
@@ -311,20 +342,10 @@ void Controller::run_guard(TimePoint now) noexcept {
       full_acceleration_[axis] = path_.acceleration[k];
     }
   }
-  PathMotion motion{&full_velocity_, &full_acceleration_, &links_, &links_ahead_};
-  posture_ahead_ = posture_ + motion.look * full_velocity_;
   robot_->forward(posture_, links_);
-  robot_->forward(posture_ahead_, links_ahead_);
-  GuardVerdict& verdict = guard_ahead_ ? verdict_ahead_ : verdict_now_;
-  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, robot_->stop_limits(), crowd_, age, speed_factor());
-  guard_verdict_ = verdict_now_;
-  guard_verdict_.forward = std::min(verdict_now_.forward, verdict_ahead_.forward);
-  guard_verdict_.backward = std::max(verdict_now_.backward, verdict_ahead_.backward);
-  guard_verdict_.separation = verdict_now_.separation || verdict_ahead_.separation;
-  if (!guard_ahead_ && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
-    exchanging_.clear();
-    for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
-  }
+  link_twists(*robot_, full_velocity_, links_, twists_);
+  (ahead ? verdict_ahead_ : verdict_now_) = guard(settings_.guard, capsules_, {&full_velocity_, &full_acceleration_, &links_, &twists_},
+                                                  state_.T_world_base, robot_->stop_limits(), crowd_, settings_.walls, age, speed_factor());
 }
 
 double Controller::wanted_factor(TimePoint now) const noexcept {
@@ -366,9 +387,10 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
     in.forecast_collision_hold = soon && exchanging_.empty();
     in.forecast_collision_slow = !in.forecast_collision_hold && forecast_.time_to_collision < settings_.forecast_slow;
   }
-  in.separation_slow = guard_verdict_.separation && guard_verdict_.forward < 0.999;
+  in.separation_slow = (guard_verdict_.separation || guard_verdict_.wall) && guard_verdict_.forward < 0.999;
   too_near_for_ = in.running && guard_verdict_.too_near ? too_near_for_ + settings_.period : 0.0;
-  in.separation_stop = too_near_for_ > settings_.guard.stop_persistence;
+  in.separation_stop = too_near_for_ > settings_.guard.stop_persistence || (touched_ && !in.at_rest);
+  if (in.separation_stop) contact_stop_ = touched_;
   in.human_unknown = human_seen_.ever && !crowd_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.override_slow = go_.override_factor < 0.999;
@@ -552,10 +574,13 @@ ExecutionStatus Controller::status() const {
     s.reason = refusal_;
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
+    if (latched_cause_ == Cause::separation && contact_stop_)
+      s.reason += ": contact felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
   } else if (motion_ == MotionState::stopped && off_path_) {
     s.reason = "no speed along the path kept the limits; stopped beside it";
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
     s.reason = name(cause);
+    if (cause == Cause::separation && guard_verdict_.wall && !guard_verdict_.separation) s.reason += ": a wall is ahead";
     if (cause == Cause::attention_slow) s.reason += ": " + advice_.reason;
     if (cause == Cause::forecast_collision) s.reason += ": " + forecast_.reason;
   }

@@ -12,6 +12,7 @@
 #include "common/messages/robot.hpp"
 #include "common/messages/task.hpp"
 #include "components/trajectory_controller/axis_mover.hpp"
+#include "components/trajectory_controller/contact_watch.hpp"
 #include "components/trajectory_controller/guard.hpp"
 #include "components/trajectory_controller/hand_executor.hpp"
 #include "components/trajectory_controller/mode_machine.hpp"
@@ -33,9 +34,11 @@ struct ControllerSettings {
   double head_dead_band{0.03};        ///< the head turns only for more than this [rad]
   double look_ahead{0.15};            ///< the guard also judges the path this much later [s]
   int late_limit{5};                  ///< late cycles in a row: Hold
+  std::vector<Wall> walls;            ///< that moving links never pass: virtual walls and the sides of the workspace
   TimeoutSettings timeouts;
   GuardSettings guard;
   HandSettings hand;
+  ContactSettings contact;
 };
 
 /// What of the status must be told at once when it changes.
@@ -101,6 +104,7 @@ class Controller {
   void stop_arm() noexcept;
   void stand_arm() noexcept;
   void run_guard(TimePoint now) noexcept;
+  void judge_path(bool ahead, double age) noexcept;
   double wanted_factor(TimePoint now) const noexcept;
   ModeInputs mode_inputs(TimePoint now, bool late) noexcept;
   void step_arm(TimePoint now) noexcept;
@@ -156,14 +160,17 @@ class Controller {
   bool head_wanted_{}, head_paused_{};
 
   // Judging.
+  ContactWatch contact_;
   ModeMachine modes_;
   ModeVerdict verdict_;
   GuardVerdict guard_verdict_, verdict_now_, verdict_ahead_;
   MotionState3 path_;
-  Vector full_velocity_, full_acceleration_, posture_, posture_ahead_;
-  std::vector<Pose> links_, links_ahead_;
+  Vector full_velocity_, full_acceleration_, posture_;
+  std::vector<Pose> links_;
+  std::vector<LinkTwist> twists_;
+
   double too_near_for_{}, tracking_for_{};
-  bool limit_violation_{}, guard_ahead_{};
+  bool limit_violation_{}, guard_ahead_{}, new_people_{}, touched_{}, contact_stop_{};
   int late_in_a_row_{};
   std::uint64_t cycles_{}, late_cycles_{};
   std::string refusal_;

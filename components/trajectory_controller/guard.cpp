@@ -1,48 +1,66 @@
 #include "components/trajectory_controller/guard.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/geometry/segments.hpp"
-#include "common/model/body_motion.hpp"
 
 namespace handsel::trajectory_controller {
 
 namespace {
 
 constexpr int kGrid = 16;
+constexpr double kStill = 1e-4;  // [m/s] closing more slowly counts as not closing
 
 /// Stop of the axes that move along the path, for factors on a grid of [0, 1].
 struct StopTable {
   std::array<double, kGrid + 1> time{}, way{};  // way: per unit of speed at the factor
 };
 
-StopTable make_stop_table(const PathMotion& motion, const KinematicLimits& limits) noexcept {
-  StopTable table;
-  const Eigen::Index n = motion.velocity->size();
-  for (int g = 0; g <= kGrid; ++g) {
-    const double factor = static_cast<double>(g) / kGrid;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double v = factor * std::abs((*motion.velocity)[i]);
-      if (v < 1e-9) continue;
-      const double a = std::min(factor * factor * std::max(0.0, (*motion.acceleration)[i] * ((*motion.velocity)[i] < 0 ? -1.0 : 1.0)),
-                                limits.acceleration[i]);
-      const double ease = a / limits.jerk[i];
-      const double peak = v + 0.5 * a * ease;
-      const double rest = stop_time(peak, limits.acceleration[i], limits.jerk[i]);
-      const auto k = static_cast<std::size_t>(g);
-      table.time[k] = std::max(table.time[k], ease + rest);
-      table.way[k] = std::max(table.way[k], peak / v * (ease + 0.5 * rest));
-    }
+void add_stop(const PathMotion& motion, const KinematicLimits& limits, int g, StopTable& table) noexcept {
+  const double factor = static_cast<double>(g) / kGrid;
+  const auto k = static_cast<std::size_t>(g);
+  for (Eigen::Index i = 0; i < motion.velocity->size(); ++i) {
+    const double v = factor * std::abs((*motion.velocity)[i]);
+    if (v < 1e-9) continue;
+    const double onward = (*motion.acceleration)[i] * std::copysign(1.0, (*motion.velocity)[i]);
+    const double a = std::min(factor * factor * std::max(0.0, onward), limits.acceleration[i]);
+    const double ease = a / limits.jerk[i];
+    const double peak = v + 0.5 * a * ease;
+    const double rest = stop_time(peak, limits.acceleration[i], limits.jerk[i]);
+    table.time[k] = std::max(table.time[k], ease + rest);
+    table.way[k] = std::max(table.way[k], peak / v * (ease + 0.5 * rest));
   }
-  return table;
+}
+
+/// No direction gives more.
+double fastest(const CrowdCapsule& c, const GuardSettings& s) noexcept {
+  return c.joints == 0 ? s.speed_unknown : std::clamp(c.fastest + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
 double directed_speed(const CrowdCapsule& c, const Vector3& toward_robot, const GuardSettings& s) noexcept {
-  if (c.unknown || c.joints == 0) return s.speed_unknown;
-  double v = -1e9;
+  if (c.joints == 0) return s.speed_unknown;
+  double v = -s.speed_max;
   for (int j = 0; j < c.joints; ++j) v = std::max(v, c.velocities[static_cast<std::size_t>(j)].dot(toward_robot));
   return std::clamp(v + s.speed_uncertainty, s.speed_floor, s.speed_max);
+}
+
+/// A link's capsule in the world with the velocities of its ends.
+struct MovingCapsule {
+  Vector3 a, b, va, vb;
+  double radius;
+};
+
+MovingCapsule placed(const LinkCapsule& link, const PathMotion& motion, const Pose& T_world_base) noexcept {
+  const auto k = static_cast<std::size_t>(link.link);
+  const Pose& T = (*motion.links)[k];
+  const LinkTwist& twist = (*motion.twists)[k];
+  const Eigen::Matrix3d& R = T_world_base.linear();
+  const Vector3 ra = T.linear() * link.a, rb = T.linear() * link.b;
+  const Vector3 origin = T_world_base * T.translation();
+  return {origin + R * ra, origin + R * rb, R * (twist.linear + twist.angular.cross(ra)), R * (twist.linear + twist.angular.cross(rb)),
+          link.radius};
 }
 
 }  // namespace
@@ -59,40 +77,14 @@ double reference_speed(double separation, double v_h, double reaction, double de
   return root <= 0.0 ? 0.0 : std::max(0.0, std::sqrt(root) - at - v_h);
 }
 
-void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out) {
-  out.capsules.clear();
-  out.covered = people.covered;
-  for (const Person& person : people.people) {
-    const bool exchanging = !exception.person.empty() && person.id == exception.person;
-    for (const BodyCapsule& body : body_capsules(person)) {
-      CrowdCapsule c;
-      c.a = body.a;
-      c.b = body.b;
-      c.radius = body.radius;
-      c.unknown = person.age > unknown_after || person.joints.size() != kBodyJoints.size();
-      if (!c.unknown)
-        for (int j : joints_of(body.part))
-          c.velocities[static_cast<std::size_t>(c.joints++)] = person.joints[static_cast<std::size_t>(j)].velocity;
-      const bool left = body.part == BodyPart::forearm_left || body.part == BodyPart::hand_left;
-      const bool right = body.part == BodyPart::forearm_right || body.part == BodyPart::hand_right;
-      c.excepted = exchanging && ((left && (exception.both_sides || exception.side == Side::left)) ||
-                                  (right && (exception.both_sides || exception.side == Side::right)));
-      out.capsules.push_back(c);
-    }
-  }
-}
-
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const KinematicLimits& stop_limits, const Crowd& crowd, double age, double factor) noexcept {
+                   const KinematicLimits& stop_limits, const Crowd& crowd, const std::vector<Wall>& walls, double age,
+                   double factor) noexcept {
   GuardVerdict verdict;
-  if (!crowd.covered) {
-    verdict.uncovered = true;
-    verdict.forward = settings.uncovered_factor;
-    verdict.backward = -settings.uncovered_factor;
-  }
-  if (crowd.capsules.empty()) return verdict;
+  double forward = 1.0, backward = 1.0;
 
-  const StopTable stop = make_stop_table(motion, stop_limits);
+  StopTable stop;
+  for (int g = 1; g <= kGrid; ++g) add_stop(motion, stop_limits, g, stop);
   const double reaction = settings.reaction + std::max(0.0, age);
   const double margin = settings.intrusion + settings.uncertainty_human + settings.uncertainty_robot;
   const auto needed = [&](double v_h, double closing, int g, double T_r, double extra) {
@@ -101,53 +93,76 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
     return v_h * (T_r + stop.time[k]) + v_r * (T_r + stop.way[k]) + extra;
   };
   // Largest factor whose need fits into the distance; exact on the grid, linear between.
-  const auto allowed = [&](double distance, double v_h, double closing, double best) {
+  const auto allowed = [&](double distance, double v_h, double closing, double extra, double best) {
     int low = 0, high = static_cast<int>(std::ceil(best * kGrid - 1e-9));
-    if (needed(v_h, closing, high, reaction, margin) <= distance) return best;
-    if (needed(v_h, closing, 0, reaction, margin) >= distance) return 0.0;
+    if (needed(v_h, closing, high, reaction, extra) <= distance) return best;
+    if (needed(v_h, closing, 0, reaction, extra) >= distance) return 0.0;
     while (high - low > 1) {
       const int middle = (low + high) / 2;
-      (needed(v_h, closing, middle, reaction, margin) <= distance ? low : high) = middle;
+      (needed(v_h, closing, middle, reaction, extra) <= distance ? low : high) = middle;
     }
-    const double n0 = needed(v_h, closing, low, reaction, margin), n1 = needed(v_h, closing, high, reaction, margin);
+    const double n0 = needed(v_h, closing, low, reaction, extra), n1 = needed(v_h, closing, high, reaction, extra);
     return std::min(best, (low + (distance - n0) / (n1 - n0)) / kGrid);
   };
 
   const int present = std::clamp(static_cast<int>(std::ceil(std::abs(factor) * kGrid - 1e-9)), 0, kGrid);
-  double forward = 1.0, backward = 1.0;
+  int high = kGrid;  // of the factors still in question
   for (const LinkCapsule& link : robot) {
-    const Pose& T = (*motion.links)[static_cast<std::size_t>(link.link)];
-    const Pose& T_ahead = (*motion.links_ahead)[static_cast<std::size_t>(link.link)];
-    const Vector3 a = T_world_base * (T * link.a), b = T_world_base * (T * link.b);
-    const Vector3 va = (T_world_base * (T_ahead * link.a) - a) / motion.look, vb = (T_world_base * (T_ahead * link.b) - b) / motion.look;
-    const double length2 = (b - a).squaredNorm();
+    const MovingCapsule r = placed(link, motion, T_world_base);
+    const Vector3 way = r.b - r.a, centre = 0.5 * (r.a + r.b);
+    const double length2 = way.squaredNorm(), reach = 0.5 * std::sqrt(length2) + r.radius;
+    const double quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
     for (const CrowdCapsule& part : crowd.capsules) {
+      // What is farther than this changes nothing: rough first, then exactly.
+      const double matters = part.excepted       ? settings.exchange_range
+                             : quickest < kStill ? 0.0
+                                                 : needed(fastest(part, settings), quickest, high, reaction, margin);
+      const double rough = (part.excepted ? matters : std::max(matters, verdict.distance)) + reach + part.reach;
+      if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       Vector3 on_robot, on_person;
-      const double axes_apart = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));
-      const double distance = axes_apart - link.radius - part.radius;
+      const double axes_apart = std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
+      const double distance = axes_apart - r.radius - part.radius;
+      if (!part.excepted) verdict.distance = std::min(verdict.distance, distance);
+      if (distance >= matters) continue;
       const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart) : Vector3(Vector3::UnitZ());
-      const double share = length2 > 1e-12 ? std::clamp((on_robot - a).dot(b - a) / length2, 0.0, 1.0) : 0.0;
-      const double closing = (va + share * (vb - va)).dot(toward);  // at factor 1; backwards it is the negative
+      const double share = length2 > 1e-12 ? std::clamp((on_robot - r.a).dot(way) / length2, 0.0, 1.0) : 0.0;
+      const double closing = (r.va + share * (r.vb - r.va)).dot(toward);  // at factor 1; backwards it is the negative
+      double& best = closing > 0 ? forward : backward;
       if (part.excepted) {
-        if (distance < settings.exchange_range) {
-          verdict.exchange_clear = false;
-          const double cap = std::abs(closing) > settings.exchange_speed ? settings.exchange_speed / std::abs(closing) : 1.0;
-          (closing > 0 ? forward : backward) = std::min(closing > 0 ? forward : backward, cap);
-        }
+        verdict.exchange_clear = false;
+        if (std::abs(closing) > settings.exchange_speed) best = std::min(best, settings.exchange_speed / std::abs(closing));
         continue;
       }
-      verdict.distance = std::min(verdict.distance, distance);
-      if (std::abs(closing) < 1e-4) continue;
+      if (std::abs(closing) < kStill) continue;
       const double v_h = directed_speed(part, -toward, settings);
-      double& best = closing > 0 ? forward : backward;
-      best = allowed(distance, v_h, std::abs(closing), best);
+      best = allowed(distance, v_h, std::abs(closing), margin, best);
+      high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kGrid - 1e-9)));
       const bool closes_now = closing * factor > 0.05;
       if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > distance) verdict.too_near = true;
     }
   }
   verdict.separation = forward < 1.0 || backward < 1.0;
-  verdict.forward = std::min(verdict.forward, forward);
-  verdict.backward = std::max(verdict.backward, -backward);
+  for (const Wall& wall : walls) {
+    for (const LinkCapsule& link : robot) {
+      const MovingCapsule r = placed(link, motion, T_world_base);
+      for (const bool first : {true, false}) {
+        const double closing = -wall.normal.dot(first ? r.va : r.vb);
+        const double distance = wall.normal.dot(first ? r.a : r.b) - wall.offset - r.radius;
+        if (std::abs(closing) < kStill) continue;
+        double& best = closing > 0 ? forward : backward;
+        const double before = best;
+        best = allowed(distance, 0.0, std::abs(closing), settings.uncertainty_robot, best);
+        if (best < before) verdict.wall = true;
+      }
+    }
+  }
+  if (!crowd.covered) {
+    verdict.uncovered = true;
+    forward = std::min(forward, settings.uncovered_factor);
+    backward = std::min(backward, settings.uncovered_factor);
+  }
+  verdict.forward = forward;
+  verdict.backward = -backward;
   return verdict;
 }
 

@@ -1,14 +1,13 @@
-// The guard: decides last how fast the running trajectory may go on, from the robot's motion and the people around it. Pure functions.
-// Speed and separation after ISO/TS 15066 with the jerk-limited minimum-time stop (formulas: section 2; ours where it differs).
+// The guard: decides last how fast the running trajectory may go on, from the robot's motion, the people around it and the walls it must
+// not pass. One pure function, no state. Speed and separation after ISO/TS 15066 with the jerk-limited minimum-time stop (ours where it
+// differs).
 #pragma once
 
-#include <array>
-#include <string>
 #include <vector>
 
-#include "common/messages/world.hpp"
-#include "common/model/robot_capsules.hpp"
 #include "common/trajectory/trajectory.hpp"
+#include "components/trajectory_controller/crowd.hpp"
+#include "components/trajectory_controller/link_motion.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -28,31 +27,18 @@ struct GuardSettings {
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
 };
 
-/// One capsule of a person, ready for many comparisons.
-struct CrowdCapsule {
-  Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
-  double radius{};
-  std::array<Vector3, 8> velocities{};  ///< of the joints that carry it, world [m/s]
-  int joints{};
-  bool unknown{};   ///< lost: moves at speed_unknown
-  bool excepted{};  ///< exchanging forearm or hand
-};
-
-/// The people of one HumanState sample.
-struct Crowd {
-  std::vector<CrowdCapsule> capsules;
-  bool covered{};
-};
-/// Made once a sample; `exception` as in common/model.
-void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out);
-
-/// Motion along the running trajectory at full speed: of each axis, and the links now and `look` seconds later.
+/// Motion along the running trajectory at full speed: of each axis, and of the links.
 struct PathMotion {
   const Eigen::VectorXd* velocity{};       ///< q' all axes [rad/s]
   const Eigen::VectorXd* acceleration{};   ///< q'' all axes [rad/s^2]
-  const std::vector<Pose>* links{};        ///< T_root_link now
-  const std::vector<Pose>* links_ahead{};  ///< T_root_link at q + look * q'
-  double look{1e-3};                       ///< [s]
+  const std::vector<Pose>* links{};        ///< T_root_link
+  const std::vector<LinkTwist>* twists{};  ///< of the links at q', root axes
+};
+
+/// A half space the moving links stay in: normal . p >= offset.
+struct Wall {
+  Vector3 normal{Vector3::UnitX()};  ///< unit, pointing inward, world axes
+  double offset{};                   ///< [m]
 };
 
 struct GuardVerdict {
@@ -60,6 +46,7 @@ struct GuardVerdict {
   double backward{-1.0};      ///< least allowed (running back), [-1, 0]
   double distance{1e9};       ///< to the nearest person, excepted parts left out [m]
   bool separation{};          ///< the separation rule made it less than 1
+  bool wall{};                ///< a wall made it less than 1
   bool uncovered{};           ///< nobody seen, but nobody is not a fact
   bool too_near{};            ///< nearer than the stop needs at the present factor, still closing in
   bool exchange_clear{true};  ///< no excepted part within exchange_range
@@ -70,7 +57,8 @@ double stop_time(double v, double acceleration_limit, double jerk_limit) noexcep
 
 /// `factor`: time-law factor in force. `age`: of the human data [s]. Allocates nothing.
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const KinematicLimits& stop_limits, const Crowd& crowd, double age, double factor) noexcept;
+                   const KinematicLimits& stop_limits, const Crowd& crowd, const std::vector<Wall>& walls, double age,
+                   double factor) noexcept;
 
 /// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not the rule used [m/s].
 double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept;

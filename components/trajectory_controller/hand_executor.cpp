@@ -30,7 +30,7 @@ void HandExecutor::reset(const Vector& robot_position) noexcept {
     fingers_[i].mover.reset(fingers_[i].target);
   }
   phase_ = Phase::hold;
-  paused_ = false;
+  paused_ = by_pull_ = false;
   pull_.disarm();
 }
 
@@ -52,6 +52,7 @@ void HandExecutor::follow(const Vector& robot_position) noexcept {
     if (std::abs(f.target - f.mover.target()) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0));
   }
   phase_ = Phase::hold;
+  by_pull_ = false;
   pull_.disarm();
 }
 
@@ -73,6 +74,7 @@ std::string HandExecutor::accept(const HandCommand& command) {
     return {};
   }
   pull_.disarm();
+  by_pull_ = false;
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
   start(command.action == HandAction::grasp ? Phase::closing : command.action == HandAction::release ? Phase::releasing : Phase::moving);
@@ -84,7 +86,8 @@ void HandExecutor::retarget(std::size_t i, double target) {
   f.target = std::clamp(target, lower_[i], upper_[i]);
   const bool gently = phase_ == Phase::closing || phase_ == Phase::squeezing;
   if (paused_) return;
-  AxisLimits l = limits(i, comfort_, gently ? settings_.grasp_speed : 1.0);
+  AxisLimits l = limits(i, phase_ == Phase::regripping ? stop_ : comfort_, gently ? settings_.grasp_speed : 1.0);
+  if (by_pull_) l.velocity = std::min(l.velocity, settings_.release_speed);
   if (gently) {
     l.velocity *= f.share;
     l.acceleration *= f.share;
@@ -150,16 +153,46 @@ void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
   settled_for_ = settled ? settled_for_ + dt : 0.0;
   if (!settled || (closing && settled_for_ < settings_.settle_time)) return;
   if (closing) {
-    int contacts = 0;
-    for (std::size_t i = 0; i < fingers_.size(); ++i)
-      if (fingers_[i].direction != 0.0 &&
-          fingers_[i].direction * (fingers_[i].mover.state().position - robot.position[axes_[i]]) > settings_.grasp_lag)
-        ++contacts;
-    state_ = contacts >= settings_.least_contacts ? HandState::grasped : HandState::empty;
+    for (Finger& f : fingers_) {
+      f.held = f.mover.state().position;
+      f.grip = f.direction;
+    }
+    state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
+  } else if (phase_ == Phase::regripping) {
+    state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
+    pull_.arm(pull_.threshold());
   } else {
     state_ = phase_ == Phase::releasing ? HandState::released : HandState::idle;
+    if (phase_ == Phase::releasing) pull_.disarm();
+    by_pull_ = false;
   }
   phase_ = Phase::hold;
+}
+
+/// Axes that press on what is held.
+int HandExecutor::pressing(const RobotState& robot) const noexcept {
+  int count = 0;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    const Finger& f = fingers_[i];
+    if (f.grip != 0.0 && f.grip * (f.mover.state().position - robot.position[axes_[i]]) > settings_.grasp_lag) ++count;
+  }
+  return count;
+}
+
+/// While the hand opens on a pull and the fingers still press, the pull must go on: else the load would fall.
+void HandExecutor::watch_release(const RobotState& robot, double dt) noexcept {
+  if (pressing(robot) < settings_.least_contacts) {
+    by_pull_ = false;
+    pull_.disarm();
+    for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].final);
+    return;
+  }
+  slack_for_ = pull_.lost() ? slack_for_ + dt : 0.0;
+  if (slack_for_ < settings_.regrip_time) return;
+  by_pull_ = false;
+  ++regrips_;
+  for (Finger& f : fingers_) f.final = f.held;
+  start(Phase::regripping);
 }
 
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
@@ -173,10 +206,14 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
   }
   if (!paused_) {
     if (phase_ == Phase::closing || phase_ == Phase::squeezing) watch_contacts(robot, dt);
-    if (pull_.armed() && in.new_state && pull_.update(in.force, in.toward, now) && in.person_distance <= settings_.person_range) {
-      pull_.disarm();
+    const bool pulled = pull_.armed() && in.new_state && pull_.update(in.force, in.toward, now);
+    if (by_pull_) {
+      watch_release(robot, dt);
+    } else if (pulled && phase_ == Phase::hold && in.person_distance <= settings_.person_range) {
       for (std::size_t i = 0; i < fingers_.size(); ++i)
         fingers_[i].final = std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+      by_pull_ = true;
+      slack_for_ = 0.0;
       start(Phase::releasing);
     }
     judge(robot, dt);

@@ -1,4 +1,5 @@
-// What the hand does: move, grasp until contact holds, release, release when a person pulls (ours). Pure; no heap in step().
+// What the hand does: move, grasp until contact holds, release, release when a person pulls and take hold again when the pull is lost
+// before the fingers have let go (ours). Pure; no heap in step().
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,8 @@ struct HandSettings {
   double lost_payload{0.02};    ///< payload once felt, now below this: lost [kg]
   double lost_time{0.3};        ///< for this long [s]
   double person_range{0.45};    ///< a pull counts only with a person's hand this near [m]
+  double release_speed{0.3};    ///< of opening on a pull while the fingers still press: slow enough to take hold again [rad/s]
+  double regrip_time{0.02};     ///< pull lost for this long while the fingers still press: close again [s]
   PullSettings pull;
 };
 
@@ -58,6 +61,7 @@ class HandExecutor {
 
   HandState state() const { return state_; }
   double pull() const { return pull_.armed() ? pull_.pull() : 0.0; }
+  std::uint64_t regrips() const { return regrips_; }  ///< times a pull was lost and the hand closed again
   bool at_rest() const;
   /// The set-points before the last step were `from`: every axis stops from there as fast as it can.
   void stop_from(const MotionState3& from) noexcept;
@@ -65,12 +69,14 @@ class HandExecutor {
   void follow(const Vector& robot_position) noexcept;
 
  private:
-  enum class Phase { hold, moving, closing, squeezing, releasing };
+  enum class Phase { hold, moving, closing, squeezing, releasing, regripping };
   struct Finger {  // one axis of the hand
     AxisMover mover;
     double target{};       // wanted now
     double final{};        // of the command, clamped to the bounds
     double direction{};    // of closing: -1, 0, +1
+    double held{};         // set-point that holds the object
+    double grip{};         // direction it presses in while the object is held
     double share{1.0};     // of the longest way of all axes: speed and squeeze go with it, so that a finger keeps its way, (0, 1]
     double pressed_for{};  // [s]
     bool contact{}, beyond{};
@@ -80,6 +86,8 @@ class HandExecutor {
   void retarget(std::size_t i, double target);
   void watch_contacts(const RobotState& robot, double dt) noexcept;
   void judge(const RobotState& robot, double dt) noexcept;
+  int pressing(const RobotState& robot) const noexcept;
+  void watch_release(const RobotState& robot, double dt) noexcept;
 
   HandSettings settings_;
   std::vector<int> axes_;
@@ -88,8 +96,9 @@ class HandExecutor {
   std::vector<Finger> fingers_;
   Phase phase_{Phase::hold};
   HandState state_{HandState::idle};
-  bool paused_{}, payload_felt_{};
-  double settled_for_{}, lost_for_{};
+  bool paused_{}, payload_felt_{}, by_pull_{};
+  double settled_for_{}, lost_for_{}, slack_for_{};
+  std::uint64_t regrips_{};
   Vector release_to_;
   PullDetector pull_;
 };

@@ -64,6 +64,11 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.guard.exchange_range = read(g.exchange_range(), "exchange_range", 0, 10);
   s.guard.stop_persistence = read(g.stop_persistence(), "stop_persistence", 0, 10);
 
+  const auto& c = in.contact();
+  s.contact.torque = read(c.torque(), "torque", kTiny, 1000);
+  s.contact.time = read(c.time(), "time", 0, 10);
+  s.contact.usual_time = read(c.usual_time(), "usual_time", kTiny, 100);
+
   const auto& h = in.hand();
   s.hand.grasp_speed = read(h.grasp_speed(), "grasp_speed", kTiny, 1);
   s.hand.closing_least = read(h.closing_least(), "closing_least", kTiny, 10);
@@ -78,12 +83,32 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.grasp_lag = read(h.grasp_lag(), "grasp_lag", kTiny, 10);
   s.hand.lost_payload = read(h.lost_payload(), "lost_payload", 0, 100);
   s.hand.lost_time = read(h.lost_time(), "lost_time", 0, 10);
+  s.hand.release_speed = read(h.release_speed(), "release_speed", kTiny, 10);
+  s.hand.regrip_time = read(h.regrip_time(), "regrip_time", 0, 10);
   s.hand.person_range = read(h.person_range(), "person_range", 0, 10);
   s.hand.pull.baseline_time = read(h.pull_baseline(), "pull_baseline", 0, 10);
   s.hand.pull.filter_time = read(h.pull_filter(), "pull_filter", 0, 10);
+  s.hand.pull.quick_time = read(h.pull_quick(), "pull_quick", 0, 10);
   s.hand.pull.hold_time = read(h.pull_hold(), "pull_hold", 0, 10);
   s.hand.pull.direction_cosine = read(h.pull_cosine(), "pull_cosine", -1, 1);
   s.hand.pull.away_cosine = read(h.pull_away_cosine(), "pull_away_cosine", -1, 1);
+
+  for (const auto& w : in.walls()) {
+    const Vector3 normal(w.nx(), w.ny(), w.nz());
+    if (!(normal.norm() > 1e-9)) throw ConfigError(locate(file, "walls") + ": a wall has no normal; nx, ny, nz must not all be 0");
+    s.walls.push_back({normal.normalized(), w.offset()});
+  }
+  if (in.has_workspace()) {
+    const auto& b = in.workspace();
+    if (!(b.x_min() < b.x_max() && b.y_min() < b.y_max() && b.z_min() < b.z_max()))
+      throw ConfigError(locate(file, "workspace") + ": each _min of workspace must be below its _max");
+    s.walls.push_back({Vector3::UnitX(), b.x_min()});
+    s.walls.push_back({-Vector3::UnitX(), -b.x_max()});
+    s.walls.push_back({Vector3::UnitY(), b.y_min()});
+    s.walls.push_back({-Vector3::UnitY(), -b.y_max()});
+    s.walls.push_back({Vector3::UnitZ(), b.z_min()});
+    s.walls.push_back({-Vector3::UnitZ(), -b.z_max()});
+  }
   return s;
 }
 

@@ -167,6 +167,8 @@ class Story {
   std::uint64_t id_{};
 };
 
+constexpr double kStopSlack = 0.05;  // [s] guarantee 2
+
 int steps_wanted() {
   const char* text = std::getenv("HANDSEL_STORY_STEPS");
   return text ? std::atoi(text) : 100000;
@@ -176,6 +178,7 @@ TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous
   const std::uint64_t seed = 20240601;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   Story story(seed);
+  story.bench.count_allocations = &test::allocations;
   std::mt19937_64 random(seed + 1);
   int left = 0, moved = 0, last_check_stops = 0, calm_finished = 0;
   for (int k = 0; k < steps_wanted(); ++k) {
@@ -197,7 +200,17 @@ TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous
     ASSERT_LE(story.bench.worst_acceleration, 1 + 1e-6) << "step " << k;
     ASSERT_LE(story.bench.worst_jerk, 1 + 1e-6) << "step " << k;
     ASSERT_LE(story.bench.worst_jump, 1 + 1e-6) << "step " << k;
+    ASSERT_LE(story.bench.latest_stop, kStopSlack) << "step " << k;
+    ASSERT_LE(story.bench.latest_hold, kStopSlack) << "step " << k;
   }
+  std::printf(
+      "%d stops from motion, the latest %.0f ms after the fastest possible; %d holds along the path, the latest %.0f ms; %llu uses of "
+      "the heap\n",
+      story.bench.stops, 1e3 * story.bench.latest_stop, story.bench.holds, 1e3 * story.bench.latest_hold,
+      static_cast<unsigned long long>(story.bench.allocations));
+  EXPECT_EQ(story.bench.allocations, 0u);
+  EXPECT_GT(story.bench.stops, steps_wanted() / 20000);
+  EXPECT_GT(story.bench.holds, 0);
   std::printf("moving in %d of %d steps; %d of %d calm trajectories finished; shares v %.6f a %.6f j %.6f\n", moved, steps_wanted(),
               calm_finished, story.sent, story.bench.worst_velocity, story.bench.worst_acceleration, story.bench.worst_jerk);
   EXPECT_EQ(last_check_stops, 0);

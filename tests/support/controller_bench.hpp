@@ -7,6 +7,7 @@
 
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/solve.hpp"
+#include "common/trajectory/stop.hpp"
 #include "components/trajectory_controller/controller.hpp"
 #include "tests/support/small_robot.hpp"
 
@@ -33,17 +34,34 @@ class ControllerBench {
       s.position = measured;
       s.velocity = s.effort = Vector::Zero(robot->dof());
       s.mode = drive;
+      s.external_torque = external_torque;
       core.on(s, now);
+      robot_at_ = now;
+      drive_told_ = drive;
     }
-    if (human_speaks && ticks % 33 == 1) core.on(people, now);
-    if (go_speaks && ticks % 100 == 1) core.on(go, now);
-    if (forecast_speaks && ticks % 20 == 1) core.on(forecast, now);
+    if (human_speaks && ticks % 33 == 1) {
+      core.on(people, now);
+      human_at_ = now;
+    }
+    if (go_speaks && ticks % 100 == 1) {
+      core.on(go, now);
+      go_told_ = go.allowed;
+    }
+    if (forecast_speaks && ticks % 20 == 1) {
+      core.on(forecast, now);
+      forecast_at_ = now;
+    }
     if (attention_speaks && ticks % 20 == 1) core.on(advice, now);
     const MotionState3 before = core.set_point();
     const bool was_ready = ready;
+    const std::uint64_t heap_before = count_allocations ? count_allocations() : 0;
     ready = core.step(now, late);
+    if (count_allocations) allocations += count_allocations() - heap_before;
     if (ready && drive == DriveMode::enabled && follows) measured = core.set_point().position;
-    if (ready && was_ready) check(before, core.set_point());
+    if (ready && was_ready) {
+      check(before, core.set_point());
+      watch_stops();
+    }
     return ready;
   }
   void run(double seconds) {
@@ -87,6 +105,7 @@ class ControllerBench {
   Vector measured;
   bool follows{true};
   DriveMode drive{DriveMode::enabled};
+  Vector external_torque;  ///< empty: not measured
   bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true}, attention_speaks{true};
   HumanState people;
   Go go;
@@ -95,8 +114,57 @@ class ControllerBench {
 
   // Oracle over every set-point sent, written apart from the controller's own check.
   double worst_velocity{}, worst_acceleration{}, worst_jerk{}, worst_jump{};
+  // And over every stop: at rest by detection + the fastest stop from the state at that moment + 50 ms.
+  int stops{}, holds{};                         ///< begun in motion
+  double latest_stop{-1.0}, latest_hold{-1.0};  ///< beyond the fastest stop [s]; 0.05 is promised
+  std::uint64_t (*count_allocations)(){};       ///< where the heap is watched
+  std::uint64_t allocations{};                  ///< of all steps
 
  private:
+  struct StopWatch {
+    bool on{}, rested{};
+    TimePoint due{};
+    double fastest{};
+    void look(bool cause, bool rests, TimePoint at, double least, int& count, double& latest) {
+      if (!cause || rested) {
+        rested = cause;
+        on = false;
+        return;
+      }
+      if (!on) {
+        on = true;
+        due = at + from_seconds(least);
+        count += rests ? 0 : 1;
+      }
+      if (!rests) latest = std::max(latest, to_seconds(at - due));
+      rested = rests;
+    }
+  };
+  double fastest_stop() const {
+    double longest = 0.0;
+    const MotionState3& s = core.set_point();
+    const KinematicLimits& l = robot->stop_limits();
+    for (Eigen::Index i = 0; i < s.position.size(); ++i)
+      longest = std::max(longest, measure_stop(s.velocity[i], s.acceleration[i], l.acceleration[i], l.jerk[i]).duration);
+    return longest;
+  }
+  void watch_stops() {
+    const trajectory_controller::TimeoutSettings& t = settings.timeouts;
+    const auto silent = [&](TimePoint at, double limit) { return to_seconds(now - at) > limit; };
+    const bool stop = silent(robot_at_, t.robot_state) || silent(human_at_, t.human_state) || drive_told_ != DriveMode::enabled;
+    const bool running = core.status_key().motion == MotionState::running;
+    const double since = running ? running_for_ += settings.period : running_for_ = 0.0;
+    const bool hold = !stop && (!go_told_ || (running && since > t.forecast && silent(forecast_at_, t.forecast)));
+    const double least = fastest_stop();
+    stop_.look(stop, at_rest(), now, least, stops, latest_stop);
+    hold_.look(hold, at_rest(), now, least, holds, latest_hold);
+  }
+  TimePoint robot_at_{from_seconds(50.0)}, human_at_{robot_at_}, forecast_at_{robot_at_};
+  DriveMode drive_told_{DriveMode::enabled};
+  bool go_told_{true};
+  double running_for_{};
+  StopWatch stop_, hold_;
+
   void check(const MotionState3& a, const MotionState3& b) {
     const KinematicLimits& g = robot->guard_limits();
     const double dt = settings.period;

@@ -376,6 +376,27 @@ TEST(Controller, a_person_standing_by_does_not_slow_and_one_in_the_way_does) {
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
 }
 
+TEST(Controller, a_push_on_the_moving_arm_stops_it_and_a_load_does_not) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.4, -0.5), 1), "");
+  b.run(1.0);
+  for (int k = 0; k < 500; ++k) {
+    b.external_torque[1] = 20.0 * std::min(1.0, k * 0.002);  // a load taken up
+    b.tick();
+  }
+  EXPECT_EQ(b.core.mode(), Mode::normal);
+  b.external_torque[1] += 35.0;
+  b.run(0.04);
+  EXPECT_EQ(b.core.mode(), Mode::stop);
+  EXPECT_THAT(b.core.status().reason, HasSubstr("contact felt by shoulder"));
+  b.external_torque[1] -= 35.0;
+  b.run(1.0);
+  EXPECT_TRUE(b.at_rest());
+  EXPECT_EQ(b.core.mode(), Mode::hold);
+}
+
 TEST(Controller, hand_commands_are_judged_like_trajectories) {
   ControllerBench b;
   b.start();

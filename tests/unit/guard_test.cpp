@@ -22,10 +22,10 @@ class GuardTest : public testing::Test {
   }
   GuardVerdict judge(const HumanState& people, double age = 0.0, double factor = 1.0, const Exception& exception = {}) {
     prepare(people, exception, settings_.unknown_after, crowd_);
-    PathMotion motion{&dq_, &ddq_, &links_, &ahead_};
     robot_->forward(q_, links_);
-    robot_->forward(q_ + motion.look * dq_, ahead_);
-    return guard(settings_, capsules_, motion, Pose::Identity(), robot_->stop_limits(), crowd_, age, factor);
+    link_twists(*robot_, dq_, links_, twists_);
+    return guard(settings_, capsules_, {&dq_, &ddq_, &links_, &twists_}, Pose::Identity(), robot_->stop_limits(), crowd_, walls_, age,
+                 factor);
   }
   GuardVerdict judge(const Person& person, double age = 0.0, double factor = 1.0, const Exception& exception = {}) {
     return judge(HumanState{0, {person}, true}, age, factor, exception);
@@ -41,7 +41,9 @@ class GuardTest : public testing::Test {
 
   std::shared_ptr<const RobotModel> robot_;
   std::vector<LinkCapsule> capsules_;
-  std::vector<Pose> links_, ahead_;
+  std::vector<Pose> links_;
+  std::vector<LinkTwist> twists_;
+  std::vector<Wall> walls_;
   Vector q_, dq_, ddq_;
   GuardSettings settings_;
   Crowd crowd_;
@@ -52,6 +54,7 @@ TEST(SeparationReference, vectors_of_the_constant_deceleration_form) {
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(reference_speed(s[i], 1.6, 0.15, 2.0, 0.1), v[i], 5e-5) << s[i];
   const double s2[] = {0.5, 1.0, 2.0}, v2[] = {0.3729, 1.2088, 2.4497};
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(reference_speed(s2[i], 1.6, 0.12, 5.0, 0.13), v2[i], 5e-5) << s2[i];
+  EXPECT_EQ(reference_speed(0.05, 0.1, 0.1, 2.0, 0.5), 0.0);
 }
 
 TEST(StopTime, agrees_with_the_critical_movement) {
@@ -182,6 +185,105 @@ TEST_F(GuardTest, the_exchanging_hand_is_excepted_but_its_speed_stays_limited) {
   EXPECT_LE(engaged.forward * 0.5 * 0.8, settings_.exchange_speed * 1.3);
   EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, Exception{"bert", Side::right, true}).forward, before.forward);
   EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, Exception{"anna", Side::left, false}).forward, before.forward);
+}
+
+TEST_F(GuardTest, only_the_part_of_the_exchanging_hand_within_range_counts_and_its_speed_is_capped_both_ways) {
+  q_[0] = 0.25;
+  Person p = standing(1.5);
+  p.joints[9].position = Vector3(1.25, -0.1, 1.0);
+  p.joints[10].position = Vector3(1.0, 0, 1.0);
+  p.joints[11].position = Vector3(0.92, 0, 1.0);
+  const Exception exchange{"anna", Side::right, true};
+  dq_[0] = 3.0;
+  const GuardVerdict leaving = judge(p, 0.0, 1.0, exchange);
+  EXPECT_GT(leaving.backward, -0.5) << "running back would close in too fast";
+  EXPECT_FALSE(leaving.exchange_clear);
+  dq_[0] = -0.1;
+  EXPECT_FALSE(judge(p, 0.0, 1.0, exchange).exchange_clear) << "near, slow enough";
+  settings_.exchange_range = 0.01;
+  EXPECT_TRUE(judge(p, 0.0, 1.0, exchange).exchange_clear);
+}
+
+TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) {
+  const int upper = robot_->link_index("upper");
+  capsules_ = {LinkCapsule{upper, Vector3(0.4, 0, 0), Vector3(0.4, 0, 0), 0.05}};
+  q_[0] = 0.0;
+  dq_[0] = 0.5;
+  Person p = standing(0.4);
+  const GuardVerdict inside = judge(p);
+  EXPECT_LT(inside.distance, 0.0);
+  robot_->forward(q_, links_);
+  const Vector3 there = links_[static_cast<std::size_t>(upper)] * Vector3(0.4, 0, 0);
+  Crowd point;
+  point.covered = true;
+  point.capsules.emplace_back();
+  CrowdCapsule& c = point.capsules.back();
+  c.a = there;
+  c.b = there;
+  c.centre = there;
+  c.radius = 0.1;
+  c.reach = 0.1;
+  dq_[0] = 0.0;
+  dq_[1] = -0.5;
+  link_twists(*robot_, dq_, links_, twists_);
+  const GuardVerdict same =
+      guard(settings_, capsules_, {&dq_, &ddq_, &links_, &twists_}, Pose::Identity(), robot_->stop_limits(), point, walls_, 0.0, 1.0);
+  EXPECT_EQ(same.forward, 0.0) << "the nearest points coincide: up is taken as the way, and up it goes";
+}
+
+TEST_F(GuardTest, a_wall_ahead_slows_until_the_stop_ends_before_it_and_one_behind_does_not) {
+  // Oracle: reaction time at speed, then the minimum-time stop of the axis; the tip must not have passed the wall.
+  swing(0.5);
+  int limited = 0;
+  for (double x = 0.35; x < 0.9; x += 0.01) {
+    walls_ = {Wall{-Vector3::UnitX(), -x}};  // everything stays at smaller x
+    const GuardVerdict v = judge(HumanState{0, {}, true});
+    EXPECT_EQ(v.wall, v.forward < 1.0 || v.backward > -1.0);
+    EXPECT_FALSE(v.separation);
+    if (v.forward >= 1.0 || v.forward <= 0.0) continue;
+    ++limited;
+    const double speed = v.forward * 0.5;
+    const StopMeasure stop = measure_stop(speed, 0.0, robot_->stop_limits().acceleration[0], robot_->stop_limits().jerk[0]);
+    Vector end = q_;
+    end[0] -= speed * settings_.reaction + stop.distance;
+    std::vector<Pose> links;
+    robot_->forward(end, links);
+    for (const LinkCapsule& link : capsules_) {
+      if (link.link != robot_->link_index("upper") && link.link != robot_->link_index("lower")) continue;
+      EXPECT_LT((links[static_cast<std::size_t>(link.link)] * link.b).x() + link.radius, x + 1e-9) << x;
+    }
+  }
+  EXPECT_GT(limited, 2);
+  walls_ = {Wall{-Vector3::UnitX(), -0.2}};
+  EXPECT_EQ(judge(HumanState{0, {}, true}).forward, 0.0) << "beyond the wall already: no further";
+  EXPECT_EQ(judge(HumanState{0, {}, true}).backward, -1.0) << "but back";
+  walls_ = {Wall{Vector3::UnitX(), -5.0}};
+  EXPECT_EQ(judge(HumanState{0, {}, true}).backward, -1.0);
+}
+
+TEST_F(GuardTest, walls_and_people_combine_by_the_least) {
+  swing(0.5);
+  Person p = standing(1.2);
+  walk(p, Vector3(-0.8, 0, 0));
+  const double person_alone = judge(p).forward;
+  walls_ = {Wall{-Vector3::UnitX(), -0.5}};
+  const double wall_alone = judge(HumanState{0, {}, true}).forward;
+  EXPECT_EQ(judge(p).forward, std::min(person_alone, wall_alone));
+}
+
+TEST_F(GuardTest, link_velocities_are_those_of_the_poses) {
+  q_ << 0.4, 0.3, -0.6, 0.2, 0.1, 0.5, -0.1;
+  dq_ << 0.5, -0.4, 0.3, 1.0, -0.5, 0.2, 0.1;
+  constexpr double kStep = 1e-6;
+  std::vector<Pose> later;
+  robot_->forward(q_, links_);
+  robot_->forward(q_ + kStep * dq_, later);
+  link_twists(*robot_, dq_, links_, twists_);
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Vector3 p(0.1, -0.2, 0.3), r = links_[i].linear() * p;
+    const Vector3 v = (later[i] * p - links_[i] * p) / kStep;
+    EXPECT_TRUE((twists_[i].linear + twists_[i].angular.cross(r)).isApprox(v, 1e-4) || v.norm() < 1e-9) << i;
+  }
 }
 
 TEST_F(GuardTest, slow_approach_near_the_torso_is_allowed) {

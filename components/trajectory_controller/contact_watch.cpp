@@ -1,0 +1,29 @@
+#include "components/trajectory_controller/contact_watch.hpp"
+
+#include <cmath>
+
+namespace handsel::trajectory_controller {
+
+ContactWatch::ContactWatch(const ContactSettings& settings, std::vector<int> axes)
+    : settings_(settings), axes_(std::move(axes)), usual_(axes_.size(), 0.0) {}
+
+bool ContactWatch::update(const Eigen::VectorXd& external_torque, double dt) noexcept {
+  double most = 0.0;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (axes_[i] >= external_torque.size() || !std::isfinite(external_torque[axes_[i]])) return false;
+    const double now = external_torque[axes_[i]];
+    if (!seen_) usual_[i] = now;
+    const double beyond = std::abs(now - usual_[i]);
+    if (beyond > most) {
+      most = beyond;
+      axis_ = axes_[i];
+    }
+    usual_[i] += (now - usual_[i]) * (dt / (settings_.usual_time + dt));
+  }
+  seen_ = true;
+  torque_ = most;
+  pressed_for_ = most > settings_.torque ? pressed_for_ + dt : 0.0;
+  return pressed_for_ > settings_.time;
+}
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,37 @@
+#include "components/trajectory_controller/crowd.hpp"
+
+#include <algorithm>
+
+#include "common/model/body_motion.hpp"
+
+namespace handsel::trajectory_controller {
+
+void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out) {
+  out.capsules.clear();
+  out.covered = people.covered;
+  for (const Person& person : people.people) {
+    const bool exchanging = !exception.person.empty() && person.id == exception.person;
+    const bool known = person.age <= unknown_after && person.joints.size() == kBodyJoints.size();
+    for (const BodyCapsule& body : body_capsules(person)) {
+      CrowdCapsule c;
+      c.a = body.a;
+      c.b = body.b;
+      c.radius = body.radius;
+      c.centre = 0.5 * (body.a + body.b);
+      c.reach = 0.5 * (body.b - body.a).norm() + body.radius;
+      if (known)
+        for (int j : joints_of(body.part)) {
+          const Vector3& velocity = person.joints[static_cast<std::size_t>(j)].velocity;
+          c.velocities[static_cast<std::size_t>(c.joints++)] = velocity;
+          c.fastest = std::max(c.fastest, velocity.norm());
+        }
+      const bool left = body.part == BodyPart::forearm_left || body.part == BodyPart::hand_left;
+      const bool right = body.part == BodyPart::forearm_right || body.part == BodyPart::hand_right;
+      c.excepted = exchanging && ((left && (exception.both_sides || exception.side == Side::left)) ||
+                                  (right && (exception.both_sides || exception.side == Side::right)));
+      out.capsules.push_back(c);
+    }
+  }
+}
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,33 @@
+// People as capsules ready for many comparisons: made once a HumanState sample, read by the guard every period.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/messages/world.hpp"
+#include "common/model/robot_capsules.hpp"
+
+namespace handsel::trajectory_controller {
+
+/// One capsule of a person.
+struct CrowdCapsule {
+  Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
+  double radius{};
+  Vector3 centre{Vector3::Zero()};      ///< between a and b
+  double reach{};                       ///< half the length and the radius [m]
+  std::array<Vector3, 8> velocities{};  ///< of the joints that carry it, world [m/s]
+  int joints{};                         ///< 0: lost, velocity unknown
+  double fastest{};                     ///< of the joints [m/s]
+  bool excepted{};                      ///< exchanging forearm or hand
+};
+
+/// The people of one HumanState sample.
+struct Crowd {
+  std::vector<CrowdCapsule> capsules;
+  bool covered{};
+};
+
+/// `exception` as in common/model; a person not seen for longer than `unknown_after` [s] has no known velocity. May allocate.
+void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out);
+
+}  // namespace handsel::trajectory_controller
