@@ -180,6 +180,7 @@ class Client : public std::enable_shared_from_this<Client> {
   }
 
   void cut(const std::string& why) {
+    if (ended_) return;
     ++shared_.counters.cut_clients;
     shared_.say("cut", "a client is cut: " + why);
     end();
