@@ -1,41 +1,23 @@
 #include <cmath>
 
+#include "common/model/body_index.hpp"
 #include "common/model/human_body.hpp"
 #include "common/model/two_bones.hpp"
 
 namespace handsel {
 namespace {
 
+using namespace body;
+
 constexpr double kLeastConfidence = 0.05;
 constexpr int kCount = static_cast<int>(kBodyJoints.size());
 
-enum Index {
-  head,
-  neck,
-  torso,
-  waist,
-  l_shoulder,
-  l_elbow,
-  l_wrist,
-  l_hand,
-  r_shoulder,
-  r_elbow,
-  r_wrist,
-  r_hand,
-  l_hip,
-  l_knee,
-  l_ankle,
-  r_hip,
-  r_knee,
-  r_ankle
-};
 /// The skeleton as a tree from the chest outward.
 constexpr std::array<int, kCount> kParent = {neck,       torso,   -1,      torso, neck,  l_shoulder, l_elbow, l_wrist, neck,
                                              r_shoulder, r_elbow, r_wrist, waist, l_hip, l_knee,     waist,   r_hip,   r_knee};
 /// How much a joint says about where the trunk is and faces.
 constexpr std::array<double, kCount> kTrunkWeight = {0.5, 1, 1, 1, 1, 0.05, 0.02, 0.02, 1, 0.05, 0.02, 0.02, 1, 0.2, 0.1, 1, 0.2, 0.1};
 
-using Points = std::array<Vector3, kCount>;
 using Seen = std::array<double, kCount>;  // confidence, 0 = unseen
 
 double flat_norm(const Vector3& v) { return std::hypot(v.x(), v.y()); }

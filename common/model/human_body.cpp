@@ -3,37 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/body_index.hpp"
+
 namespace handsel {
 namespace {
+
+using namespace body;
 
 // Lengths as shares of the stature (Drillis and Contini; depths and breadths ours).
 constexpr double kHead = 0.93, kNeck = 0.85, kShoulder = 0.818, kTorso = 0.72, kHip = 0.53, kKnee = 0.285, kAnkle = 0.039;
 constexpr double kShoulderHalf = 0.115, kHipHalf = 0.055, kUpperArm = 0.186, kForearm = 0.146, kHandCentre = 0.054;
 constexpr double kHeadRadius = 0.07, kNeckRadius = 0.04, kTrunkRadius = 0.08, kSideRadius = 0.07, kShoulderRadius = 0.055;
 constexpr double kUpperArmRadius = 0.034, kForearmRadius = 0.028, kHandRadius = 0.030, kThighRadius = 0.055, kShankRadius = 0.04;
-
-enum Index {
-  head,
-  neck,
-  torso,
-  waist,
-  l_shoulder,
-  l_elbow,
-  l_wrist,
-  l_hand,
-  r_shoulder,
-  r_elbow,
-  r_wrist,
-  r_hand,
-  l_hip,
-  l_knee,
-  l_ankle,
-  r_hip,
-  r_knee,
-  r_ankle
-};
-
-using Points = std::array<Vector3, kBodyJoints.size()>;
 
 bool complete(const Person& person) {
   if (person.joints.size() < kBodyJoints.size()) return false;

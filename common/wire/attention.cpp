@@ -1,15 +1,12 @@
 #include "common/messages/attention.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 #include "idl/attention.h"
 
 namespace handsel {
-namespace {
-constexpr const char* kBehaviours[] = {"search", "track", "avoid", "pick", "place", "give", "receive"};
-}
-
 void describe(WireIo& io, BehaviourState& m, handsel_BehaviourState& w) {
-  io.choice("behaviour", m.behaviour, w.behaviour, kBehaviours);
+  io.choice("behaviour", m.behaviour, w.behaviour, kBehaviourNames);
   io.number("period", m.period, w.period, kPeriod);
   io.integer("activations", m.activations, w.activations);
   io.integer("activations_at_fastest", m.activations_at_fastest, w.activations_at_fastest);
@@ -26,7 +23,7 @@ void describe(WireIo& io, AttentionState& m, handsel_AttentionState& w) {
 void describe(WireIo& io, AttentionAdvice& m, handsel_AttentionAdvice& w) {
   io.stamp(m.stamp, w.stamp);
   io.number("speed_factor", m.speed_factor, w.speed_factor, kSigned);
-  io.choice("limiting", m.limiting, w.limiting, kBehaviours);
+  io.choice("limiting", m.limiting, w.limiting, kBehaviourNames);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.flag("has_gaze_target", m.has_gaze_target, w.has_gaze_target);
   io.point("gaze_target", m.gaze_target, w.gaze_target);

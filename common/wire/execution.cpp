@@ -1,4 +1,5 @@
 #include "common/messages/execution.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 #include "idl/execution.h"
@@ -7,7 +8,6 @@ namespace handsel {
 namespace {
 
 constexpr const char* kHandActions[] = {"move", "grasp", "release_on_pull", "release"};
-constexpr const char* kModes[] = {"normal", "slow", "hold", "stop", "fault"};
 constexpr const char* kMotions[] = {"idle", "running", "finished", "refused", "stopped"};
 constexpr const char* kHands[] = {"idle", "moving", "grasped", "empty", "released", "refused"};
 constexpr Range kLimitShare{0, 1e9};
@@ -48,7 +48,7 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
 void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.text("robot", m.robot, w.robot, Text::name);
   io.stamp(m.stamp, w.stamp);
-  io.choice("mode", m.mode, w.mode, kModes);
+  io.choice("mode", m.mode, w.mode, kModeNames);
   io.integer("causes", m.causes, w.causes);
   io.integer("epoch", m.epoch, w.epoch);
   io.integer("trajectory", m.trajectory, w.trajectory);

@@ -1,15 +1,10 @@
 #include "common/messages/robot.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 #include "idl/robot.h"
 
 namespace handsel {
-namespace {
-
-constexpr const char* kDriveModes[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
-
-}  // namespace
-
 void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.text("robot", m.robot, w.robot, Text::name);
   io.stamp(m.stamp, w.stamp);
@@ -22,7 +17,7 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.wrench("wrist_wrench", m.wrist_wrench, w.wrist_wrench);
   io.number("hand_effort", m.hand_effort, w.hand_effort, {0, 1e5});
   io.number("payload", m.payload, w.payload, {-1e3, 1e3});
-  io.choice("mode", m.mode, w.mode, kDriveModes);
+  io.choice("mode", m.mode, w.mode, kDriveModeNames);
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");

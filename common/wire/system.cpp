@@ -1,14 +1,11 @@
 #include "common/messages/system.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 #include "idl/system.h"
 
 namespace handsel {
 namespace {
-constexpr const char* kHealthStates[] = {"starting", "ok", "degraded", "stopping"};
-constexpr const char* kSimActions[] = {
-    "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
-    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore"};
 constexpr Range kLimitShare{0, 1e9};
 }  // namespace
 
@@ -27,7 +24,7 @@ void describe(WireIo& io, ComponentHealth& m, handsel_ComponentHealth& w) {
   io.stamp(m.stamp, w.stamp);
   io.integer("incarnation", m.incarnation, w.incarnation);
   io.integer("pid", m.pid, w.pid);
-  io.choice("state", m.state, w.state, kHealthStates);
+  io.choice("state", m.state, w.state, kHealthStateNames);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.number("cpu", m.cpu, w.cpu, {0, 1e4});
   io.number("memory_mb", m.memory_mb, w.memory_mb, {0, 1e9});
@@ -37,7 +34,7 @@ void describe(WireIo& io, ComponentHealth& m, handsel_ComponentHealth& w) {
 
 void describe(WireIo& io, SimControl& m, handsel_SimControl& w) {
   io.stamp(m.stamp, w.stamp);
-  io.choice("action", m.action, w.action, kSimActions);
+  io.choice("action", m.action, w.action, kSimActionNames);
   io.text("subject", m.subject, w.subject, Text::maybe_empty);
   io.number("value", m.value, w.value, {-1e9, 1e9});
 }

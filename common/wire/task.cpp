@@ -1,4 +1,5 @@
 #include "common/messages/task.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 #include "idl/task.h"
@@ -6,10 +7,6 @@
 namespace handsel {
 namespace {
 
-constexpr const char* kTasks[] = {"give", "receive", "pick",  "place",  "clear",  "tidy",        "regrasp",
-                                  "lift", "go_to",   "pause", "resume", "cancel", "acknowledge", "speed"};
-constexpr const char* kTaskStates[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
-constexpr const char* kActions[] = {"pick", "place", "give", "receive", "go_to"};
 constexpr const char* kActionStates[] = {"idle", "running", "succeeded", "failed", "cancelled"};
 
 }  // namespace
@@ -17,7 +14,7 @@ constexpr const char* kActionStates[] = {"idle", "running", "succeeded", "failed
 void describe(WireIo& io, TaskGoal& m, handsel_TaskGoal& w) {
   io.stamp(m.stamp, w.stamp);
   io.integer("id", m.id, w.id);
-  io.choice("kind", m.kind, w.kind, kTasks);
+  io.choice("kind", m.kind, w.kind, kTaskKindNames);
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.text("human", m.human, w.human, Text::maybe_empty);
   io.text("surface", m.surface, w.surface, Text::maybe_empty);
@@ -28,8 +25,8 @@ void describe(WireIo& io, TaskGoal& m, handsel_TaskGoal& w) {
 void describe(WireIo& io, TaskStatus& m, handsel_TaskStatus& w) {
   io.stamp(m.stamp, w.stamp);
   io.integer("id", m.id, w.id);
-  io.choice("kind", m.kind, w.kind, kTasks);
-  io.choice("state", m.state, w.state, kTaskStates);
+  io.choice("kind", m.kind, w.kind, kTaskKindNames);
+  io.choice("state", m.state, w.state, kTaskStateNames);
   io.texts("plan", m.plan, w.plan, 64, Text::sentence);
   io.integer("step", m.step, w.step);
   io.text("phase", m.phase, w.phase, Text::sentence);
@@ -43,7 +40,7 @@ void describe(WireIo& io, ActionGoal& m, handsel_ActionGoal& w) {
   io.integer("id", m.id, w.id);
   io.integer("task", m.task, w.task);
   io.integer("epoch", m.epoch, w.epoch);
-  io.choice("kind", m.kind, w.kind, kActions);
+  io.choice("kind", m.kind, w.kind, kActionKindNames);
   io.flag("cancel", m.cancel, w.cancel);
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.text("human", m.human, w.human, Text::maybe_empty);
@@ -54,7 +51,7 @@ void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
   io.stamp(m.stamp, w.stamp);
   io.integer("id", m.id, w.id);
   io.integer("task", m.task, w.task);
-  io.choice("kind", m.kind, w.kind, kActions);
+  io.choice("kind", m.kind, w.kind, kActionKindNames);
   io.choice("state", m.state, w.state, kActionStates);
   io.text("phase", m.phase, w.phase, Text::sentence);
   io.text("object", m.object, w.object, Text::maybe_empty);

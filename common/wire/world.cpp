@@ -1,10 +1,10 @@
 #include "common/messages/world.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 
 namespace handsel {
 namespace {
-constexpr const char* kHolders[] = {"nobody", "surface", "robot", "human"};
 constexpr const char* kFacts[] = {"in_contact_zone", "in_danger_zone",     "in_interaction_zone", "in_social_zone", "approaching",
                                   "attentive",       "reaching",           "hand_near_object",    "on_surface",     "held_by_robot",
                                   "held_by_human",   "reachable_by_robot", "reachable_by_human"};
@@ -14,7 +14,7 @@ void describe(WireIo& io, SceneObject& m, handsel_SceneObject& w) {
   io.text("id", m.id, w.id, Text::name);
   io.text("model", m.model, w.model, Text::maybe_empty);
   io.pose("T_world_object", m.T_world_object, w.T_world_object);
-  io.choice("holder", m.holder, w.holder, kHolders);
+  io.choice("holder", m.holder, w.holder, kHolderNames);
   io.text("holder_id", m.holder_id, w.holder_id, Text::maybe_empty);
   io.number("age", m.age, w.age, kTime);
 }

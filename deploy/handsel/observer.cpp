@@ -1,24 +1,11 @@
 #include "deploy/handsel/observer.hpp"
 
+#include "common/messages/names.hpp"
+
 namespace handsel {
 namespace {
 
 constexpr std::size_t kMaxTimeline = 20000;
-constexpr std::uint8_t kLastCause = static_cast<std::uint8_t>(Cause::override_slow);
-
-const char* state_name(HealthState state) {
-  switch (state) {
-    case HealthState::starting:
-      return "starting";
-    case HealthState::ok:
-      return "ok";
-    case HealthState::degraded:
-      return "degraded";
-    case HealthState::stopping:
-      return "stopping";
-  }
-  return "unknown";
-}
 
 std::string with_reason(std::string text, const std::string& reason) { return reason.empty() ? text : text + ": " + reason; }
 
@@ -26,7 +13,7 @@ std::string with_reason(std::string text, const std::string& reason) { return re
 
 std::string cause_names(std::uint32_t causes) {
   std::string names;
-  for (std::uint8_t value = 1; value <= kLastCause; ++value) {
+  for (std::uint8_t value = 1; value < std::size(kCauseNames); ++value) {
     if (causes & (1u << value)) names += (names.empty() ? "" : ", ") + std::string(name(static_cast<Cause>(value)));
   }
   return names;
@@ -50,7 +37,7 @@ Observer::Observer(Bus& bus) {
     auto& seen = snapshot_.health[health.component];
     const bool is_new = !seen.ever || seen.sample.incarnation != health.incarnation;
     if (is_new || seen.sample.state != health.state || seen.sample.reason != health.reason) {
-      note(at, with_reason(health.component + " " + (is_new && seen.ever ? "back, " : "") + state_name(health.state), health.reason));
+      note(at, with_reason(health.component + " " + (is_new && seen.ever ? "back, " : "") + name(health.state), health.reason));
     }
     keep(seen, health, at);
   });

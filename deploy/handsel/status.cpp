@@ -5,31 +5,18 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/messages/names.hpp"
 #include "deploy/handsel/processes.hpp"
 
 namespace handsel {
 namespace {
-
-const char* state_name(HealthState state) {
-  switch (state) {
-    case HealthState::starting:
-      return "starting";
-    case HealthState::ok:
-      return "ok";
-    case HealthState::degraded:
-      return "degraded";
-    case HealthState::stopping:
-      return "stopping";
-  }
-  return "unknown";
-}
 
 ProcessLine line_of(const std::string& component, const Snapshot& snapshot, TimePoint now) {
   ProcessLine line{.component = component, .state = "missing"};
   const auto found = snapshot.health.find(component);
   if (found == snapshot.health.end()) return line;
   const ComponentHealth& health = found->second.sample;
-  line.state = now - found->second.arrival > kSilent ? "silent" : state_name(health.state);
+  line.state = now - found->second.arrival > kSilent ? "silent" : name(health.state);
   line.reason = health.reason;
   line.memory_mb = health.memory_mb;
   line.cpu = health.cpu;

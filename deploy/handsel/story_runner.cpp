@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "common/base/errors.hpp"
+#include "common/messages/names.hpp"
 #include "deploy/handsel/performer.hpp"
 #include "deploy/handsel/status.hpp"
 
@@ -16,22 +17,6 @@ namespace {
 /// A line of the story did not come true.
 struct Unfulfilled {
   std::string why;
-};
-
-constexpr std::pair<const char*, SimAction> kSimActions[] = {
-    {"pause", SimAction::pause},
-    {"resume", SimAction::resume},
-    {"reset", SimAction::reset},
-    {"person_freeze", SimAction::person_freeze},
-    {"person_unfreeze", SimAction::person_unfreeze},
-    {"person_dart", SimAction::person_dart},
-    {"person_leave", SimAction::person_leave},
-    {"person_refuse", SimAction::person_refuse},
-    {"robot_stop", SimAction::robot_stop},
-    {"robot_enable", SimAction::robot_enable},
-    {"silence_human", SimAction::silence_human},
-    {"silence_robot_state", SimAction::silence_robot_state},
-    {"restore", SimAction::restore},
 };
 
 std::string seconds(Duration duration) {
@@ -171,10 +156,10 @@ void StoryRunner::send_control(const StoryStep& step) {
 }
 
 void StoryRunner::send_sim(const StoryStep& step) {
-  const auto action =
-      std::find_if(std::begin(kSimActions), std::end(kSimActions), [&](const auto& entry) { return step.words[0] == entry.first; });
-  if (action == std::end(kSimActions)) throw ConfigError(where(story_, step) + "\"" + step.words[0] + "\" is no action of the simulator");
-  SimControl control{.action = action->second};
+  const auto action = std::find(std::begin(kSimActionNames), std::end(kSimActionNames), step.words[0]);
+  if (action == std::end(kSimActionNames))
+    throw ConfigError(where(story_, step) + "\"" + step.words[0] + "\" is no action of the simulator");
+  SimControl control{.action = static_cast<SimAction>(action - std::begin(kSimActionNames))};
   for (std::size_t i = 1; i < step.words.size(); ++i) {
     char* end = nullptr;
     const double value = std::strtod(step.words[i].c_str(), &end);

@@ -1,0 +1,37 @@
+// The names of the enumerators, each table in the order of its enum: the only ones there are. The wire, the page, reports and settings use
+// them.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "common/messages/attention.hpp"
+#include "common/messages/execution.hpp"
+#include "common/messages/robot.hpp"
+#include "common/messages/system.hpp"
+#include "common/messages/task.hpp"
+#include "common/messages/world.hpp"
+
+namespace handsel {
+
+inline constexpr const char* kBehaviourNames[] = {"search", "track", "avoid", "pick", "place", "give", "receive"};
+inline constexpr const char* kCauseNames[] = {
+    "none",           "no_go",           "supervisor_silent",  "forecast_silent",    "forecast_collision", "attention_silent",
+    "attention_slow", "separation",      "robot_state_silent", "human_state_silent", "human_unknown",      "drive_not_enabled",
+    "tracking_error", "limit_violation", "cycle_late",         "override_slow"};
+inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
+inline constexpr const char* kTaskKindNames[] = {"give", "receive", "pick",  "place",  "clear",  "tidy",        "regrasp",
+                                                 "lift", "go_to",   "pause", "resume", "cancel", "acknowledge", "speed"};
+inline constexpr const char* kTaskStateNames[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
+inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to"};
+inline constexpr const char* kDriveModeNames[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
+inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "human"};
+inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
+inline constexpr const char* kSimActionNames[] = {
+    "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
+    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore"};
+
+const char* name(Holder);
+const char* name(HealthState);
+
+}  // namespace handsel
