@@ -68,7 +68,7 @@ fs::path description(const std::string& kind, const fs::path& folder, bool neste
     if (!fs::exists(name_or_path)) throw MissingError("no " + kind + " description " + name_or_path);
     return name_or_path;
   }
-  const fs::path file = nested ? folder / name_or_path / (name_or_path + ".txtpb") : folder / (name_or_path + ".txtpb");
+  fs::path file = nested ? folder / name_or_path / (name_or_path + ".txtpb") : folder / (name_or_path + ".txtpb");
   if (name_or_path.empty() || !fs::exists(file))
     throw MissingError("no " + kind + " \"" + name_or_path + "\"; there is: " + alternatives(folder, nested));
   return file;
@@ -82,7 +82,7 @@ fs::path resource_root() {
 }
 
 fs::path resource(const std::string& relative) {
-  const fs::path file = resource_root() / relative;
+  fs::path file = resource_root() / relative;
   if (!fs::exists(file)) throw MissingError("no file " + file.string());
   return file;
 }
