@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "common/base/errors.hpp"
 #include "common/bus/executor.hpp"
 #include "common/bus/intake.hpp"
+#include "common/bus/look_around.hpp"
 #include "common/bus/qos.hpp"
 #include "common/config/resources.hpp"
 #include "common/messages/system.hpp"
@@ -328,6 +330,7 @@ void DdsBus::stop() noexcept { impl_->executor.stop(); }
 bool DdsBus::end_jobs(Duration limit) { return impl_->executor.end_jobs(limit); }
 bool DdsBus::run_until(const std::function<bool()>& done, Duration limit) { return impl_->executor.run_until(done, limit); }
 const std::string& DdsBus::realtime_note() const { return impl_->realtime_note; }
+DomainView DdsBus::look_around() const { return handsel::look_around(impl_->participant); }
 std::uint64_t DdsBus::incarnation() const { return impl_->incarnation; }
 
 void DdsBus::set_ready() {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/domain_view.hpp"
 #include "common/bus/raw.hpp"
 
 namespace handsel {
@@ -45,6 +46,8 @@ class DdsBus : public Bus, public RawBus {
   /// Runs for at most `wait`, looking for another living process of the same component. Of two that start together only the one with the
   /// larger incarnation sees the other as its twin.
   bool has_twin(Duration wait);
+  /// Everybody the transport has discovered on the domain by now. For tools: it allocates and asks the transport.
+  DomainView look_around() const;
 
   std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;
   const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,

@@ -13,6 +13,7 @@
 #include "common/base/errors.hpp"
 #include "common/bus/dds_bus.hpp"
 #include "common/messages/system.hpp"
+#include "common/wire/interface_id.hpp"
 
 namespace handsel {
 namespace {
@@ -60,6 +61,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   app.add_flag("--realtime", settings.realtime, "SCHED_FIFO and locked memory where permitted");
   app.add_option("--cpu-affinity", settings.cpu, "run the executor on this processor");
   app.add_flag("--standby", standby, "start even when the domain has this component already");
+  app.set_version_flag("--version", version_text);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

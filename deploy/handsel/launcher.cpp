@@ -38,12 +38,6 @@ std::string last_line(const std::filesystem::path& file) {
   return last;
 }
 
-std::filesystem::path state_directory() {
-  if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state) return std::filesystem::path(state) / "handsel";
-  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".local/state/handsel";
-  return std::filesystem::temp_directory_path() / "handsel";
-}
-
 }  // namespace
 
 struct Launcher::Child {
@@ -194,6 +188,12 @@ std::optional<LaunchFailure> Launcher::failure() const {
   return failure_;
 }
 
+std::filesystem::path state_directory() {
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state) return std::filesystem::path(state) / "handsel";
+  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".local/state/handsel";
+  return std::filesystem::temp_directory_path() / "handsel";
+}
+
 std::filesystem::path new_run_directory(int domain) {
   namespace fs = std::filesystem;
   const fs::path root = state_directory() / "runs";
@@ -208,8 +208,24 @@ std::filesystem::path new_run_directory(int domain) {
   return root / (std::string(when) + "-domain" + std::to_string(domain) + "-" + std::to_string(getpid()));
 }
 
+namespace {
+
+std::filesystem::path lock_file(int domain) {
+  return std::filesystem::temp_directory_path() / ("handsel-domain-" + std::to_string(domain) + ".lock");
+}
+
+}  // namespace
+
+bool domain_is_held(int domain) {
+  const int fd = open(lock_file(domain).c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return false;
+  const bool held = flock(fd, LOCK_SH | LOCK_NB) != 0;
+  close(fd);
+  return held;
+}
+
 DomainLock::DomainLock(int domain) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / ("handsel-domain-" + std::to_string(domain) + ".lock");
+  const std::filesystem::path file = lock_file(domain);
   fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (fd_ < 0) throw MissingError("cannot open " + file.string() + ": " + std::strerror(errno));
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {

@@ -71,9 +71,13 @@ class Launcher {
   std::thread thread_;
 };
 
-/// A fresh directory for the logs of one run under $XDG_STATE_HOME/handsel, ~/.local/state/handsel or the temporary directory;
-/// the oldest beyond 20 are removed.
+/// $XDG_STATE_HOME/handsel, ~/.local/state/handsel, or handsel in the temporary directory.
+std::filesystem::path state_directory();
+/// A fresh directory for the logs of one run under state_directory(); the oldest beyond 20 are removed.
 std::filesystem::path new_run_directory(int domain);
+
+/// Does a system of this machine hold the domain's lock?
+bool domain_is_held(int domain);
 
 /// Held while a system runs on a domain of this machine: a lock file, released by the kernel when its holder ends.
 class DomainLock {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/base/errors.hpp"
+#include "common/wire/interface_id.hpp"
 #include "deploy/handsel/commands.hpp"
 
 namespace {
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
   CLI::App app{"Handsel lets a robot arm hand things to people. `handsel COMMAND --help` explains a command."};
   app.name("handsel");
   app.require_subcommand(1);
+  app.set_version_flag("--version", handsel::version_text);
   int exit_code = 0;
   handsel::add_up_command(app, exit_code);
   handsel::add_run_command(app, exit_code);
@@ -48,6 +50,8 @@ int main(int argc, char** argv) {
     return app.exit(help);
   } catch (const CLI::CallForAllHelp& help) {
     return app.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app.exit(version);
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "handsel: %s\n", error.what());
     return 2;

@@ -15,7 +15,7 @@ inline constexpr Duration kReadyPatience = std::chrono::seconds(15);
 void add_domain_option(CLI::App& command, int& domain);
 /// --robot, --scenario, --seed, --domain, --port.
 void add_system_options(CLI::App& command, SystemOptions& options);
-/// Prints the page's address; opens it in a browser when there is a display and not `headless`.
+/// Prints the page's address, or why there is no page; opens it in a browser when there is a display and not `headless`.
 void announce_page(System& system, bool headless);
 
 }  // namespace handsel

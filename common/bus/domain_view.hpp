@@ -1,0 +1,20 @@
+// Who is on a DDS domain, as the transport itself tells it: also processes that are not Handsel's.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace handsel {
+
+struct DomainParticipant {
+  std::string component;  ///< entity name: the component of a Handsel process; may be empty
+  std::string process, host;
+  int pid{0};  ///< on its host; 0: not told
+};
+
+struct DomainView {
+  std::vector<DomainParticipant> participants;  ///< all discovered so far, the asking one included
+  std::vector<DomainParticipant> commanders;    ///< one for each living writer of set-points
+};
+
+}  // namespace handsel

@@ -1,0 +1,13 @@
+// Do two processes understand each other's messages?
+#pragma once
+
+#include <string>
+
+namespace handsel {
+
+/// Eight hexadecimal digits over every topic's name, type and QoS profile: processes that differ in it do not understand each other.
+std::string interface_id();
+/// "handsel 0.1.0, interface 01234567".
+std::string version_text();
+
+}  // namespace handsel

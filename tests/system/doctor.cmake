@@ -1,0 +1,10 @@
+add_library(handsel_clock_jump MODULE ${CMAKE_CURRENT_LIST_DIR}/../support/clock_jump.cpp)
+target_link_libraries(handsel_clock_jump PRIVATE handsel_options)
+handsel_test(doctor SOURCES ${CMAKE_CURRENT_LIST_DIR}/doctor_test.cpp LINK handsel_bus nlohmann_json::nlohmann_json LABEL system)
+target_compile_definitions(test_doctor PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>" HANDSEL_CLOCK_JUMP="$<TARGET_FILE:handsel_clock_jump>")
+target_compile_options(test_doctor PRIVATE -Wno-missing-field-initializers)
+add_dependencies(test_doctor product handsel_clock_jump)
+# Beside a running system it runs alone; the other faults wait more than they compute.
+set_tests_properties(doctor PROPERTIES TIMEOUT 300 ENVIRONMENT GTEST_FILTER=-*beside*:*port*)
+add_test(NAME doctor_system COMMAND test_doctor)
+set_tests_properties(doctor_system PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 120 ENVIRONMENT GTEST_FILTER=*beside*:*port*)
