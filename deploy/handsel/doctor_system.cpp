@@ -135,7 +135,7 @@ std::vector<Finding> check_descriptions(const DoctorOptions& options) {
   const bool loads = std::all_of(out.begin(), out.end(), [](const Finding& finding) { return finding.verdict == Verdict::good; });
   if (loads) {
     out.push_back(attempt("settings", [&] {
-      LockstepSystem(load_context(robot, options.scenario));
+      const LockstepSystem whole(load_context(robot, options.scenario));
       return std::string("every component starts with its settings and the scenario");
     }));
   }
