@@ -26,6 +26,8 @@ struct Touch {
   Vector3 normal{Vector3::UnitZ()};     ///< from b to a
   double normal_force{};                ///< [N]
   Vector3 force_on_a{Vector3::Zero()};  ///< friction included [N]
+  double friction{};                    ///< Coulomb coefficient of the pair
+  double torsion{};                     ///< torque about the normal per normal force [m]
 };
 
 /// Replaces `out` by the contacts closer than `reach` of the last step of length dt.

@@ -91,7 +91,7 @@ void PersonModel::enter(PersonPhase phase) {
 void PersonModel::dart(double speed) {
   speed_ = speed;
   hand_active_ = true;
-  hand_target_ = points_[kHand[index()]];
+  hand_target_ = hand_point();
   enter(PersonPhase::darting);
 }
 
@@ -113,6 +113,10 @@ void PersonModel::step(double dt, const PersonView& view) {
     bend_arm(index(), hand_target_);
     hand_target_ = points_[kHand[index()]];
   }
+  want_hands(dt);
+  for (int s = 0; s < 2; ++s) {
+    if (!view.hand_pushed[s].isZero(0)) bend_arm(s, points_[kHand[s]] + view.hand_pushed[s]);
+  }
   for (std::size_t i = 0; i < points_.size(); ++i) {
     body_.joints[i].position = points_[i];
     body_.joints[i].velocity = first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((points_[i] - before_[i]) / dt);
@@ -121,9 +125,14 @@ void PersonModel::step(double dt, const PersonView& view) {
   first_ = false;
   body_.gaze_direction = gaze_;
   body_.gaze_origin = points_[kHead] + 0.08 * gaze_;
-  const int h = kHand[index()];
-  hand_state_.T_world_body = make_pose(points_[h], Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ())));
-  hand_state_.velocity = body_.joints[h].velocity;
+}
+
+void PersonModel::want_hands(double dt) {
+  for (int s = 0; s < 2; ++s) {
+    const Vector3 before = hands_[s].T_world_body.translation(), now = points_[kHand[s]];
+    hands_[s].velocity = first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((now - before) / dt);
+    hands_[s].T_world_body = make_pose(now, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ())));
+  }
 }
 
 void PersonModel::act(double dt, const PersonView& view) {
@@ -212,7 +221,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
   const Vector3 toward = (shoulder(index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
   const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
   side_of_object_ = (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero()))).normalized();
-  from_ = points_[kHand[index()]];
+  from_ = hand_point();
   const Vector3 goal = grasp_point(view);
   duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2);
   lean_from_ = lean_;
@@ -324,7 +333,7 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
 void PersonModel::give_up() {
   wants_grip_ = false;
   cooldown_ = 2.0;
-  from_ = hand_active_ ? hand_target_ : points_[kHand[index()]];
+  from_ = hand_active_ ? hand_target_ : hand_point();
   hand_active_ = true;
   hand_target_ = from_;
   lean_from_ = lean_;

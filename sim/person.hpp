@@ -1,6 +1,8 @@
-// An emulated person: a kinematic body moved by what it sees. Pure: time comes in steps, chance from a seed (behaviours: ours).
+// An emulated person: a body moved by what it sees, its hands wanted somewhere and pushed elsewhere. Pure: time comes in steps, chance from
+// a seed (behaviours: ours).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <random>
 #include <string>
@@ -37,8 +39,10 @@ struct PersonView {
   Pose T_world_object{Pose::Identity()};
   Vector3 object_velocity{Vector3::Zero()};
   bool held_by_robot{};
-  bool grip_broke{};                    ///< it slipped out of this person's hand
-  Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
+  std::array<Vector3, 2> hand_pushed{Vector3::Zero(),
+                                     Vector3::Zero()};  ///< left, right: how far forces keep it from where it is wanted [m]
+  bool grip_broke{};                                    ///< it slipped out of this person's hand
+  Vector3 grip_force{Vector3::Zero()};                  ///< that this person's hand exerts on the object [N]
 };
 
 enum class PersonPhase { arriving, watching, reaching, closing, pulling, withdrawing, keeping, retracting, offering, darting, leaving };
@@ -59,13 +63,15 @@ class PersonModel {
   const Person& body() const { return body_; }  ///< the truth, velocities included
   Side side() const { return side_; }           ///< of the exchanging hand
   bool wants_grip() const { return wants_grip_; }
-  bool exchanging() const;                               ///< from the reach until the object is withdrawn
-  const BodyState& hand() const { return hand_state_; }  ///< of the exchanging hand; axes turn with the body
-  double reach() const { return reach_; }                ///< shoulder to middle of the hand [m]
-  static constexpr double kPalm = 0.03;                  ///< middle of the hand to what it holds [m]
+  bool exchanging() const;                                        ///< from the reach until the object is withdrawn
+  const BodyState& hand() const { return hands_[index()]; }       ///< where the exchanging hand is wanted; axes turn with the body
+  const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
+  double reach() const { return reach_; }                         ///< shoulder to middle of the hand [m]
+  static constexpr double kPalm = 0.03;                           ///< middle of the hand to what it holds [m]
 
  private:
   void place_base();
+  void want_hands(double dt);
   void bend_arm(int side, const Vector3& target);
   void look_at(const Vector3& target, double dt);
   void enter(PersonPhase);
@@ -90,6 +96,7 @@ class PersonModel {
   double gap(const PersonView&) const;
   Vector3 keep_point() const;
   double since() const { return clock_ - phase_since_; }
+  Vector3 hand_point() const { return hands_[index()].T_world_body.translation(); }
   int index() const { return side_ == Side::left ? 0 : 1; }
 
   PersonSettings settings_;
@@ -104,7 +111,7 @@ class PersonModel {
       warp_{Vector3::Zero()}, step_{Vector3::Zero()};
   Vector3 gaze_{Vector3::UnitX()};
   Person body_;
-  BodyState hand_state_;
+  std::array<BodyState, 2> hands_;
 };
 
 }  // namespace handsel::sim

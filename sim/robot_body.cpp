@@ -18,7 +18,7 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& inertia, double mass, const Vecto
 }  // namespace
 
 RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Vector& start, const ServoSettings& settings,
-                     btMultiBodyDynamicsWorld& world, ShapeStore& shapes, int group, int mask)
+                     const PadSettings& pad, btMultiBodyDynamicsWorld& world, ShapeStore& shapes, int group, int mask)
     : model_(model), settings_(settings), world_(world), T_world_base_(T_world_base), q_(start) {
   lump(model);
   const int n = bodies();
@@ -83,6 +83,12 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
   T_world_link_.resize(model.links().size());
   forward();
   soften_fingers();
+  for (Body& b : bodies_) {
+    if (b.finger < 0 || !b.collider) continue;
+    b.collider->setFriction(pad.friction);
+    b.collider->setSpinningFriction(pad.patch);
+    b.collider->setContactStiffnessAndDamping(pad.stiffness, pad.damping);
+  }
 }
 
 RobotBody::~RobotBody() {
@@ -133,6 +139,12 @@ void RobotBody::lump(const RobotModel& model) {
     b.inertia += about_origin;  // about the body's origin until all links are in
   }
   for (Body& b : bodies_) {
+    if (!model.joints()[links[b.link].parent_joint].is_mimic) continue;
+    for (int i = 0; i < bodies(); ++i) {
+      if (links[bodies_[i].link].parent_joint == model.axes()[b.dof].joint) b.leader = i;
+    }
+  }
+  for (Body& b : bodies_) {
     b.inertia -= b.mass * (b.com.squaredNorm() * Eigen::Matrix3d::Identity() - b.com * b.com.transpose());
     b.mass = std::max(b.mass, kLeastMass);
   }
@@ -154,18 +166,21 @@ void RobotBody::soften_fingers() {
   for (const std::vector<int>& finger : fingers) {
     const auto n = static_cast<Eigen::Index>(finger.size());
     const Eigen::MatrixXd M = mass_matrix(finger);
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+    Eigen::MatrixXd K;
     double quickest = 2 * fastest * fastest;
     for (double share = 1; quickest > fastest * fastest; share *= 0.8) {
+      K = Eigen::MatrixXd::Zero(n, n);
       for (Eigen::Index i = 0; i < n; ++i) {
-        const Body& b = bodies_[finger[i]];
-        K(i, i) = std::min(b.limit / (settings_.finger_travel * (b.prismatic ? 0.01 : 1)), share * M(i, i) * fastest * fastest);
+        Body& b = bodies_[finger[i]];
+        const auto leader = std::find(finger.begin(), finger.end(), b.leader) - finger.begin();
+        b.stiffness = share * M(i, i) * fastest * fastest;
+        if (!follows(b)) b.stiffness = std::min(b.limit / (settings_.finger_travel * (b.prismatic ? 0.01 : 1)), b.stiffness);
+        b.damping = b.stiffness / fastest;
+        Eigen::VectorXd way = Eigen::VectorXd::Unit(n, i);
+        if (follows(b) && leader < n) way[leader] = -b.factor;
+        K += b.stiffness * way * way.transpose();
       }
       quickest = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(K, M, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
-    }
-    for (Eigen::Index i = 0; i < n; ++i) {
-      bodies_[finger[i]].stiffness = K(i, i);
-      bodies_[finger[i]].damping = K(i, i) / fastest;
     }
   }
 }
@@ -197,14 +212,27 @@ void RobotBody::drive(const Vector& position, const Vector& velocity, const Vect
     wanted_[i] += w * w * std::clamp(b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i), -0.1, 0.1);
   }
   inverse_dynamics(wanted_);
+  for (const Body& b : bodies_) {
+    if (follows(b)) bodies_[b.leader].torque += b.factor * b.torque;
+  }
   for (int i = 0; i < bodies(); ++i) {
     Body& b = bodies_[i];
+    if (follows(b)) continue;
     if (b.finger >= 0) {
       b.torque += b.stiffness * (b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i)) +
                   b.damping * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
     }
     b.torque = std::clamp(b.torque, -b.limit, b.limit);
     multibody_->addJointTorque(i, b.torque);
+  }
+  for (int i = 0; i < bodies(); ++i) {
+    Body& b = bodies_[i];
+    if (!follows(b)) continue;
+    const double off = b.factor * multibody_->getJointPos(b.leader) + b.offset - multibody_->getJointPos(i);
+    const double tie = b.stiffness * off + b.damping * (b.factor * multibody_->getJointVel(b.leader) - multibody_->getJointVel(i));
+    multibody_->addJointTorque(i, tie);
+    multibody_->addJointTorque(b.leader, -b.factor * tie);
+    b.torque = 0;
   }
 }
 

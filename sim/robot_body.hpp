@@ -15,7 +15,7 @@ namespace handsel::sim {
 
 /// Arm and head: computed torque, so that the references are followed without sag. Joints of the hand (beyond the tool's body):
 /// impedance, so that a finger stopped by an object presses with a torque that grows with the distance to its reference. Both within the
-/// torque limits.
+/// torque limits. A coupled joint has no motor: a stiff spring ties it to the joint it follows, which feels it.
 struct ServoSettings {
   double bandwidth{60.0};        ///< of the computed-torque loop [rad/s]
   double finger_bandwidth{600};  ///< of the fastest motion of a free finger [rad/s]; below the physics rate
@@ -23,10 +23,18 @@ struct ServoSettings {
   double default_effort{50.0};   ///< where the model gives none [Nm]
 };
 
+/// What the fingers are covered with.
+struct PadSettings {
+  double friction{1.0};   ///< times the object's coefficient
+  double patch{0.005};    ///< torque about the normal per newton of friction at rest: the radius of the patch [m]
+  double stiffness{2e4};  ///< of the pad [N/m]
+  double damping{60};     ///< [N s/m]
+};
+
 class RobotBody {
  public:
-  RobotBody(const RobotModel&, const Pose& T_world_base, const Vector& start, const ServoSettings&, btMultiBodyDynamicsWorld&, ShapeStore&,
-            int collision_group, int collision_mask);
+  RobotBody(const RobotModel&, const Pose& T_world_base, const Vector& start, const ServoSettings&, const PadSettings&,
+            btMultiBodyDynamicsWorld&, ShapeStore&, int collision_group, int collision_mask);
   ~RobotBody();
 
   /// Set-points of all axes for the coming step. Coupled joints follow their axis.
@@ -56,6 +64,7 @@ class RobotBody {
  private:
   struct Body {
     int link{}, parent{-1}, dof{-1};
+    int leader{-1};  // body whose joint this one's is coupled to; -1: it has a motor
     bool prismatic{false};
     double factor{1}, offset{0}, limit{0};
     Pose T_parent_pivot{Pose::Identity()};  // parent body frame to this one's at q = 0
@@ -68,10 +77,11 @@ class RobotBody {
     Pose T_world{Pose::Identity()};
     Vector3 omega{Vector3::Zero()}, v{Vector3::Zero()};  // of the frame origin, world
     int finger{-1};                                      // which chain beyond the tool's body
-    double stiffness{0}, damping{0};                     // of a finger joint
+    double stiffness{0}, damping{0};                     // of a finger joint's motor, or of its coupling
     double torque{0};
   };
 
+  static bool follows(const Body& b) { return b.leader >= 0 && b.finger >= 0; }
   void lump(const RobotModel&);
   void forward();
   void soften_fingers();

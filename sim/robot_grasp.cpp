@@ -5,8 +5,9 @@
 namespace handsel::sim {
 
 namespace {
-constexpr double kOpposed = -0.2;  // cosine between the normals of two fingers that oppose each other
-}
+constexpr int kConeEdges = 8;
+constexpr double kTorqueScale = 10;  // [1/m]; closure does not depend on it
+}  // namespace
 
 RobotGrasp::RobotGrasp(const RobotModel& model, const RobotBody& robot, double touch_force, double grasp_time, double lose_time)
     : touch_force_(touch_force), grasp_time_(grasp_time), lose_time_(lose_time), chain_(robot.bodies(), -1) {
@@ -21,37 +22,36 @@ RobotGrasp::RobotGrasp(const RobotModel& model, const RobotBody& robot, double t
   }
 }
 
-int RobotGrasp::sides(const std::vector<Touch>& touches, int object) const {
-  struct Side {
-    double force{0};
-    Vector3 normal{Vector3::Zero()};
-  };
-  std::vector<Side> sides(chain_.empty() ? 1 : 1 + *std::max_element(chain_.begin(), chain_.end()));
+double RobotGrasp::pressure(const std::vector<Touch>& touches, int object) const {
+  double sum = 0;
   for (const Touch& t : touches) {
-    if (t.a != Owner::robot || t.b != Owner::object || t.index_b != object) continue;
-    const int chain = chain_of(t.index_a);
-    if (chain < 0) continue;
-    sides[chain].force += t.normal_force;
-    sides[chain].normal += t.normal_force * t.normal;
+    if (of_hand(t, object)) sum += t.normal_force;
   }
-  int count = 0;
-  bool opposed = false;
-  for (std::size_t i = 0; i < sides.size(); ++i) {
-    if (sides[i].force < touch_force_) continue;
-    ++count;
-    for (std::size_t k = 0; k < i; ++k) {
-      opposed = opposed || (sides[k].force >= touch_force_ && sides[i].normal.normalized().dot(sides[k].normal.normalized()) < kOpposed);
-    }
-  }
-  return opposed ? count : 0;
+  return sum;
 }
 
-bool RobotGrasp::update(const std::vector<Touch>& touches, int object, double dt) {
-  const bool pressed = object >= 0 && sides(touches, object) >= kSides;
-  pressed_ = pressed ? pressed_ + dt : 0;
-  lost_ = pressed ? 0 : lost_ + dt;
-  if (pressed_ >= grasp_time_) held_ = true;
-  if (lost_ >= lose_time_) held_ = false;
+Vector3 RobotGrasp::force(const std::vector<Touch>& touches, int object) const {
+  Vector3 sum = Vector3::Zero();
+  for (const Touch& t : touches) {
+    if (of_hand(t, object)) sum -= t.force_on_a;
+  }
+  return sum;
+}
+
+bool RobotGrasp::closed(const std::vector<Touch>& touches, int object, const Vector3& centre) {
+  contacts_.clear();
+  for (const Touch& t : touches) {
+    if (of_hand(t, object) && t.normal_force >= touch_force_) contacts_.push_back({t.point, -t.normal, t.friction, t.torsion});
+  }
+  return contacts_.size() >= 2 && force_closure(contact_wrenches(contacts_, kConeEdges, centre, kTorqueScale));
+}
+
+bool RobotGrasp::update(const std::vector<Touch>& touches, int object, const Vector3& centre, double dt) {
+  const bool now = object >= 0 && closed(touches, object, centre);
+  closed_for_ = now ? closed_for_ + dt : 0;
+  open_for_ = now ? 0 : open_for_ + dt;
+  if (closed_for_ >= grasp_time_) held_ = true;
+  if (open_for_ >= lose_time_) held_ = false;
   return held_;
 }
 

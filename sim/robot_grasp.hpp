@@ -1,8 +1,9 @@
-// When the robot's hand holds an object: fingers press on it from at least three sides, for a time (ours).
+// When the robot's hand holds an object: its measured contacts pass force closure, for a time (ours).
 #pragma once
 
 #include <vector>
 
+#include "common/grasp/force_closure.hpp"
 #include "sim/contacts.hpp"
 #include "sim/robot_body.hpp"
 
@@ -16,18 +17,26 @@ class RobotGrasp {
   int chain_of(int body) const { return body < 0 ? -1 : chain_[body]; }
   int palm() const { return palm_; }
 
-  /// Sides of the object pressed in these contacts: distinct fingers (and palm) bearing force, 0 unless two of them oppose each other.
-  int sides(const std::vector<Touch>&, int object) const;
-  /// Call once a step with the object of interest; true while a grasp may exist.
-  bool update(const std::vector<Touch>&, int object, double dt);
-  void reset() { pressed_ = lost_ = 0, held_ = false; }
-  static constexpr int kSides = 3;
+  /// Normal force with which the hand presses on the object [N].
+  double pressure(const std::vector<Touch>&, int object) const;
+  /// Net force of the hand's contacts on the object, world [N].
+  Vector3 force(const std::vector<Touch>&, int object) const;
+  /// Whether the contacts of the hand that bear at least touch_force pass force closure; `centre`: the object's mass centre, world.
+  bool closed(const std::vector<Touch>&, int object, const Vector3& centre);
+  /// Call once a step with the object of interest (-1: none); true while it is held.
+  bool update(const std::vector<Touch>&, int object, const Vector3& centre, double dt);
+  void reset() { closed_for_ = open_for_ = 0, held_ = false; }
 
  private:
-  double touch_force_, grasp_time_, lose_time_, pressed_{0}, lost_{0};
+  bool of_hand(const Touch& t, int object) const {
+    return t.a == Owner::robot && t.b == Owner::object && t.index_b == object && chain_of(t.index_a) >= 0;
+  }
+
+  double touch_force_, grasp_time_, lose_time_, closed_for_{0}, open_for_{0};
   bool held_{false};
   int palm_{-1};
   std::vector<int> chain_;
+  std::vector<PointContact> contacts_;
 };
 
 }  // namespace handsel::sim

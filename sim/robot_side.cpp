@@ -53,6 +53,10 @@ void RobotSide::begin_stop(DriveMode mode) {
   }
 }
 
+bool RobotSide::hand_moves() const {
+  return std::any_of(hand_axes_.begin(), hand_axes_.end(), [&](int axis) { return std::abs(velocity_[axis]) >= 1e-6; });
+}
+
 void RobotSide::step(double now, double dt, bool holding_object) {
   if (mode_ == DriveMode::enabled && seen_ && now - last_ > settings_.max_gap) begin_stop(DriveMode::protective_stop);
   if (stopping_) {
@@ -71,9 +75,7 @@ void RobotSide::step(double now, double dt, bool holding_object) {
   fresh_ = false;
   if (!settings_.never_releases) return;
   if (holding_object && !clenched_) {
-    double moving = 0;
-    for (int axis : hand_axes_) moving = std::max(moving, std::abs(velocity_[axis]));
-    hand_rest_ = moving < 1e-6 ? hand_rest_ + dt : 0;
+    hand_rest_ = hand_moves() ? 0 : hand_rest_ + dt;
     clenched_ = hand_rest_ > 0.5;
     closed_ = position_;
   }

@@ -33,6 +33,7 @@ class RobotSide {
   const Vector& velocity() const { return velocity_; }
   const Vector& acceleration() const { return acceleration_; }
   DriveMode mode() const { return mode_; }
+  bool hand_moves() const;  ///< its reference does
   bool stopped() const { return stopping_ && at_rest_; }
 
  private:

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "sim/grip.hpp"
+#include "sim/person_hand.hpp"
 #include "sim/robot_body.hpp"
 #include "sim/robot_side.hpp"
 #include "sim/separation_oracle.hpp"
@@ -15,8 +16,11 @@ struct SimSettings {
   int solver_iterations{10};
   double state_rate{500}, truth_rate{50};  ///< [Hz]
   ServoSettings servo;
+  PadSettings pad;
+  bool constraint{true};  ///< a force-capped constraint helps to hold while the contacts pass force closure
   RobotSideSettings robot_side;
   GripSettings robot_grip, person_grip;
+  PersonHandSettings person_hand;
   double touch_force{0.2};      ///< [N]
   double grasp_time{0.02};      ///< [s]
   double lose_time{0.05};       ///< [s]

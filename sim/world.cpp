@@ -1,6 +1,7 @@
 #include "sim/world.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@
 #include "sim/handover_oracle.hpp"
 #include "sim/limits_oracle.hpp"
 #include "sim/object_surface.hpp"
+#include "sim/person_hand.hpp"
 #include "sim/robot_grasp.hpp"
 
 namespace handsel::sim {
@@ -37,7 +39,11 @@ struct PersonBody {
   int object{-1};  // index of the one the exchange is about
   bool broke{false};
   std::vector<BodyCapsule> capsules;
-  std::vector<std::unique_ptr<btRigidBody>> colliders;
+  std::vector<std::unique_ptr<btRigidBody>> colliders;  // kinematic; none for a hand
+  std::array<std::unique_ptr<PersonHand>, 2> hands;     // left, right
+
+  PersonHand& hand() { return *hands[model.side() == Side::left ? 0 : 1]; }
+  const PersonHand& hand() const { return *hands[model.side() == Side::left ? 0 : 1]; }
 };
 
 struct Hash {
@@ -79,8 +85,9 @@ struct SimWorld::Impl {
         separations(robot_model, s.ssm) {
     dynamics.setGravity(btVector3(0, 0, -9.81));
     dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
+    dynamics.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // with one, a contact slides freely across it
     build_fixed();
-    robot = std::make_unique<RobotBody>(model, setup.T_world_base, setup.start, settings.servo, dynamics, shapes, kRobot,
+    robot = std::make_unique<RobotBody>(model, setup.T_world_base, setup.start, settings.servo, settings.pad, dynamics, shapes, kRobot,
                                         kObject | kFixed | kPerson);
     for (int i = 0; i < robot->bodies(); ++i) {
       btMultiBodyLinkCollider* collider = robot->collider(i);
@@ -106,8 +113,11 @@ struct SimWorld::Impl {
     robot.reset();
     for (ObjectBody& object : objects) dynamics.removeRigidBody(object.body.get());
     for (PersonBody& person : people) {
-      for (auto& collider : person.colliders) dynamics.removeRigidBody(collider.get());
+      for (auto& collider : person.colliders) {
+        if (collider) dynamics.removeRigidBody(collider.get());
+      }
     }
+    people.clear();
     for (auto& object : fixed) dynamics.removeCollisionObject(object.get());
   }
 
@@ -171,10 +181,17 @@ struct SimWorld::Impl {
 
   void build_people() {
     for (std::size_t p = 0; p < setup.people.size(); ++p) {
-      PersonBody person{PersonModel(setup.people[p].settings), Grip(settings.person_grip), -1, false, {}, {}};
+      PersonBody person{PersonModel(setup.people[p].settings), Grip(settings.person_grip), -1, false, {}, {}, {}};
       person.capsules = body_capsules(person.model.body());
       for (std::size_t c = 0; c < person.capsules.size(); ++c) {
         const BodyCapsule& capsule = person.capsules[c];
+        if (capsule.part == BodyPart::hand_left || capsule.part == BodyPart::hand_right) {
+          const int hand = capsule.part == BodyPart::hand_left ? 0 : 1;
+          person.hands[hand] = std::make_unique<PersonHand>(settings.person_hand, person.model.hand(hand), dynamics, kPerson, kRobot);
+          own(person.hands[hand]->body(), Owner::person, static_cast<int>(p * 100 + c));
+          person.colliders.push_back(nullptr);
+          continue;
+        }
         btConvexShape* shape = shapes.convex(Capsule{capsule.radius, (capsule.b - capsule.a).norm()});
         btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape);
         info.m_startWorldTransform = to_bt(along(capsule.a, capsule.b));
@@ -190,7 +207,7 @@ struct SimWorld::Impl {
         person.object = object_index(setup.people[p].holds);
         ObjectBody& object = objects[person.object];
         const double beside = PersonModel::kPalm + 0.05;
-        const Pose hand = person.model.hand().T_world_body;
+        const Pose hand = person.hand().state().T_world_body;
         object.body->setWorldTransform(to_bt(Pose(hand * Eigen::Translation3d(beside, 0, 0))));
         object.body->setInterpolationWorldTransform(object.body->getWorldTransform());
         read_object(object);
@@ -238,22 +255,30 @@ struct SimWorld::Impl {
         view.held_by_robot = gripped == person.object;
         view.grip_force = person.grip.wrench().force;
       }
+      for (int s = 0; s < 2; ++s) {
+        view.hand_pushed[s] = person.hands[s]->state().T_world_body.translation() - person.model.hand(s).T_world_body.translation();
+      }
       view.grip_broke = person.broke;
       person.broke = false;
       person.model.step(dt, view);
       hold_or_let_go(person);
       const bool soft = person.model.exchanging();
       person.capsules = body_capsules(person.model.body());
+      for (int s = 0; s < 2; ++s) person.hands[s]->pull_to(person.model.hand(s), dt);
       for (std::size_t c = 0; c < person.colliders.size(); ++c) {
-        btRigidBody& collider = *person.colliders[c];
-        collider.setWorldTransform(to_bt(along(person.capsules[c].a, person.capsules[c].b)));
-        const int flags = collider.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
-        const bool yields = soft && of_hand(person.capsules[c].part, person.model.side());
-        collider.setCollisionFlags(yields ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE : flags);
+        const BodyCapsule& capsule = person.capsules[c];
+        if (person.colliders[c]) person.colliders[c]->setWorldTransform(to_bt(along(capsule.a, capsule.b)));
+        btRigidBody& body = person.colliders[c] ? *person.colliders[c] : person.hands[capsule.part == BodyPart::hand_left ? 0 : 1]->body();
+        const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
+        const bool yields = soft && of_hand(capsule.part, person.model.side());
+        body.setCollisionFlags(yields ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE : flags);
       }
       if (person.grip.holding()) {
         ObjectBody& object = objects[person.object];
-        apply(object, person.grip.update(person.model.hand(), object.state, object.start.model->mass, object.least_inertia, dt));
+        const BodyState hand = person.hand().state();
+        const Wrench& w = person.grip.update(hand, object.state, object.start.model->mass, object.least_inertia, dt);
+        apply(object, w);
+        person.hand().push(object.state.T_world_body.translation(), {-w.force, -w.torque});
         person.broke = !person.grip.holding();
       }
     }
@@ -264,7 +289,7 @@ struct SimWorld::Impl {
       person.grip.release();
     } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
       if (hand_gap(person) < PersonModel::kPalm + 0.03) {
-        person.grip.hold(person.model.hand().T_world_body.inverse() * objects[person.object].state.T_world_body);
+        person.grip.hold(person.hand().state().T_world_body.inverse() * objects[person.object].state.T_world_body);
       } else {
         person.broke = true;
       }
@@ -273,7 +298,7 @@ struct SimWorld::Impl {
 
   double hand_gap(const PersonBody& person) const {
     const ObjectBody& object = objects[person.object];
-    return surface_distance(*object.start.model, object.T_world_object.inverse() * person.model.hand().T_world_body.translation());
+    return surface_distance(*object.start.model, object.T_world_object.inverse() * person.hand().state().T_world_body.translation());
   }
 
   bool hand_touches(const PersonBody& person, int object) const {
@@ -284,7 +309,7 @@ struct SimWorld::Impl {
   }
 
   void hold_with_robot() {
-    if (gripped < 0) return;
+    if (gripped < 0 || !settings.constraint) return;
     ObjectBody& object = objects[gripped];
     const BodyState tool = tool_state();
     const Wrench w = robot_grip.update(tool, object.state, object.start.model->mass, object.least_inertia, settings.step);
@@ -305,19 +330,24 @@ struct SimWorld::Impl {
   void update_grasp() {
     int candidate = gripped;
     if (candidate < 0) {
-      int most = 0;
+      double most = 0;
       for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
-        const int sides = grasp->sides(touches, i);
-        if (sides > most) most = sides, candidate = i;
+        const double pressure = grasp->pressure(touches, i);
+        if (pressure > most) most = pressure, candidate = i;
       }
     }
-    const bool may = grasp->update(touches, candidate, settings.step);
-    if (gripped < 0 && may && candidate >= 0) {
+    const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero()) : objects[candidate].state.T_world_body.translation();
+    const bool held = grasp->update(touches, candidate, centre, settings.step);
+    if (gripped < 0 && held) {
       gripped = candidate;
-      robot_grip.hold(tool_state().T_world_body.inverse() * objects[candidate].state.T_world_body);
-    } else if (gripped >= 0 && !may) {
+      if (settings.constraint) robot_grip.hold(tool_state().T_world_body.inverse() * objects[candidate].state.T_world_body);
+    } else if (gripped >= 0 && !held) {
       let_go();
     }
+    if (gripped < 0) return;
+    held_time += settings.step;
+    constraint_carries = robot_grip.holding() && robot_grip.wrench().force.norm() > grasp->force(touches, gripped).norm();
+    if (constraint_carries) constraint_time += settings.step;
   }
 
   // What the world does to the hand: contacts of palm and fingers and the hold of the object, at the tool's origin in its axes.
@@ -338,7 +368,7 @@ struct SimWorld::Impl {
       add(t.index_a, t.point, t.force_on_a, Vector3::Zero());
       if (t.b == Owner::person) contact += t.normal_force;
     }
-    if (gripped >= 0) {
+    if (gripped >= 0 && robot_grip.holding()) {
       const Wrench& w = robot_grip.wrench();
       add(grasp->palm(), objects[gripped].state.T_world_body.translation(), -w.force, -w.torque);
     }
@@ -552,6 +582,8 @@ struct SimWorld::Impl {
   RobotSide side;
   Grip robot_grip{GripSettings{}};
   std::unique_ptr<RobotGrasp> grasp;
+  bool constraint_carries{false};  // the constraint's force on the object is larger than that of the hand's contacts together
+  double held_time{0}, constraint_time{0};
   int gripped{-1}, watched{-1}, ssm_every{10};
   std::uint64_t steps{0}, state_sequence{0};
   std::size_t next_disturbance{0};
@@ -668,7 +700,8 @@ const std::string& SimWorld::last_limit_violation() const { return impl_->limits
 const std::string& SimWorld::last_collision() const { return impl_->last_collision; }
 DriveMode SimWorld::mode() const { return impl_->side.mode(); }
 bool SimWorld::robot_grips() const { return impl_->gripped >= 0; }
-int SimWorld::robot_sides() const { return impl_->watched < 0 ? 0 : impl_->grasp->sides(impl_->touches, impl_->watched); }
+double SimWorld::robot_pressure() const { return impl_->watched < 0 ? 0 : impl_->grasp->pressure(impl_->touches, impl_->watched); }
+double SimWorld::constraint_share() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }
 const Pose& SimWorld::T_world_object(const std::string& id) const {
   const int i = impl_->object_index(id);
   if (i < 0) throw std::out_of_range("no object " + id);

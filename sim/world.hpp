@@ -41,7 +41,8 @@ class SimWorld {
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
   DriveMode mode() const;
   bool robot_grips() const;
-  int robot_sides() const;                                  ///< sides from which the hand presses on the watched object
+  double robot_pressure() const;                            ///< normal force of the hand on the watched object [N]
+  double constraint_share() const;                          ///< of the time the robot held something, that in which the constraint did
   const Pose& T_world_object(const std::string& id) const;  ///< throws std::out_of_range
   const Person& person(std::size_t index) const;
   PersonPhase person_phase(std::size_t index) const;

@@ -1,7 +1,7 @@
 // Ferrari-Canny epsilon, L1: how far the origin is inside the convex hull of the wrenches (formulas: section 3).
 #pragma once
 
-#include "components/grasp_planner/force_closure.hpp"
+#include "common/grasp/force_closure.hpp"
 
 namespace handsel::grasp_planner {
 

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+
+#include "sim/robot_grasp.hpp"
 #include "tests/unit/sim_fixture.hpp"
 
 namespace handsel::sim {
@@ -97,23 +100,42 @@ TEST(SimRobotSide, UserStopEndsOnlyByEnable) {
   EXPECT_TRUE(side.command(c, now));
 }
 
-TEST(SimGrasp, ExistsOnlyWhileThreeSidesPress) {
+TEST(SimGrasp, ExistsOnlyWhileTheContactsAreForceClosed) {
   SimWorld world = make(from_open(mug_in_hand()));
   Driver driver(world, start());
   driver.hold(0.2);
   EXPECT_FALSE(world.robot_grips());
-  Vector one = start();
-  for (int i = 0; i < jido().dof(); ++i) {
-    if (jido().axes()[i].name == "fore_proximal") one[i] = 0.9;
-  }
-  driver.move(one, 1.0, [&] { ASSERT_FALSE(world.robot_grips()) << "one finger holds nothing"; });
-  driver.move(start(), 1.0);
   driver.move(closed(start()), 1.5);
   driver.hold(0.3);
-  ASSERT_GE(world.robot_sides(), 3);
+  ASSERT_GT(world.robot_pressure(), 1.0);
   EXPECT_TRUE(world.robot_grips());
   driver.move(start(), 1.0);
   EXPECT_FALSE(world.robot_grips());
+}
+
+TEST(SimGrasp, TwoPointsDoNotHoldButTwoPatchesOrThreePointsDo) {
+  btDefaultCollisionConfiguration configuration;
+  btCollisionDispatcher dispatcher(&configuration);
+  btDbvtBroadphase broadphase;
+  btMultiBodyConstraintSolver solver;
+  btMultiBodyDynamicsWorld dynamics(&dispatcher, &broadphase, &solver, &configuration);
+  ShapeStore shapes;
+  RobotBody robot(jido(), Pose::Identity(), start(), ServoSettings{}, PadSettings{}, dynamics, shapes, kRobot, kObject);
+  RobotGrasp grasp(jido(), robot, 0.2, 0.02, 0.05);
+  const int palm = grasp.palm();
+  const auto touch = [&](double angle, double force, double torsion) {
+    const Vector3 outward(std::cos(angle), std::sin(angle), 0);
+    Touch t;
+    t.a = Owner::robot, t.index_a = palm, t.b = Owner::object, t.index_b = 0;
+    t.point = 0.04 * outward, t.normal = outward, t.normal_force = force, t.friction = 0.6, t.torsion = torsion;
+    return t;
+  };
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0), touch(M_PI, 5, 0)}, 0, Vector3::Zero())) << "it turns about the line between the points";
+  EXPECT_TRUE(grasp.closed({touch(0, 5, 0.003), touch(M_PI, 5, 0.003)}, 0, Vector3::Zero()));
+  EXPECT_TRUE(grasp.closed({touch(0, 5, 0), touch(2.1, 5, 0), touch(4.2, 5, 0)}, 0, Vector3::Zero()));
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0), touch(2.1, 0.1, 0), touch(4.2, 0.1, 0)}, 0, Vector3::Zero())) << "two of them hardly touch";
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(0.5, 5, 0.003), touch(-0.5, 5, 0.003)}, 0, Vector3::Zero())) << "all from one side";
+  EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(M_PI, 5, 0.003)}, 1, Vector3::Zero())) << "another object";
 }
 
 TEST(SimGrasp, CarriesTheMugAndMeasuresItsWeight) {

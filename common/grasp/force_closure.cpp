@@ -1,12 +1,14 @@
-#include "components/grasp_planner/force_closure.hpp"
+#include "common/grasp/force_closure.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace handsel::grasp_planner {
+namespace handsel {
 
 WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edges, const Vector3& centre, double torque_scale) {
-  WrenchMatrix out(6, static_cast<Eigen::Index>(contacts.size()) * edges);
+  const auto patches = std::count_if(contacts.begin(), contacts.end(), [](const PointContact& c) { return c.torsion > 0; });
+  WrenchMatrix out(6, static_cast<Eigen::Index>(contacts.size()) * edges + 2 * patches);
   Eigen::Index column = 0;
   for (const PointContact& c : contacts) {
     const Vector3& n = c.inward_normal;
@@ -18,6 +20,12 @@ WrenchMatrix contact_wrenches(const std::vector<PointContact>& contacts, int edg
       const Vector3 f = n + c.friction * (std::cos(angle) * t1 + std::sin(angle) * t2);
       out.col(column).head<3>() = f;
       out.col(column).tail<3>() = arm.cross(f);
+      ++column;
+    }
+    if (!(c.torsion > 0)) continue;
+    for (const double sign : {1.0, -1.0}) {
+      out.col(column).head<3>() = n;
+      out.col(column).tail<3>() = arm.cross(n) + sign * torque_scale * c.torsion * n;
       ++column;
     }
   }
@@ -88,4 +96,4 @@ bool force_closure(const WrenchMatrix& wrenches) {
   return false;
 }
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel
