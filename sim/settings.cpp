@@ -40,6 +40,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.position_noise = read.position_noise();
   s.coverage = positive(read.coverage(), "coverage");
   s.ssm.reaction = positive(read.reaction(), "reaction");
+  s.constraint = std::getenv("HANDSEL_NO_WELD") == nullptr;
   s.setpoint_period = read.setpoint_period();
   s.data_root = data_root();
   return s;

@@ -12,6 +12,7 @@
 #include "common/config/resources.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
+#include "deploy/handsel/system_options.hpp"
 #include "deploy/handsel/terminal.hpp"
 #include "deploy/handsel/trial.hpp"
 
@@ -156,6 +157,7 @@ void add_eval_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--law", options->law, "of the attention's clocks (default: as in its settings)")
       ->check(CLI::IsMember({"linear", "weber"}));
+  add_no_weld_option(*command);
   command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")->check(CLI::PositiveNumber);
   command->add_option("--shard", options->shard, "i/n: only every n-th trial, from the i-th (0 <= i < n)");
   command->add_option("--timeout", options->timeout, "[s] of virtual time for all tasks (default: the scenario's)")

@@ -22,6 +22,12 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
   command.add_option("--seed", options.seed, "of every random choice")->capture_default_str();
   command.add_option("--port", options.web_port, "of the page; 0: any free one (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
+  add_no_weld_option(command);
+}
+
+void add_no_weld_option(CLI::App& command) {
+  command.add_flag_callback(
+      "--no-weld", [] { setenv("HANDSEL_NO_WELD", "1", 1); }, "contact alone holds what the robot grasps: no constraint helps");
 }
 
 void announce_page(System& system, bool headless) {
