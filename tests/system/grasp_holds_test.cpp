@@ -58,7 +58,7 @@ TEST_P(GraspHolds, ten_grasps_by_contact_alone_through_lift_tilt_and_shake) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Objects, GraspHolds, testing::Values(Case{"mug", 3}, Case{"bottle", 1}, Case{"box", 2}),
-                         [](const auto& info) { return std::string(info.param.object); });
+                         [](const auto& c) { return std::string(c.param.object); });
 
 }  // namespace
 }  // namespace handsel
