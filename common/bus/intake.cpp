@@ -7,25 +7,30 @@
 namespace handsel {
 namespace {
 constexpr double kClockDrift = 1e-3;
-constexpr std::size_t kMostWriters = 64;
+constexpr std::size_t kMostWriters = 64, kMostKeys = 64;
 }  // namespace
 
-Duration AgeEstimator::update(Stamp stamp, TimePoint arrival) {
+Duration AgeEstimator::update(Stamp stamp, TimePoint arrival, std::string_view key) {
   if (stamp == 0) return Duration::zero();
   const std::int64_t offset = arrival.time_since_epoch().count() - stamp;
+  auto last = last_.find(key);
+  const bool first = last == last_.end();
+  if (first) {
+    if (last_.size() >= kMostKeys) last_.clear();
+    last = last_.emplace(key, Last{}).first;
+  }
   if (!seen_) {
     least_ = offset;
-  } else if (stamp < last_stamp_) {
-    least_ = offset - last_age_.count();
+  } else if (!first && stamp < last->second.stamp) {
+    least_ = offset - last->second.age.count();
   } else {
     const double drift = kClockDrift * static_cast<double>((arrival - last_arrival_).count());
     least_ = std::min(offset, least_ + static_cast<std::int64_t>(drift));
   }
   seen_ = true;
-  last_stamp_ = stamp;
   last_arrival_ = arrival;
-  last_age_ = Duration(offset - least_);
-  return last_age_;
+  last->second = {stamp, Duration(offset - least_)};
+  return last->second.age;
 }
 
 Intake::Intake(const MessageType& message, Callback callback, Duration period, Log log)
@@ -47,7 +52,7 @@ void Intake::deliver(const void* wire, std::uint64_t writer, TimePoint arrival) 
   if (ages_.size() >= kMostWriters && !ages_.contains(writer)) ages_.clear();
   Receipt receipt;
   receipt.arrival = arrival;
-  receipt.age = ages_[writer].update(type_.stamp(wire), arrival);
+  receipt.age = ages_[writer].update(type_.stamp(wire), arrival, type_.key(wire));
   receipt.writer = writer;
   ++status_.received;
   status_.last_arrival = arrival;

@@ -8,6 +8,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "common/bus/bus.hpp"
 
@@ -16,17 +17,21 @@ namespace handsel {
 struct TopicHealth;
 
 /// Age of a writer's samples at arrival: stamp offset over the least offset seen. The least offset may drift by 1e-3, so that clocks that
-/// are slewed apart do not make samples look old; a writer's clock that steps back continues with the age it had.
+/// are slewed apart do not make samples look old; a writer's clock that steps back continues with the age it had. Instances of a keyed
+/// topic share the writer's clock but not their latency: an older stamp is a step of the clock only within one instance.
 class AgeEstimator {
  public:
-  Duration update(Stamp stamp, TimePoint arrival);
+  Duration update(Stamp stamp, TimePoint arrival, std::string_view key = {});
 
  private:
+  struct Last {
+    Stamp stamp{};
+    Duration age{};
+  };
   bool seen_{false};
-  Stamp last_stamp_{};
   TimePoint last_arrival_{};
   std::int64_t least_{};
-  Duration last_age_{};
+  std::map<std::string, Last, std::less<>> last_;  // by key
 };
 
 class Intake {

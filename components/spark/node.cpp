@@ -16,11 +16,14 @@ config::SparkSettings load_settings(const NodeContext& context) {
   return settings;
 }
 
-std::vector<SceneBox> boxes_of(const NodeContext& context) {
-  std::vector<SceneBox> boxes;
-  if (context.scenario.empty()) return boxes;
+config::Scenario load_scenario(const NodeContext& context) {
   config::Scenario scenario;
-  load_text_proto(context.scenario, scenario);
+  if (!context.scenario.empty()) load_text_proto(context.scenario, scenario);
+  return scenario;
+}
+
+std::vector<SceneBox> boxes_of(const config::Scenario& scenario) {
+  std::vector<SceneBox> boxes;
   for (const auto& box : scenario.boxes()) {
     const auto& xyz = box.pose().xyz();
     const auto& rpy = box.pose().rpy();
@@ -32,19 +35,32 @@ std::vector<SceneBox> boxes_of(const NodeContext& context) {
   return boxes;
 }
 
+std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario) {
+  std::map<std::string, Vector3> eyes;
+  for (const auto& sensor : scenario.human_sensors()) {
+    const auto& xyz = sensor.pose().xyz();
+    if (sensor.occlusion()) eyes[sensor.source()] = {xyz.x(), xyz.y(), xyz.z()};
+  }
+  return eyes;
+}
+
 }  // namespace
 
-Node::Node(Bus& bus, const NodeContext& context)
+Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, load_scenario(context)) {}
+
+Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     : bus_(bus),
       settings_(load_settings(context)),
-      tracker_(settings_),
-      scene_(settings_, context.robot, context.objects, boxes_of(context)),
+      eyes_(eyes_of(place)),
+      tracker_(settings_, eyes_),
+      scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()) {
   bus.subscribe<HumanObservation>([this](const HumanObservation& observation, const Receipt& receipt) {
-    tracker_.observe(observation, receipt.arrival - receipt.age);
+    const TimePoint seen = receipt.arrival - receipt.age - from_seconds(settings_.least_latency());
+    tracker_.observe(observation, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles());
     publish_people(bus_.now());
   });
   bus.subscribe<ObjectObservation>(
@@ -68,6 +84,7 @@ void Node::publish_world(TimePoint now) {
   const Scene scene = scene_.scene(now, people);
   scene_out_->publish(scene);
   facts_out_->publish(facts_.find(scene, people, now));
+  bus_.set_degraded(tracker_.trouble(now));
   world_published_ = now;
 }
 

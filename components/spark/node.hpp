@@ -5,6 +5,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
+#include "common/config/scenario.pb.h"
 #include "common/messages/attention.hpp"
 #include "components/spark/fact_finder.hpp"
 #include "components/spark/people_tracker.hpp"
@@ -17,11 +18,13 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
+  Node(Bus& bus, const NodeContext& context, const config::Scenario& place);
   void publish_people(TimePoint now);
   void publish_world(TimePoint now);
 
   Bus& bus_;
   config::SparkSettings settings_;
+  std::map<std::string, Vector3> eyes_;  // where sources look from
   PeopleTracker tracker_;
   SceneModel scene_;
   FactFinder facts_;

@@ -2,131 +2,296 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "common/model/human_body.hpp"
+#include <cstdio>
+#include <limits>
+#include <tuple>
 
 namespace handsel::spark {
 namespace {
 
-// People move over the floor: the margin is horizontal.
-bool contains(const Coverage& box, const Vector3& p, double margin) {
-  const Eigen::Array3d m(margin, margin, 0);
-  return (p.array() >= box.low.array() + m).all() && (p.array() <= box.high.array() - m).all();
+constexpr double kSameId = 0.15;        // a body with the id they had is preferred by this [m]
+constexpr double kPause = 0.3;          // under another id a person comes back no farther than they walk in this time [s]
+constexpr double kFresh = 0.1;          // sights of joints this much apart are one body [s]
+constexpr double kFastest = 2.2;        // [m/s]
+constexpr double kSettled = 0.08;       // a body moves by this between two looks without a doubt [m]
+constexpr double kGapOfVelocity = 0.5;  // beyond this a velocity is found anew [s]
+constexpr double kLeastConfidence = 0.05;
+constexpr double kGuessed = 3;   // a joint that was not seen is this much noisier
+constexpr double kGrid = 0.3;    // places of a lost person are tried this far apart [m]
+constexpr double kFarthest = 5;  // and no farther than this [m]
+constexpr std::size_t kMostPeople = 16;
+
+int index(const char* name) { return body_joint_index(name); }
+const int kHead = index("head"), kTorso = index("torso");
+
+bool of_trunk(int joint) {
+  static const std::array trunk = {index("neck"),       index("torso"), index("waist"), index("l_shoulder"),
+                                   index("r_shoulder"), index("l_hip"), index("r_hip")};
+  return std::find(trunk.begin(), trunk.end(), joint) != trunk.end();
 }
 
-std::optional<Vector3> observed_centre(const ObservedPerson& body) {
-  Vector3 sum = Vector3::Zero();
-  double weight = 0;
-  for (const auto& joint : body.joints) {
-    const double w = joint.confidence * (joint.name == "torso" || joint.name == "waist" || joint.name == "neck" ? 10.0 : 1.0);
-    sum += w * joint.position;
-    weight += w;
-  }
-  if (weight <= 0) return std::nullopt;
-  return sum / weight;
+const Vector3& position(const Person& person, int joint) { return person.joints[static_cast<std::size_t>(joint)].position; }
+
+bool same(const std::vector<ObservedPerson>& a, const std::vector<ObservedPerson>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const ObservedPerson& x, const ObservedPerson& y) {
+    return x.gaze_direction == y.gaze_direction &&
+           std::equal(x.joints.begin(), x.joints.end(), y.joints.begin(), y.joints.end(),
+                      [](const ObservedJoint& j, const ObservedJoint& k) { return j.name == k.name && j.position == k.position; });
+  });
 }
 
-Vector3 centre(const Person& person) {
-  static const int torso = body_joint_index("torso");
-  return person.joints[static_cast<std::size_t>(torso)].position;
+/// A body of which only the gaze is known is where its eyes are.
+ObservedPerson with_head(const ObservedPerson& body) {
+  ObservedPerson out = body;
+  if (out.joints.empty() && out.has_gaze) out.joints.push_back({"head", body.gaze_origin, 0.5});
+  return out;
 }
 
 }  // namespace
 
-PeopleTracker::Track* PeopleTracker::associate(const ObservedPerson& body, const std::vector<bool>& taken) {
-  const auto where = observed_centre(body);
-  if (!where) return nullptr;
-  Track* best = nullptr;
-  double best_distance = settings_.association_distance();
-  for (std::size_t i = 0; i < tracks_.size(); ++i) {
-    if (taken[i]) continue;
-    Track& track = tracks_[i];
-    const Vector3 gap = *where - centre(track.person);
-    const double distance = std::hypot(gap.x(), gap.y()) - (track.body == body.body ? 0.3 : 0.0);
-    if (distance < best_distance) {
-      best = &track;
-      best_distance = distance;
+double PeopleTracker::distance(const Track& track, const ObservedPerson& body) const {
+  Vector3 sum = Vector3::Zero();
+  double weight = 0;
+  for (const ObservedJoint& joint : body.joints) {
+    const int i = body_joint_index(joint.name);
+    if (i < 0 || !joint.position.allFinite()) continue;
+    const double w = joint.confidence * (of_trunk(i) ? 5 : 1);
+    sum += w * (joint.position - position(track.person, i));
+    weight += w;
+  }
+  return weight > 0 ? std::hypot(sum.x(), sum.y()) / weight : std::numeric_limits<double>::infinity();
+}
+
+/// For every body of the observation the track it is of, or -1: the nearest pairs first.
+std::vector<int> PeopleTracker::associate(const HumanObservation& observation, TimePoint seen) const {
+  std::vector<std::tuple<double, int, int>> pairs;
+  for (std::size_t b = 0; b < observation.people.size(); ++b) {
+    const ObservedPerson body = with_head(observation.people[b]);
+    for (std::size_t t = 0; t < tracks_.size(); ++t) {
+      const Track& track = tracks_[t];
+      const auto known = track.bodies.find(observation.source);
+      const bool same_id = known != track.bodies.end() && known->second == body.body;
+      const double gap = std::max(0.0, age(track, seen));
+      const double reach = settings_.association_distance() + settings_.lost_speed() * (same_id ? gap : std::min(gap, kPause));
+      const double d = distance(track, body);
+      if (d <= reach) pairs.emplace_back(d - (same_id ? kSameId : 0.0), static_cast<int>(b), static_cast<int>(t));
     }
   }
-  if (best != nullptr) return best;
-  for (std::size_t i = 0; i < tracks_.size(); ++i)
-    if (!taken[i] && !body.body.empty() && tracks_[i].body == body.body) return &tracks_[i];
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<int> of(observation.people.size(), -1);
+  std::vector<bool> taken(tracks_.size(), false);
+  for (const auto& [cost, b, t] : pairs) {
+    if (of[static_cast<std::size_t>(b)] >= 0 || taken[static_cast<std::size_t>(t)]) continue;
+    of[static_cast<std::size_t>(b)] = t;
+    taken[static_cast<std::size_t>(t)] = true;
+  }
+  return of;
+}
+
+void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const {
+  if (body.has_gaze && (!track.gaze_seen || seen >= *track.gaze_seen)) {
+    track.person.gaze_origin = body.gaze_origin;
+    track.person.gaze_direction = body.gaze_direction;
+    track.gaze_seen = seen;
+  }
+  Person& person = track.person;
+  const bool known = !person.joints.empty();
+  if (body.joints.empty()) return;
+
+  // A slower source tells of an earlier instant: what nobody saw since counts, moved on to now.
+  const TimePoint at = known ? std::max(seen, track.seen) : seen;
+  const double behind = to_seconds(at - seen);
+  if (behind > kFresh) return;
+  ObservedPerson merged = body;
+  merged.joints.clear();
+  std::array<bool, kJoints> told{};
+  for (const ObservedJoint& joint : body.joints) {
+    const int i = body_joint_index(joint.name);
+    if (i < 0 || !(joint.confidence >= kLeastConfidence)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    if (track.joint_seen[k] && *track.joint_seen[k] > seen) continue;
+    merged.joints.push_back(joint);
+    if (behind > 0) merged.joints.back().position += behind * person.joints[k].velocity;
+    track.joint_seen[k] = seen;
+    told[k] = true;
+  }
+  if (merged.joints.empty()) return;
+  const double dt = known ? to_seconds(at - track.seen) : 0.0;
+  std::array<bool, kJoints> lately{};  // told by another look
+  for (std::size_t i = 0; known && i < kJoints; ++i) {
+    if (told[i] || !track.joint_seen[i] || to_seconds(at - *track.joint_seen[i]) > kFresh) continue;
+    merged.joints.push_back({kBodyJoints[i], person.joints[i].position + dt * person.joints[i].velocity, 0.5});
+    lately[i] = true;
+  }
+  const Person previous = person;
+  std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
+  if (fitted.empty()) return;
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const double noise = settings_.joint_noise() * (told[i] ? 1.0 : kGuessed);
+    const double since = known ? to_seconds(at - track.moved[i]) : 0.0;
+    if (!known || since > kGapOfVelocity)
+      track.motion[i].reset(fitted[i].position, noise);
+    else if (!lately[i] && since > 1e-4)
+      track.motion[i].update(fitted[i].position, since, noise);
+    if (!known || !lately[i]) track.moved[i] = at;
+    fitted[i].velocity = track.motion[i].velocity();
+  }
+  if (known && jump > kFastest * (dt + behind) + kSettled) {
+    const bool doubted = seen < track.doubted_until;
+    track.doubt = doubted ? track.doubt + jump : jump;
+    track.doubted_until = seen + from_seconds(settings_.doubt_time());
+  }
+  person.joints = std::move(fitted);
+  track.seen = at;
+  track.empty_since.reset();
+  track.outside_since.reset();
+}
+
+void PeopleTracker::add(const ObservedPerson& body, const std::string& source, TimePoint seen) {
+  if (body.joints.empty()) return;
+  Track fresh;
+  const bool name_free =
+      !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == body.body; });
+  fresh.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
+  fresh.born = fresh.seen = seen;
+  fresh.bodies[source] = body.body;
+  update(fresh, body, seen, 0);
+  if (!fresh.person.joints.empty()) tracks_.push_back(std::move(fresh));
+}
+
+/// Whether a person anywhere in the grown volume would show head or chest to a source.
+bool PeopleTracker::seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const {
+  const double radius = settings_.lost_speed() * age(track, now);
+  if (radius > kFarthest) return false;
+  const auto shows = [&](const Vector3& shift) {
+    return std::any_of(sources_.begin(), sources_.end(), [&](const auto& entry) {
+      const Source& source = entry.second;
+      return recent(source, now) && source.seen > track.seen && !source.repeats &&
+             (looks_at(source, obstacles, position(track.person, kHead) + shift) ||
+              looks_at(source, obstacles, position(track.person, kTorso) + shift));
+    });
+  };
+  if (!shows(Vector3::Zero())) return false;
+  const int rings = std::max(1, static_cast<int>(std::ceil(radius / kGrid)));
+  for (int ring = rings; ring > 0; --ring) {
+    const double r = radius * ring / rings;
+    const int around = std::max(8, static_cast<int>(std::ceil(2 * M_PI * r / kGrid)));
+    for (int i = 0; i < around; ++i) {
+      const double angle = 2 * M_PI * i / around;
+      if (!shows(r * Vector3(std::cos(angle), std::sin(angle), 0))) return false;
+    }
+  }
+  return true;
+}
+
+/// The source that has looked on since the person was lost near the edge of its coverage, or beyond; nullptr: there is none.
+const Source* PeopleTracker::left_through(const Track& track, TimePoint now) const {
+  for (const auto& [name, source] : sources_) {
+    const bool watched = recent(source, now) && source.seen > track.seen && source.unbroken <= track.seen;
+    if (!watched || !(source.coverage.low.array() < source.coverage.high.array()).all()) continue;
+    if (!contains(source.coverage, position(track.person, kTorso), settings_.edge())) return &source;
+  }
   return nullptr;
 }
 
-void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint seen) const {
-  Person& person = track.person;
-  const bool known = !person.joints.empty();
-  const Person previous = person;
-  std::vector<BodyJoint> fitted = fit_body(body, known ? &previous : nullptr, person.stature);
-  const double dt = to_seconds(seen - track.seen);
-  for (std::size_t i = 0; i < fitted.size(); ++i) {
-    fitted[i].velocity.setZero();
-    if (!known || dt > 0.5) continue;
-    if (dt <= 1e-4) {
-      fitted[i].velocity = previous.joints[i].velocity;
-      continue;
+void PeopleTracker::forget(TimePoint now, const Obstacles& obstacles) {
+  const auto held_for = [&](std::optional<TimePoint>& since, bool holds, double wanted) {
+    if (!holds) since.reset();
+    if (holds && !since) since = now;
+    return holds && to_seconds(now - *since) >= wanted;
+  };
+  for (std::size_t i = tracks_.size(); i-- > 0;) {
+    Track& track = tracks_[i];
+    if (age(track, now) <= settings_.lost_after()) continue;
+    const bool empty = held_for(track.empty_since, seen_empty(track, now, obstacles), settings_.empty_after());
+    const bool left = held_for(track.outside_since, left_through(track, now) != nullptr, settings_.edge_after());
+    if (!empty && !left) continue;
+    const Track gone = std::move(track);
+    tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(i));
+    // Who appeared since, as near as the lost one may have come or with the id they had, has their name.
+    Track* heir = nullptr;
+    const double walked = settings_.association_distance() + settings_.lost_speed() * age(gone, now);
+    double least = std::numeric_limits<double>::infinity();
+    for (Track& other : tracks_) {
+      const double d = (position(other.person, kTorso) - position(gone.person, kTorso)).norm();
+      const bool called_so = std::any_of(other.bodies.begin(), other.bodies.end(), [&](const auto& body) {
+        const auto before = gone.bodies.find(body.first);
+        return before != gone.bodies.end() && before->second == body.second;
+      });
+      if (other.born <= gone.seen || d >= least || (d > walked && !called_so)) continue;
+      heir = &other;
+      least = d;
     }
-    const Vector3 measured = (fitted[i].position - previous.joints[i].position) / dt;
-    const double gain = dt / (dt + settings_.velocity_smoothing());
-    fitted[i].velocity = previous.joints[i].velocity + gain * (measured - previous.joints[i].velocity);
+    if (heir != nullptr) heir->person.id = gone.person.id;
   }
-  person.joints = std::move(fitted);
-  person.gaze_known = body.has_gaze;
-  if (body.has_gaze) {
-    person.gaze_origin = body.gaze_origin;
-    person.gaze_direction = body.gaze_direction;
-  }
-  track.body = body.body;
-  track.seen = seen;
 }
 
-void PeopleTracker::forget_seen_empty(const Coverage& coverage, TimePoint seen) {
-  std::erase_if(tracks_, [&](const Track& track) {
-    const double age = to_seconds(seen - track.seen);
-    if (age <= settings_.lost_after()) return false;
-    const double margin = settings_.lost_speed() * age;
-    const auto& joints = track.person.joints;
-    return std::all_of(joints.begin(), joints.end(), [&](const BodyJoint& j) { return contains(coverage, j.position, margin); });
-  });
-}
-
-void PeopleTracker::observe(const HumanObservation& observation, TimePoint seen) {
+void PeopleTracker::observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles) {
+  const bool first = !sources_.contains(observation.source);
   Source& source = sources_[observation.source];
-  if (seen < source.seen) return;
-  source = {observation.coverage, seen};
-
-  std::vector<bool> taken(tracks_.size(), false);
-  for (const auto& body : observation.people) {
-    Track* track = associate(body, taken);
-    if (track == nullptr) {
-      if (!observed_centre(body)) continue;
-      Track fresh;
-      const bool name_free =
-          !body.body.empty() && std::none_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == body.body; });
-      fresh.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
-      fresh.seen = seen;
-      tracks_.push_back(std::move(fresh));
-      taken.push_back(false);
-      track = &tracks_.back();
-    }
-    taken[static_cast<std::size_t>(track - tracks_.data())] = true;
-    update(*track, body, seen);
+  if (first) {
+    if (const auto eye = eyes_.find(observation.source); eye != eyes_.end()) source.eye = eye->second;
+  } else if (seen < source.seen) {
+    return;
   }
-  forget_seen_empty(observation.coverage, seen);
+  source.repeats = !first && !observation.people.empty() && same(observation.people, source.people);
+  if (source.repeats) return;
+  const bool moved = source.coverage.low != observation.coverage.low || source.coverage.high != observation.coverage.high;
+  if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory()) source.unbroken = seen;
+  source.coverage = observation.coverage;
+  source.seen = seen;
+  source.people = observation.people;
+
+  const std::vector<int> of = associate(observation, seen);
+  for (std::size_t b = 0; b < of.size(); ++b) {
+    if (of[b] < 0) continue;
+    Track& track = tracks_[static_cast<std::size_t>(of[b])];
+    const ObservedPerson& body = observation.people[b];
+    track.bodies[observation.source] = body.body;
+    update(track, body, seen, body.joints.empty() ? 0.0 : distance(track, body));
+  }
+  for (std::size_t b = 0; b < of.size(); ++b)
+    if (of[b] < 0) add(with_head(observation.people[b]), observation.source, seen);
+  forget(seen, obstacles);
 }
 
 HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
   HumanState out;
-  for (const auto& track : tracks_) {
+  for (const Track& track : tracks_) {
     Person person = track.person;
-    person.age = std::max(0.0, to_seconds(now - track.seen));
-    person.inflation = person.age > settings_.lost_after() ? settings_.lost_speed() * person.age : 0.0;
+    person.age = std::max(0.0, age(track, now));
+    person.gaze_known = track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory();
+    if (person.age > settings_.lost_after()) {
+      person.inflation = settings_.lost_speed() * person.age;
+      if (const Source* source = left_through(track, now)) {
+        const double unseen = std::max(0.0, to_seconds(now - source->seen));
+        person.inflation = std::min(person.inflation, settings_.edge() + settings_.lost_speed() * unseen);
+      }
+    }
+    if (now < track.doubted_until) person.inflation = std::max(person.inflation, track.doubt);
     out.people.push_back(std::move(person));
   }
+  std::vector<Coverage> looked_at;
+  for (const auto& [name, source] : sources_)
+    if (recent(source, now)) looked_at.push_back(source.coverage);
+  out.covered = covers(looked_at, reach);
+  if (out.people.size() > kMostPeople) {
+    const Vector3 middle = (reach.low + reach.high) / 2;
+    const auto far = [&](const Person& p) { return (position(p, kTorso) - middle).norm() - p.inflation; };
+    std::sort(out.people.begin(), out.people.end(), [&](const Person& a, const Person& b) { return far(a) < far(b); });
+    out.people.resize(kMostPeople);
+    out.covered = false;
+  }
+  return out;
+}
+
+std::string PeopleTracker::trouble(TimePoint now) const {
+  std::string out;
   for (const auto& [name, source] : sources_) {
-    const bool recent = to_seconds(now - source.seen) <= settings_.coverage_memory();
-    if (recent && contains(source.coverage, reach.low, 0) && contains(source.coverage, reach.high, 0)) out.covered = true;
+    if (recent(source, now)) continue;
+    char since[64];
+    std::snprintf(since, sizeof since, " for %.1f s", to_seconds(now - source.seen));
+    out += (out.empty() ? "" : "; ") + std::string("source ") + name + (source.repeats ? " repeats itself" : " is silent") + since;
   }
   return out;
 }

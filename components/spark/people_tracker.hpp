@@ -1,6 +1,7 @@
-// Who is there: bodies from trackers become persistent people with complete, moving bodies. Pure.
+// Who is there: bodies from several trackers become persistent people with complete, moving bodies. Pure.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,36 +10,63 @@
 #include "common/base/time.hpp"
 #include "common/config/spark.pb.h"
 #include "common/messages/world.hpp"
+#include "common/model/human_body.hpp"
+#include "components/spark/joint_motion.hpp"
+#include "components/spark/sources.hpp"
 
 namespace handsel::spark {
 
-/// A lost person is never gone (reliability promise P3): the last body stays, inflated by lost_speed x age, until its volume is seen empty
-/// or the person is seen elsewhere.
+/// What is told about one person by all sources is one body: each joint is the newest sight of it, a gaze may come from another source.
+/// Ids of the trackers are hints only; places decide.
+///
+/// A lost person is never gone (reliability promise P3): the last body stays, inflated by lost_speed x age, until its volume has been seen
+/// empty (from where the sources stand) for empty_after, or the same person is seen as far away as they may have come. A body that is
+/// nearer the edge of what is looked at than `edge` when lost may have left: it grows no farther than `edge` while the source goes on
+/// looking, for who comes back is seen, and is dropped after edge_after.
+///
+/// Occupied space does not shrink by a jump: one too far for a person makes a second person, and the first counts as lost; a shorter one
+/// inflates the body by its length for doubt_time. Data told twice is no news. Ours.
 class PeopleTracker {
  public:
-  explicit PeopleTracker(const config::SparkSettings& settings) : settings_(settings) {}
+  /// `eyes`: where sources look from, by name [m]; without, a source sees all of its coverage.
+  explicit PeopleTracker(const config::SparkSettings& settings, std::map<std::string, Vector3> eyes = {})
+      : settings_(settings), eyes_(std::move(eyes)) {}
 
   /// `seen`: when the observation was true (arrival less its age).
-  void observe(const HumanObservation& observation, TimePoint seen);
-  /// Everybody as of now, ages and inflation filled in. `covered`: some source looked at the whole of `reach` lately.
+  void observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles = {});
+  /// Everybody as of now, ages and inflation filled in. `covered`: sources looked at the whole of `reach` lately.
   HumanState state(TimePoint now, const Coverage& reach) const;
+  /// Which source is silent or repeats itself; empty: none.
+  std::string trouble(TimePoint now) const;
 
  private:
+  static constexpr std::size_t kJoints = kBodyJoints.size();
   struct Track {
     Person person;
-    std::string body;  // the tracker's id when last seen
-    TimePoint seen{};
-  };
-  struct Source {
-    Coverage coverage;
-    TimePoint seen{};
+    std::map<std::string, std::string> bodies;  // id by source
+    TimePoint born{}, seen{};
+    std::optional<TimePoint> gaze_seen;
+    std::array<std::optional<TimePoint>, kJoints> joint_seen;
+    std::array<JointMotion, kJoints> motion;
+    std::array<TimePoint, kJoints> moved{};  // when the motion was last told
+    double doubt{};                          // [m], until doubted_until
+    TimePoint doubted_until{};
+    std::optional<TimePoint> empty_since;
+    std::optional<TimePoint> outside_since;
   };
 
-  Track* associate(const ObservedPerson& body, const std::vector<bool>& taken);
-  void update(Track& track, const ObservedPerson& body, TimePoint seen) const;
-  void forget_seen_empty(const Coverage& coverage, TimePoint seen);
+  std::vector<int> associate(const HumanObservation& observation, TimePoint seen) const;
+  double distance(const Track& track, const ObservedPerson& body) const;
+  double age(const Track& track, TimePoint now) const { return to_seconds(now - track.seen); }
+  bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
+  bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
+  const Source* left_through(const Track& track, TimePoint now) const;
+  void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const;
+  void add(const ObservedPerson& body, const std::string& source, TimePoint seen);
+  void forget(TimePoint now, const Obstacles& obstacles);
 
   config::SparkSettings settings_;
+  std::map<std::string, Vector3> eyes_;
   std::vector<Track> tracks_;
   std::map<std::string, Source> sources_;
   int unnamed_{0};

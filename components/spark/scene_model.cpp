@@ -163,4 +163,19 @@ Coverage SceneModel::reach() const {
   return box;
 }
 
+const Obstacles& SceneModel::obstacles() {
+  locate_tool();
+  if (capsules_.empty()) {
+    capsules_ = robot_capsules(*robot_);
+    for (const SceneBox& box : boxes_) obstacles_.boxes.push_back({box.T_world_box, box.size});
+  }
+  obstacles_.robot.clear();
+  for (const LinkCapsule& c : capsules_) {
+    if (links_.empty()) break;
+    const Pose T = T_world_base_ * links_[static_cast<std::size_t>(c.link)];
+    obstacles_.robot.push_back({T * c.a, T * c.b, c.radius});
+  }
+  return obstacles_;
+}
+
 }  // namespace handsel::spark

@@ -11,7 +11,9 @@
 #include "common/config/spark.pb.h"
 #include "common/messages/robot.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/robot_capsules.hpp"
 #include "common/model/robot_model.hpp"
+#include "components/spark/sources.hpp"
 
 namespace handsel::spark {
 
@@ -30,6 +32,8 @@ class SceneModel {
   const Pose& T_world_tool() const { return T_world_tool_; }
   /// The box around everything the robot can reach: what must be covered for "nobody" to be a fact.
   Coverage reach() const;
+  /// What hides people from a source: the robot as it stands and the fixed boxes.
+  const Obstacles& obstacles();
 
  private:
   struct Known {
@@ -53,6 +57,8 @@ class SceneModel {
   Pose T_world_base_{Pose::Identity()}, T_world_tool_{Pose::Identity()};
   double arm_length_{1.0};
   std::vector<Pose> links_;
+  std::vector<LinkCapsule> capsules_;
+  Obstacles obstacles_;
   std::uint64_t revision_{0};
   Scene last_;
 };

@@ -27,3 +27,8 @@ add_dependencies(test_handover product)
 set_tests_properties(handover PROPERTIES RUN_SERIAL TRUE TIMEOUT 600 ENVIRONMENT GTEST_FILTER=Handover.*)
 add_test(NAME handover_lockstep COMMAND test_handover)
 set_tests_properties(handover_lockstep PROPERTIES LABELS system PROCESSORS 2 TIMEOUT 300 ENVIRONMENT GTEST_FILTER=Mutants.*:Recorded.*)
+
+handsel_test(rough_sensors SOURCES ${CMAKE_CURRENT_LIST_DIR}/rough_sensors_test.cpp LINK handsel_lockstep LABEL system)
+set_tests_properties(rough_sensors PROPERTIES TIMEOUT 300)
+add_test(NAME rough_sensors_ten COMMAND test_rough_sensors --gtest_filter=RoughSensorsTen.*)
+set_tests_properties(rough_sensors_ten PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_LONG=1)

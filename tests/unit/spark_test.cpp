@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "common/model/human_body.hpp"
 #include "components/spark/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
@@ -14,8 +16,13 @@ config::SparkSettings settings() {
   s.set_lost_speed(1.6);
   s.set_lost_after(0.2);
   s.set_coverage_memory(0.5);
-  s.set_association_distance(0.6);
-  s.set_velocity_smoothing(0.06);
+  s.set_association_distance(0.35);
+  s.set_joint_noise(0.01);
+  s.set_gaze_memory(0.5);
+  s.set_empty_after(0.5);
+  s.set_doubt_time(0.5);
+  s.set_edge(0.5);
+  s.set_edge_after(3);
   return s;
 }
 
@@ -77,7 +84,9 @@ TEST(PeopleTracker, ALostPersonGrowsUntilTheirVolumeIsSeenEmpty) {
   ASSERT_EQ(state.people.size(), 1u);
   EXPECT_NEAR(state.people[0].inflation, 0.8, 1e-9);
   tracker.observe(seen({}), at(0.6));
-  state = tracker.state(at(0.6), kReach);
+  EXPECT_EQ(tracker.state(at(0.6), kReach).people.size(), 1u) << "one empty look is not enough";
+  for (int i = 1; i <= 12; ++i) tracker.observe(seen({}), at(0.6 + 0.05 * i));
+  state = tracker.state(at(1.2), kReach);
   EXPECT_TRUE(state.people.empty());
 }
 
@@ -108,6 +117,211 @@ TEST(PeopleTracker, AnObservationFromThePastChangesNothing) {
   tracker.observe(seen({body_at("anna", 1.5, 0)}), at(1.0));
   tracker.observe(seen({body_at("anna", 1.0, 0)}), at(0.5));
   EXPECT_NEAR(torso(tracker.state(at(1.0), kReach).people[0]).position.x(), 1.5, 0.1);
+}
+
+/// Looks at `people` at 30 Hz from `from` to `to`; every look differs a little, as of a real sensor.
+void look(PeopleTracker& tracker, std::vector<ObservedPerson> people, double from, double to, const std::string& source = "camera",
+          const Coverage& coverage = kRoom, const Obstacles& obstacles = {}) {
+  int n = 0;
+  for (double t = from; t <= to + 1e-9; t += 1 / 30.0) {
+    HumanObservation observation = seen(people, coverage);
+    observation.source = source;
+    for (auto& person : observation.people)
+      for (auto& joint : person.joints) joint.position.z() += 1e-4 * (n % 2);
+    tracker.observe(observation, at(t), obstacles);
+    ++n;
+  }
+}
+
+const Person* named(const HumanState& state, const std::string& id) {
+  for (const Person& person : state.people)
+    if (person.id == id) return &person;
+  return nullptr;
+}
+
+/// Whether the point lies in what somebody occupies.
+bool occupied(const HumanState& state, const Vector3& p) {
+  for (const Person& person : state.people)
+    for (const BodyCapsule& part : body_capsules(person))
+      if (contains(SightCapsule{part.a, part.b, part.radius}, p)) return true;
+  return false;
+}
+
+TEST(PeopleTracker, ASwapOfNamesMovesNobody) {
+  PeopleTracker tracker(settings());
+  look(tracker, {body_at("anna", 1.5, 0.4), body_at("bert", 1.5, -0.4)}, 0, 1);
+  look(tracker, {body_at("bert", 1.5, 0.4), body_at("anna", 1.5, -0.4)}, 1.033, 2);
+  const HumanState state = tracker.state(at(2), kReach);
+  ASSERT_EQ(state.people.size(), 2u);
+  EXPECT_GT(torso(*named(state, "anna")).position.y(), 0.3);
+  EXPECT_LT(torso(*named(state, "bert")).position.y(), -0.3);
+}
+
+TEST(PeopleTracker, AfterATeleportBothPlacesCountUntilOneIsSeenEmpty) {
+  PeopleTracker tracker(settings());
+  look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
+  look(tracker, {body_at("anna", 1.2, 2.5)}, 1.033, 1.5);
+  HumanState state = tracker.state(at(1.5), kReach);
+  ASSERT_EQ(state.people.size(), 2u);
+  EXPECT_TRUE(occupied(state, {1.2, 0, 1.2}));
+  EXPECT_TRUE(occupied(state, {1.2, 2.5, 1.2}));
+  EXPECT_GT(named(state, "anna")->inflation, 0.5) << "the one no longer seen may have gone anywhere";
+  look(tracker, {body_at("anna", 1.2, 2.5)}, 1.533, 2.4);
+  state = tracker.state(at(2.4), kReach);
+  ASSERT_EQ(state.people.size(), 1u) << "the old place was seen empty";
+  EXPECT_EQ(state.people[0].id, "anna") << "and the name goes to where they are";
+  EXPECT_NEAR(torso(state.people[0]).position.y(), 2.5, 0.1);
+}
+
+TEST(PeopleTracker, AShortJumpLeavesTheOldPlaceOccupiedForAWhile) {
+  PeopleTracker tracker(settings());
+  look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
+  look(tracker, {body_at("anna", 1.5, 0)}, 1.033, 1.3);
+  HumanState state = tracker.state(at(1.3), kReach);
+  ASSERT_EQ(state.people.size(), 1u);
+  EXPECT_TRUE(occupied(state, {1.2, 0, 1.2}));
+  look(tracker, {body_at("anna", 1.5, 0)}, 1.333, 2.0);
+  EXPECT_EQ(tracker.state(at(2.0), kReach).people[0].inflation, 0.0);
+}
+
+TEST(PeopleTracker, DataToldAgainIsNoNews) {
+  PeopleTracker tracker(settings());
+  look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
+  for (int i = 1; i <= 30; ++i) tracker.observe(seen({body_at("anna", 1.2, 0)}), at(1 + i / 30.0));
+  const HumanState state = tracker.state(at(2), kReach);
+  ASSERT_EQ(state.people.size(), 1u);
+  EXPECT_NEAR(state.people[0].age, 1.0, 0.05);
+  EXPECT_NEAR(state.people[0].inflation, 1.6, 0.1);
+  EXPECT_FALSE(state.covered);
+  EXPECT_NE(tracker.trouble(at(2)).find("source camera repeats itself"), std::string::npos);
+}
+
+TEST(PeopleTracker, ASilentSourceIsNamed) {
+  PeopleTracker tracker(settings());
+  look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
+  EXPECT_EQ(tracker.trouble(at(1.1)), "");
+  EXPECT_EQ(tracker.trouble(at(3)), "source camera is silent for 2.0 s");
+}
+
+TEST(PeopleTracker, TwoSourcesThatSeeHalfABodyEachMakeOnePerson) {
+  PeopleTracker tracker(settings());
+  ObservedPerson left = body_at("7", 1.5, 0), right = body_at("track-b", 1.5, 0);
+  std::erase_if(left.joints, [](const ObservedJoint& j) { return j.name[0] == 'r'; });
+  std::erase_if(right.joints, [](const ObservedJoint& j) { return j.name[0] != 'r'; });
+  for (int i = 0; i < 60; ++i) {
+    for (auto* body : {&left, &right})
+      for (auto& joint : body->joints) joint.position.x() -= 0.01;
+    HumanObservation one = seen({left}), other = seen({right});
+    one.source = "a";
+    other.source = "b";
+    tracker.observe(one, at(i / 30.0));
+    tracker.observe(other, at(i / 30.0 + 0.005));
+  }
+  const HumanState state = tracker.state(at(2), kReach);
+  ASSERT_EQ(state.people.size(), 1u);
+  for (const char* joint : {"l_wrist", "r_wrist", "head"}) {
+    const BodyJoint& j = state.people[0].joints[static_cast<std::size_t>(body_joint_index(joint))];
+    EXPECT_NEAR(j.velocity.x(), -0.3, 0.08) << joint;
+  }
+}
+
+TEST(PeopleTracker, GazeMayComeFromAnotherSourceAndGoMissingForAMoment) {
+  PeopleTracker tracker(settings());
+  ObservedPerson body = body_at("anna", 1.5, 0), eyes;
+  eyes.body = "gaze-1";
+  eyes.has_gaze = true;
+  eyes.gaze_origin = Vector3(1.45, 0, 1.62);
+  eyes.gaze_direction = Vector3(-1, 0, 0);
+  look(tracker, {body}, 0, 0.5);
+  EXPECT_FALSE(tracker.state(at(0.5), kReach).people.at(0).gaze_known);
+  look(tracker, {eyes}, 0.51, 0.52, "gaze", {});
+  look(tracker, {body}, 0.54, 0.9);
+  HumanState state = tracker.state(at(0.9), kReach);
+  ASSERT_EQ(state.people.size(), 1u);
+  EXPECT_TRUE(state.people[0].gaze_known);
+  EXPECT_EQ(state.people[0].gaze_direction, eyes.gaze_direction);
+  look(tracker, {body}, 0.93, 1.2);
+  EXPECT_FALSE(tracker.state(at(1.2), kReach).people[0].gaze_known);
+}
+
+TEST(PeopleTracker, EyesWithoutABodyAreSomebody) {
+  PeopleTracker tracker(settings());
+  ObservedPerson eyes;
+  eyes.body = "gaze-1";
+  eyes.has_gaze = true;
+  eyes.gaze_origin = Vector3(1.4, 0, 1.62);
+  look(tracker, {eyes}, 0, 0.1, "gaze", {});
+  EXPECT_TRUE(occupied(tracker.state(at(0.1), kReach), {1.4, 0, 1.2}));
+}
+
+TEST(PeopleTracker, WhatTheSourceCannotSeeIsNotSeenEmpty) {
+  const Obstacles wall{{}, {{make_pose({0.7, 0, 1.25}), {0.1, 6, 2.5}}}};
+  PeopleTracker with_eye(settings(), {{"camera", {0, 0, 1.6}}}), without(settings());
+  for (PeopleTracker* tracker : {&with_eye, &without}) {
+    look(*tracker, {body_at("anna", 1.4, 0)}, 0, 0.5);
+    look(*tracker, {}, 0.533, 1.5, "camera", kRoom, wall);
+  }
+  EXPECT_EQ(with_eye.state(at(1.5), kReach).people.size(), 1u) << "she stands behind the wall";
+  EXPECT_TRUE(without.state(at(1.5), kReach).people.empty());
+  look(with_eye, {}, 1.533, 2.2);
+  EXPECT_TRUE(with_eye.state(at(2.2), kReach).people.empty()) << "with the wall gone the place is seen empty";
+}
+
+TEST(PeopleTracker, WhoLeavesThroughTheEdgeGrowsNoFartherThanTheEdgeAndIsDroppedAfterAWhile) {
+  PeopleTracker tracker(settings());
+  for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at("anna", 2.9 + i / 60.0, 0)}), at(i / 30.0));
+  look(tracker, {}, 2.033, 4.0);
+  HumanState state = tracker.state(at(4), kReach);
+  ASSERT_EQ(state.people.size(), 1u) << "not gone at once";
+  EXPECT_LE(state.people[0].inflation, 0.51) << "for the source looks on and would see her come back";
+  EXPECT_FALSE(occupied(state, {2.9, 0, 1.2}));
+  PeopleTracker unwatched = tracker;
+  EXPECT_GT(unwatched.state(at(6), kReach).people[0].inflation, 3.0) << "when it no longer looks she may be anywhere";
+  look(tracker, {}, 4.033, 6.0);
+  EXPECT_TRUE(tracker.state(at(6), kReach).people.empty());
+}
+
+TEST(PeopleTracker, TwoHalvesCoverTheWhole) {
+  PeopleTracker tracker(settings());
+  look(tracker, {}, 0, 0.1, "left", {{-4, 0, -0.5}, {4, 4, 2.6}});
+  EXPECT_FALSE(tracker.state(at(0.1), kReach).covered);
+  look(tracker, {}, 0, 0.1, "right", {{-4, -4, -0.5}, {4, 0, 2.6}});
+  EXPECT_TRUE(tracker.state(at(0.1), kReach).covered);
+  look(tracker, {}, 0.133, 0.2, "right", {{-4, -4, -0.5}, {4, -0.1, 2.6}});
+  EXPECT_FALSE(tracker.state(at(0.2), kReach).covered) << "a slit is left";
+}
+
+TEST(PeopleTracker, NoisyHandsAtRestAreAtRest) {
+  PeopleTracker tracker(settings());
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> noise(0, 0.01);
+  double squares = 0;
+  int n = 0;
+  for (int i = 0; i < 300; ++i) {
+    ObservedPerson body = body_at("anna", 1.4, 0);
+    for (auto& joint : body.joints) joint.position += Vector3(noise(random), noise(random), noise(random));
+    tracker.observe(seen({body}), at(i / 30.0));
+    if (i < 60) continue;
+    const HumanState state = tracker.state(at(i / 30.0), kReach);
+    const Vector3 v = state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity;
+    squares += v.squaredNorm() / 3;
+    ++n;
+  }
+  EXPECT_LT(std::sqrt(squares / n), 0.12) << "reach_speed of the facts";
+}
+
+TEST(PeopleTracker, ADartIsKnownWithinAFewLooks) {
+  PeopleTracker tracker(settings());
+  look(tracker, {body_at("anna", 1.4, 0)}, 0, 1);
+  double clock = 1;
+  for (int i = 1; i <= 3; ++i) {
+    ObservedPerson body = body_at("anna", 1.4, 0);
+    for (auto& joint : body.joints)
+      if (joint.name == "r_hand" || joint.name == "r_wrist") joint.position.x() -= 1.5 * i / 30.0;
+    tracker.observe(seen({body}), at(clock = 1 + i / 30.0));
+  }
+  const HumanState state = tracker.state(at(clock), kReach);
+  EXPECT_LT(state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity.x(), -1.2);
 }
 
 TEST(PeopleTracker, ABodyWithoutJointsIsNobody) {

@@ -1,0 +1,40 @@
+#include "components/spark/sources.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace handsel::spark {
+
+bool contains(const Coverage& box, const Vector3& p, double margin) {
+  const Eigen::Array3d m(margin, margin, 0);
+  return (p.array() >= box.low.array() + m).all() && (p.array() <= box.high.array() - m).all();
+}
+
+bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {
+  std::array<std::vector<double>, 3> cuts;  // the box falls into cells that lie wholly inside or outside of each of the others
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    cuts[i] = {box.low[k], box.high[k]};
+    for (const Coverage& other : boxes)
+      for (const double at : {other.low[k], other.high[k]})
+        if (at > box.low[k] && at < box.high[k]) cuts[i].push_back(at);
+    std::sort(cuts[i].begin(), cuts[i].end());
+  }
+  for (std::size_t x = 0; x + 1 < cuts[0].size(); ++x)
+    for (std::size_t y = 0; y + 1 < cuts[1].size(); ++y)
+      for (std::size_t z = 0; z + 1 < cuts[2].size(); ++z) {
+        const Vector3 middle((cuts[0][x] + cuts[0][x + 1]) / 2, (cuts[1][y] + cuts[1][y + 1]) / 2, (cuts[2][z] + cuts[2][z + 1]) / 2);
+        if (std::none_of(boxes.begin(), boxes.end(), [&](const Coverage& c) { return contains(c, middle, 0); })) return false;
+      }
+  return true;
+}
+
+bool looks_at(const Source& source, const Obstacles& obstacles, const Vector3& point) {
+  if (!contains(source.coverage, point, 0)) return false;
+  if (!source.eye) return true;
+  const auto between = [&](const auto& thing) { return hides(thing, *source.eye, point); };
+  return std::none_of(obstacles.robot.begin(), obstacles.robot.end(), between) &&
+         std::none_of(obstacles.boxes.begin(), obstacles.boxes.end(), between);
+}
+
+}  // namespace handsel::spark

@@ -1,0 +1,37 @@
+// What the sources of people have looked at: their coverage, less what is hidden from where they stand. Pure.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/geometry/line_of_sight.hpp"
+#include "common/messages/perception.hpp"
+
+namespace handsel::spark {
+
+/// What hides things from a source.
+struct Obstacles {
+  std::vector<SightCapsule> robot;
+  std::vector<SightBox> boxes;
+};
+
+struct Source {
+  Coverage coverage;
+  TimePoint seen{};                    ///< when its newest observation was true
+  TimePoint unbroken{};                ///< since when it has looked without a gap longer than coverage_memory
+  std::optional<Vector3> eye;          ///< where it looks from, world [m]; none: it sees all of its coverage
+  std::vector<ObservedPerson> people;  ///< as last told
+  bool repeats{};                      ///< its last observation told the same once more
+};
+
+/// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the floor: the margin is horizontal.
+bool contains(const Coverage&, const Vector3& point, double margin);
+
+/// Whether the union of the boxes contains the whole of `box`. Exact.
+bool covers(const std::vector<Coverage>& boxes, const Coverage& box);
+
+/// Whether the source looked at this point and nothing fixed or of the robot stood between.
+bool looks_at(const Source&, const Obstacles&, const Vector3& point);
+
+}  // namespace handsel::spark
