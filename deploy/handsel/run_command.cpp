@@ -12,6 +12,8 @@
 #include "deploy/handsel/system.hpp"
 #include "deploy/handsel/system_options.hpp"
 #include "deploy/handsel/terminal.hpp"
+#include "sim/recording.hpp"
+#include "sim/settings.hpp"
 
 namespace handsel {
 namespace {
@@ -42,7 +44,10 @@ std::filesystem::path with_recording(const std::string& name, const std::string&
   config::Scenario scenario = read_scenario(name);
   if (scenario.people().empty()) throw ConfigError("--human needs a scenario with a person; " + name + " has none");
   scenario.mutable_people(0)->set_behaviour(config::RECORDING);
-  scenario.mutable_people(0)->set_recording(std::filesystem::exists(recording) ? std::filesystem::absolute(recording).string() : recording);
+  const std::filesystem::path own =
+      std::filesystem::exists(recording) ? std::filesystem::absolute(recording) : std::filesystem::path(recording);
+  sim::load_recording(sim::resolve_recording(own, sim::data_root()));  // one that cannot be played starts nothing
+  scenario.mutable_people(0)->set_recording(own.string());
   const std::filesystem::path file = std::filesystem::temp_directory_path() / ("handsel-" + std::to_string(getpid()) + ".txtpb");
   std::string text;
   google::protobuf::TextFormat::PrintToString(scenario, &text);
@@ -114,7 +119,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--headless", options->headless, "open no browser");
   command->add_flag("--stay", options->stay, "stay up after the tasks until Ctrl-C");
   command->add_flag("--json", options->json, "print the report as JSON");
-  command->add_option("--human", options->human, "recording that the first person plays");
+  command->add_option("--human", options->human, "recording that the first person plays: .csv, .bvh, or a folder of the KTH handover set");
   command->add_option("--report", options->report, "write the report to this file");
   command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")->check(CLI::PositiveNumber);
   command->callback([options, &exit_code] { exit_code = run(*options); });

@@ -71,6 +71,16 @@ TEST(Command, a_wrong_scenario_is_named_with_file_and_line) {
   expect_refusal("run --scenario " + unknown_key.path.string() + kDomain, 2, unknown_key.path.string() + ":2");
 }
 
+TEST(Command, a_recording_that_cannot_be_played_starts_nothing) {
+  const std::string corpus = std::string(HANDSEL_SOURCE_DIR) + "/tests/fuzz/corpus/";
+  const std::string run = "run --headless --scenario give_mug" + kDomain + " --human " + corpus;
+  expect_refusal(run + "csv/millimetres.csv", 2, "millimetres.csv:2: from waist to head the body measures 650");
+  expect_refusal(run + "csv/time_backwards.csv", 2, "time_backwards.csv:7: time 0.100000 is not after");
+  expect_refusal(run + "bvh/truncated_motion.bvh", 2, "truncated_motion.bvh:");
+  expect_refusal(run + "bvh/unknown_channel.bvh", 2, "unknown_channel.bvh:5: channel \"Wrotation\" is unknown");
+  expect_refusal(run + "nobody.bvh", 3, "nobody.bvh");
+}
+
 TEST(Command, a_wrong_joint_name_is_named) {
   const TemporaryFile scenario("name: \"x\" start { key: \"elbow_of_nobody\" value: 1 } tasks { kind: \"give\" object: \"mug\" }");
   expect_refusal("run --scenario " + scenario.path.string() + kDomain, 2, "elbow_of_nobody");
