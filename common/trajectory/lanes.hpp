@@ -43,6 +43,9 @@ struct LaneKernels {
   /// Motions of the durations wanted, one a lane. Returns the bits of the lanes that failed; `blocked`: bits of those for which the
   /// duration is blocked. The bits in `leave` are neither computed nor returned.
   std::uint32_t (*finish)(LaneBlock& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept;
+  /// State `t` after the start of a segment: `row` has positions, velocities, accelerations and jerks of all axes, each part `stride` long,
+  /// a multiple of kLanes; on 64 bytes.
+  void (*evaluate)(const double* row, int axes, int stride, double t, double* position, double* velocity, double* acceleration) noexcept;
 };
 
 extern const LaneKernels kLaneKernelsBase;

@@ -1,5 +1,5 @@
 #include "common/trajectory/lanes_body.hpp"
 
 namespace handsel::detail {
-const LaneKernels kLaneKernelsAvx512{"avx512", prepare, finish};
+const LaneKernels kLaneKernelsAvx512{"avx512", prepare, finish, evaluate};
 }  // namespace handsel::detail

@@ -1,5 +1,5 @@
 #include "common/trajectory/lanes_body.hpp"
 
 namespace handsel::detail {
-const LaneKernels kLaneKernelsBase{"base", prepare, finish};
+const LaneKernels kLaneKernelsBase{"base", prepare, finish, evaluate};
 }  // namespace handsel::detail

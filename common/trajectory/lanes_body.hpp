@@ -480,5 +480,23 @@ std::uint32_t finish(LaneBlock& block, const double* durations, std::uint32_t le
   return failed & wanted;
 }
 
+void evaluate(const double* row, int axes, int stride, double time, double* position, double* velocity, double* acceleration) noexcept {
+  const V t = time, t2 = 0.5 * time, t3 = time * (1.0 / 3);
+  for (int i = 0; i < axes; i += kWidth, row += kWidth) {
+    const V x = load(row), v = load(row + stride), a = load(row + 2 * stride), j = load(row + 3 * stride);
+    const V a_t = a + t * j, v_t = v + t * (a + t2 * j), x_t = x + t * (v + t2 * (a + t3 * j));
+    if (axes - i >= kWidth) {
+      x_t.copy_to(position + i, stdx::element_aligned);
+      v_t.copy_to(velocity + i, stdx::element_aligned);
+      a_t.copy_to(acceleration + i, stdx::element_aligned);
+    } else {
+      const M there = numbers() < axes - i;
+      where(there, x_t).copy_to(position + i, stdx::element_aligned);
+      where(there, v_t).copy_to(velocity + i, stdx::element_aligned);
+      where(there, a_t).copy_to(acceleration + i, stdx::element_aligned);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace handsel::detail

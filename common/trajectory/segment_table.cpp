@@ -8,22 +8,24 @@
 namespace handsel {
 
 SegmentTable::SegmentTable(const Trajectory& trajectory) : axes_(trajectory.size()) {
+  stride_ = (axes_ + detail::kLanes - 1) / detail::kLanes * detail::kLanes;
+  kernels_ = &detail::lane_kernels();
   const Trajectory alike = split_alike(trajectory);
   const std::size_t count = alike.axes.empty() ? 0 : alike.axes[0].segments.size();
   knots_.assign(1, 0.0);
   for (std::size_t k = 0; k < count; ++k) knots_.push_back(knots_.back() + alike.axes[0].segments[k].duration);
   if (count == 0) knots_.push_back(0.0);
-  data_.assign(std::max<std::size_t>(count, 1) * 4 * axes_, 0.0);
+  data_.assign(std::max<std::size_t>(count, 1) * 4 * static_cast<std::size_t>(stride_) / detail::kLanes, Lane8{});
   for (int i = 0; i < axes_; ++i) {
     AxisState s = alike.axes[i].start;
     for (std::size_t k = 0; k < std::max<std::size_t>(count, 1); ++k) {
-      double* row = data_.data() + k * 4 * axes_;
+      double* row = data_.data()->value + k * 4 * static_cast<std::size_t>(stride_);
       row[i] = s.position;
-      row[axes_ + i] = s.velocity;
-      row[2 * axes_ + i] = s.acceleration;
+      row[stride_ + i] = s.velocity;
+      row[2 * stride_ + i] = s.acceleration;
       if (count == 0) break;
       const Segment& g = alike.axes[i].segments[k];
-      row[3 * axes_ + i] = g.jerk;
+      row[3 * stride_ + i] = g.jerk;
       s = advanced(s, g.duration, g.jerk);
     }
   }
@@ -64,25 +66,15 @@ void SegmentTable::evaluate(double t, int& cursor, MotionState3& out) const noex
   if (axes_ == 0) return;
   t = std::clamp(t, 0.0, duration());
   cursor = find(t, cursor);
-  const double* row = this->row(cursor);
-  const double s = t - knots_[cursor], s2 = s / 2, s3 = s / 3;
-  const int n = axes_;
-  double* x = out.position.data();
-  double* v = out.velocity.data();
-  double* a = out.acceleration.data();
-  for (int i = 0; i < n; ++i) {
-    const double x0 = row[i], v0 = row[n + i], a0 = row[2 * n + i], j = row[3 * n + i];
-    x[i] = x0 + s * (v0 + s2 * (a0 + s3 * j));
-    v[i] = v0 + s * (a0 + s2 * j);
-    a[i] = a0 + s * j;
-  }
+  kernels_->evaluate(row(cursor), axes_, stride_, t - knots_[static_cast<std::size_t>(cursor)], out.position.data(), out.velocity.data(),
+                     out.acceleration.data());
 }
 
 void SegmentTable::rates(double t, int k, double* v, double* a, double* j) const noexcept {
   const double* row = this->row(k);
   const double s = t - knots_[k];
-  const int n = axes_;
-  for (int i = 0; i < n; ++i) {
+  const int n = stride_;
+  for (int i = 0; i < axes_; ++i) {
     const double a0 = row[2 * n + i], jerk = row[3 * n + i];
     j[i] = jerk;
     a[i] = a0 + s * jerk;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/trajectory/lanes.hpp"
 #include "common/trajectory/trajectory.hpp"
 
 namespace handsel {
@@ -32,10 +33,14 @@ class SegmentTable {
   void rates(double t, int k, double* v, double* a, double* j) const noexcept;
 
  private:
-  const double* row(int k) const noexcept { return data_.data() + static_cast<std::size_t>(k) * 4 * axes_; }
-  int axes_{};
+  struct alignas(64) Lane8 {
+    double value[detail::kLanes];
+  };
+  const double* row(int k) const noexcept { return data_.data()->value + static_cast<std::size_t>(k) * 4 * stride_; }
+  int axes_{}, stride_{};      // axes, and the next multiple of kLanes
   std::vector<double> knots_;  // segments + 1
-  std::vector<double> data_;   // a segment: x of all axes, v, a, j
+  std::vector<Lane8> data_;    // a segment: x of all axes, v, a, j
+  const detail::LaneKernels* kernels_{};
 };
 
 }  // namespace handsel
