@@ -34,6 +34,8 @@ const char* reason(AxisOutcome outcome) noexcept {
       return "the end state cannot be reached inside the limits";
     case AxisOutcome::too_short:
       return "the imposed duration is below the minimum";
+    case AxisOutcome::wrong_size:
+      return "a state or the limits have another number of axes";
     case AxisOutcome::blocked:
       return "no motion inside the limits has the imposed duration";
   }
@@ -319,6 +321,9 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
   brake_time_ = brake_.duration();
   distance_ = to.position - start.position;
   scale_ = std::abs(to.position) + std::abs(start.position);
+  over_J_ = 1 / l.jerk;
+  speed_ = std::abs(start.velocity) + std::abs(to.velocity) +
+           (start.acceleration * start.acceleration + to.acceleration * to.acceleration) * over_J_;
   still_ = distance_ == 0 && start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
   rest_ = start.velocity == 0 && start.acceleration == 0 && to.velocity == 0 && to.acceleration == 0;
   up_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, false);
@@ -340,8 +345,9 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
   return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
 }
 
-double AxisProblem::slack(double least, double largest) const noexcept {
-  return 256 * kEps * (scale_ + std::abs(least) + std::abs(largest));
+double AxisProblem::slack(const Span& at) const noexcept {
+  const double speed = speed_ + (at.s_up * at.s_up + at.s_down * at.s_down) * over_J_;
+  return 256 * kEps * (scale_ + std::abs(at.least) + std::abs(at.largest)) + 16 * kEps * at.T * speed;
 }
 
 AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
@@ -353,7 +359,7 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
       const double s_up = T <= first ? up_.island_lo : up_.parameter_in_island(T);
       const double s_down = T <= first ? down_.island_lo : down_.parameter_in_island(T);
       const double largest = up_.displacement(s_up), least = -down_.displacement(s_down);
-      const double tolerance = 2 * slack(least, largest);
+      const double tolerance = 2 * slack({from, s_up, s_down, 0, 0, largest, least});
       if (D <= largest + tolerance && D >= least - tolerance) {
         return D - least > largest - D ? Choice{from, s_up, 0, false} : Choice{from, s_down, 0, true};
       }
@@ -365,8 +371,9 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
     }
   }
   const double first = up_.duration(up_.s_lo);
-  const Span at = T > first ? span_at(T) : span_at(-1);
-  const double tolerance = slack(at.least, at.largest);
+  Span at = span_at(T > first ? T : -1);
+  at.T = std::max(T, first);
+  const double tolerance = slack(at);
   double cruise;
   if (D > at.largest && (D > at.largest + tolerance || (at.s_up >= 0 && up_.gain(at.s_up) >= 0))) {
     const double s = up_.root(D, at.s_up, &cruise);
@@ -432,6 +439,7 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
   }
   Span at;
   if (up_.island && down_.island && T <= up_.duration(up_.island_hi)) {
+    at.T = T;
     at.s_up = up_.parameter_in_island(T);
     at.s_down = down_.parameter_in_island(T);
     at.largest = up_.displacement(at.s_up);
@@ -444,7 +452,7 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
 }
 
 AxisOutcome AxisProblem::profile_in(const Span& at, AxisProfile& out) const noexcept {
-  const double D = distance_, tolerance = slack(at.least, at.largest), width = at.largest - at.least;
+  const double D = distance_, tolerance = slack(at), width = at.largest - at.least;
   if (D > at.largest + 2 * tolerance || D < at.least - 2 * tolerance) return AxisOutcome::blocked;
   const double weight = width > 0 ? std::clamp((D - at.least) / width, 0.0, 1.0) : 0.5;
   out = brake_;

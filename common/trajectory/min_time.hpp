@@ -56,6 +56,7 @@ enum class AxisOutcome {
   bad_limits,         ///< a limit is zero or negative
   end_beyond_limits,  ///< the end state, or what must precede it, breaks a limit
   too_short,          ///< the imposed duration is below the minimum
+  wrong_size,         ///< a state or the limits have another number of axes
   blocked,            ///< no motion inside the limits has the imposed duration, though shorter ones exist
 };
 const char* reason(AxisOutcome) noexcept;
@@ -128,14 +129,14 @@ class AxisProblem {
     double T{-1}, s_up{}, s_down{}, cruise_up{}, cruise_down{}, largest{}, least{};
   };
   Span span_at(double T) const noexcept;
-  double slack(double least, double largest) const noexcept;
+  double slack(const Span& at) const noexcept;
   Choice first_from(double duration) const noexcept;
   AxisOutcome profile_in(const Span& span, AxisProfile& out) const noexcept;
 
   AxisProfile brake_;
   double brake_time_{};
   detail::MotionFamily up_, down_;
-  double distance_{}, scale_{}, minimum_{};
+  double distance_{}, scale_{}, speed_{}, over_J_{}, minimum_{};
   bool still_{}, rest_{};
   Choice best_{};
 };

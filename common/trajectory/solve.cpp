@@ -159,6 +159,12 @@ void SynchronisedBatch::write_profiles(int lanes) noexcept {
 }
 
 bool SynchronisedAxes::solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept {
+  wrong_size_ = false;
+  for (const Eigen::VectorXd* all : {&from.position, &from.velocity, &from.acceleration, &to.position, &to.velocity, &to.acceleration,
+                                     &limits.velocity, &limits.acceleration, &limits.jerk}) {
+    wrong_size_ = wrong_size_ || all->size() != axes_;
+  }
+  if (wrong_size_) return false;
   return batch_.solve({from.position.data(), from.velocity.data(), from.acceleration.data(), to.position.data(), to.velocity.data(),
                        to.acceleration.data(), limits.velocity.data(), limits.acceleration.data(), limits.jerk.data()},
                       1) == 1;

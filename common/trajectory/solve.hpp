@@ -61,17 +61,19 @@ class SynchronisedBatch {
 /// One problem, for a cycle: allocates at construction only.
 class SynchronisedAxes {
  public:
-  explicit SynchronisedAxes(int axes) : batch_(axes, 1) {}
-  /// All of size axes. On false `outcome()` and `axis()` say what failed and where; the profiles are not to be used.
+  explicit SynchronisedAxes(int axes) : batch_(axes, 1), axes_(axes) {}
+  /// On false `outcome()` and `axis()` say what failed and where; the profiles are not to be used.
   bool solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept;
   double duration() const noexcept { return batch_.duration(0); }
   double minimum(int axis) const noexcept { return batch_.minimum(0, axis); }
   const AxisProfile& profile(int axis) const noexcept { return batch_.profile(0, axis); }
-  AxisOutcome outcome() const noexcept { return batch_.outcome(0); }
+  AxisOutcome outcome() const noexcept { return wrong_size_ ? AxisOutcome::wrong_size : batch_.outcome(0); }
   int axis() const noexcept { return batch_.axis(0); }
 
  private:
   SynchronisedBatch batch_;
+  int axes_;
+  bool wrong_size_{};
 };
 
 /// `imposed`: duration wanted [s]. Below the minimum of an axis it is refused; where an axis cannot keep its limits for exactly that

@@ -42,8 +42,10 @@ inline bool rising(double v, double a, double peak, double A, double J, std::vec
   return true;
 }
 
-inline double slow_min_time(const AxisState& from, const AxisState& to, const AxisLimits& l, int grid = 600) {
-  double best = std::numeric_limits<double>::infinity();
+/// Durations at which the displacement wanted is the largest or the least possible, ascending: the least duration first, then the ends of
+/// what is blocked. Those that a coarse grid steps over in pairs are missing.
+inline std::vector<double> slow_bounds(const AxisState& from, const AxisState& to, const AxisLimits& l, int grid = 600) {
+  std::vector<double> all;
   for (const double side : {1.0, -1.0}) {
     const double v0 = side * from.velocity, a0 = side * from.acceleration, vf = side * to.velocity, af = side * to.acceleration;
     const double D = side * (to.position - from.position), V = l.velocity, A = l.acceleration, J = l.jerk;
@@ -94,7 +96,7 @@ inline double slow_min_time(const AxisState& from, const AxisState& to, const Ax
           continue;
         }
         const double near = 1e-16 * (std::abs(from.position) + std::abs(to.position) + std::abs(D));
-        if (std::abs(fx) <= near) best = std::min(best, p.duration());
+        if (std::abs(fx) <= near) all.push_back(p.duration());
         if (have && (last_f < 0) != (fx < 0)) {
           double a = last_x, b = x;
           const bool rise = last_f < 0;
@@ -104,7 +106,7 @@ inline double slow_min_time(const AxisState& from, const AxisState& to, const Ax
             ((fm < 0) == rise ? a : b) = m;
           }
           f(b, q);
-          if (q.valid) best = std::min(best, q.duration());
+          if (q.valid) all.push_back(q.duration());
         }
         last_x = x;
         last_f = fx;
@@ -117,9 +119,19 @@ inline double slow_min_time(const AxisState& from, const AxisState& to, const Ax
     if (a0 < 0) scan([&](double b, SlowProfile& o) { return flat_profile(b, true, o); }, a0, 0);
     SlowProfile cruise;
     const double missing = -peak_profile(V, cruise);
-    if (cruise.valid && missing >= 0) best = std::min(best, cruise.duration() + missing / V);
+    if (cruise.valid && missing >= 0) all.push_back(cruise.duration() + missing / V);
   }
-  return best;
+  std::sort(all.begin(), all.end());
+  std::vector<double> out;
+  for (const double t : all) {
+    if (out.empty() || t > out.back() + 1e-9 * (std::abs(t) + 1e-6)) out.push_back(t);
+  }
+  return out;
+}
+
+inline double slow_min_time(const AxisState& from, const AxisState& to, const AxisLimits& l, int grid = 600) {
+  const std::vector<double> bounds = slow_bounds(from, to, l, grid);
+  return bounds.empty() ? std::numeric_limits<double>::infinity() : bounds[0];
 }
 
 }  // namespace handsel::test
