@@ -7,9 +7,14 @@
 
 namespace handsel {
 
-SegmentTable::SegmentTable(const Trajectory& trajectory) : axes_(trajectory.size()) {
-  stride_ = (axes_ + detail::kLanes - 1) / detail::kLanes * detail::kLanes;
-  kernels_ = &detail::lane_kernels();
+namespace {
+
+int stride_of(int axes) { return (axes + detail::kLanes - 1) / detail::kLanes * detail::kLanes; }
+
+}  // namespace
+
+SegmentTable::SegmentTable(const Trajectory& trajectory)
+    : axes_(trajectory.size()), stride_(stride_of(axes_)), kernels_(&detail::lane_kernels()) {
   const Trajectory alike = split_alike(trajectory);
   const std::size_t count = alike.axes.empty() ? 0 : alike.axes[0].segments.size();
   knots_.assign(1, 0.0);
@@ -33,16 +38,18 @@ SegmentTable::SegmentTable(const Trajectory& trajectory) : axes_(trajectory.size
 
 void SegmentTable::reserve(int axes, int segments) {
   knots_.reserve(static_cast<std::size_t>(segments) + 1);
-  data_.reserve(static_cast<std::size_t>(segments) * 4 * axes);
+  data_.reserve(static_cast<std::size_t>(segments) * 4 * static_cast<std::size_t>(stride_of(axes)) / detail::kLanes);
 }
 
 int SegmentTable::room() const noexcept {
   if (axes_ == 0 || knots_.capacity() == 0) return 0;
-  return static_cast<int>(std::min(knots_.capacity() - 1, data_.capacity() / (4 * static_cast<std::size_t>(axes_))));
+  return static_cast<int>(std::min(knots_.capacity() - 1, data_.capacity() * detail::kLanes / (4 * static_cast<std::size_t>(stride_))));
 }
 
 void SegmentTable::clear(int axes) noexcept {
   axes_ = axes;
+  stride_ = stride_of(axes);
+  kernels_ = &detail::lane_kernels();
   knots_.clear();
   knots_.push_back(0.0);
   data_.clear();
@@ -50,7 +57,12 @@ void SegmentTable::clear(int axes) noexcept {
 
 void SegmentTable::add(double duration, const double* x, const double* v, const double* a, const double* j) noexcept {
   knots_.push_back(knots_.back() + duration);
-  for (const double* part : {x, v, a, j}) data_.insert(data_.end(), part, part + axes_);
+  data_.resize(data_.size() + 4 * static_cast<std::size_t>(stride_) / detail::kLanes, Lane8{});
+  double* row = data_.data()->value + data_.size() * detail::kLanes - 4 * static_cast<std::size_t>(stride_);
+  for (const double* part : {x, v, a, j}) {
+    std::copy(part, part + axes_, row);
+    row += stride_;
+  }
 }
 
 int SegmentTable::find(double t, int hint) const noexcept {
