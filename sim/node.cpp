@@ -9,7 +9,8 @@ namespace handsel::sim {
 
 namespace {
 
-constexpr std::uint64_t kCatchUp = 20;  // steps at most in one tick; what is then missing is slip, shown in real_time_factor
+constexpr std::uint64_t kCatchUp =
+    5;  // steps at most in one tick, well below the gap that stops the robot; what is then missing is slip, shown in real_time_factor
 
 std::uint64_t steps_per(double rate, double step) { return std::max<std::uint64_t>(1, std::llround(1 / (rate * step))); }
 

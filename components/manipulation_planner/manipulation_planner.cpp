@@ -268,6 +268,12 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
       if (last.good) co_return last;
     } else {
       last = planned.outcome;
+      if (lost(planned.start_touches)) {
+        refuse(motion.phase, last.reason);
+        const std::string who = planned.start_touches;
+        co_await waiting_.until([this, &who] { return !lost(who); }, settings_.permission_timeout());
+        continue;
+      }
       if (!planned.start_touches.empty()) {
         refuse(motion.phase, last.reason);
         Outcome freed = co_await withdraw(planned.start_touches, motion);
@@ -279,6 +285,10 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
     co_await waiting_.pause(0.3);
   }
   co_return last;
+}
+
+bool ManipulationPlanner::lost(const std::string& id) const {
+  return std::any_of(people_.people.begin(), people_.people.end(), [&](const Person& p) { return p.id == id && p.inflation > 0; });
 }
 
 std::vector<Vector3> ManipulationPlanner::ways_out(const std::string& touched) const {
