@@ -77,7 +77,9 @@ struct BridgeServer : testing::Test {
   void subscribe(WebSocketClient& client, int channel) {
     client.frame(WebSocketClient::kText, R"({"op":"subscribe","subscriptions":[{"id":)" + std::to_string(channel) + R"(,"channelId":)" +
                                              std::to_string(channel) + "}]}");
-    for (int i = 0; i < 500 && !server->wanted(static_cast<std::size_t>(channel - 1)); ++i) usleep(10000);
+    const std::string id = "after " + std::to_string(channel);  // messages are taken in order: its answer comes after the subscription
+    client.frame(WebSocketClient::kText, R"({"op":"getParameters","parameterNames":[],"id":")" + id + R"("})");
+    EXPECT_THAT(client.read(id), HasSubstr(id));
     EXPECT_TRUE(server->wanted(static_cast<std::size_t>(channel - 1)));
   }
   void publish(std::size_t channel, const std::string& text, std::size_t size = 0) {
