@@ -57,7 +57,7 @@ struct TopicRow {
   X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller") \
   X(TrajectoryCommand, "trajectory", command, 0, 0, 2621440, "manipulation_planner", "trajectory_controller") \
   X(HandCommand, "hand_command", command, 0, 0, 512, "manipulation_planner", "trajectory_controller") \
-  X(ExecutionStatus, "execution_status", state, 50, 0.06, 640, "trajectory_controller", "manipulation_planner supervisor") \
+  X(ExecutionStatus, "execution_status", state, 50, 0.06, 704, "trajectory_controller", "manipulation_planner supervisor") \
   X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 2621440, "trajectory_controller", \
     "collision_checker attention manipulation_planner") \
   X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.06, 512, "collision_checker", "trajectory_controller attention") \

@@ -98,6 +98,9 @@ struct ExecutionStatus {
   std::string reason;                                                             ///< of the last refusal, or of slowing, one sentence
   std::uint64_t cycles{}, late_cycles{};                                          ///< control cycles; later than one period
   double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};  ///< largest |.| sent so far / guard limit
+  double separation{1e9};     ///< to the nearest person, excepted parts left out [m]; 1e9 = nobody
+  double separation_limit{};  ///< what the separation rule asks for there at the present speed [m]
+  Vector3 nearest_on_robot{Vector3::Zero()}, nearest_on_person{Vector3::Zero()};  ///< on the axes of the nearest capsules, world [m]
 };
 
 /// What moves now. Topic ActiveTrajectory, profile advice, 50 Hz.

@@ -11,6 +11,9 @@ constexpr const char* kHandActions[] = {"move", "grasp", "release_on_pull", "rel
 constexpr const char* kMotions[] = {"idle", "running", "finished", "refused", "stopped"};
 constexpr const char* kHands[] = {"idle", "moving", "grasped", "empty", "released", "refused"};
 constexpr Range kLimitShare{0, 1e9};
+static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) &&
+                  handsel_CAUSE_OVERRIDE_SLOW == static_cast<int>(Cause::override_slow),
+              "the bits of ExecutionStatus.causes are the enumerators of Cause in IDL and domain");
 
 }  // namespace
 
@@ -63,6 +66,10 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.number("limit_share_velocity", m.limit_share_velocity, w.limit_share_velocity, kLimitShare);
   io.number("limit_share_acceleration", m.limit_share_acceleration, w.limit_share_acceleration, kLimitShare);
   io.number("limit_share_jerk", m.limit_share_jerk, w.limit_share_jerk, kLimitShare);
+  io.horizon("separation", m.separation, w.separation, -1e4);
+  io.number("separation_limit", m.separation_limit, w.separation_limit, {0, 1e4});
+  io.point("nearest_on_robot", m.nearest_on_robot, w.nearest_on_robot);
+  io.point("nearest_on_person", m.nearest_on_person, w.nearest_on_person);
 }
 
 void describe(WireIo& io, ActiveTrajectory& m, handsel_ActiveTrajectory& w) {

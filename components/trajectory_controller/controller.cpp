@@ -305,7 +305,7 @@ void Controller::run_guard(TimePoint now) noexcept {
   if (arm_ != Arm::running || runner_.finished()) {
     verdict_now_ = verdict_ahead_ = {};
     verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
-    if (exchanging_.empty() || cycles_ % 50 != 0) {
+    if (cycles_ % 50 != 0) {  // at rest only the distance and the end of an exchange are of interest
       guard_verdict_ = verdict_now_;
       return;
     }
@@ -316,6 +316,7 @@ void Controller::run_guard(TimePoint now) noexcept {
   guard_ahead_ = !guard_ahead_ && arm_ == Arm::running;
   judge_path(guard_ahead_, age);
   if (new_people_ && arm_ == Arm::running) judge_path(!guard_ahead_, age);
+  if (!guard_ahead_ || new_people_) nearest_ = verdict_now_;
   new_people_ = false;
   guard_verdict_ = verdict_now_;
   guard_verdict_.forward = std::min(verdict_now_.forward, verdict_ahead_.forward);
@@ -589,6 +590,10 @@ ExecutionStatus Controller::status() const {
   s.limit_share_velocity = shares_.velocity;
   s.limit_share_acceleration = shares_.acceleration;
   s.limit_share_jerk = shares_.jerk;
+  s.separation = nearest_.distance;
+  s.separation_limit = nearest_.needed;
+  s.nearest_on_robot = nearest_.on_robot;
+  s.nearest_on_person = nearest_.on_person;
   return s;
 }
 

@@ -163,7 +163,7 @@ class Controller {
   ContactWatch contact_;
   ModeMachine modes_;
   ModeVerdict verdict_;
-  GuardVerdict guard_verdict_, verdict_now_, verdict_ahead_;
+  GuardVerdict guard_verdict_, verdict_now_, verdict_ahead_, nearest_;
   MotionState3 path_;
   Vector full_velocity_, full_acceleration_, posture_;
   std::vector<Pose> links_;

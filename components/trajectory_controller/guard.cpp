@@ -122,11 +122,19 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       Vector3 on_robot, on_person;
       const double axes_apart = std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
       const double distance = axes_apart - r.radius - part.radius;
-      if (!part.excepted) verdict.distance = std::min(verdict.distance, distance);
-      if (distance >= matters) continue;
+      const bool nearest = !part.excepted && distance < verdict.distance;
+      if (!nearest && distance >= matters) continue;
       const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart) : Vector3(Vector3::UnitZ());
       const double share = length2 > 1e-12 ? std::clamp((on_robot - r.a).dot(way) / length2, 0.0, 1.0) : 0.0;
       const double closing = (r.va + share * (r.vb - r.va)).dot(toward);  // at factor 1; backwards it is the negative
+      if (nearest) {
+        verdict.distance = distance;
+        verdict.on_robot = on_robot;
+        verdict.on_person = on_person;
+        verdict.needed = needed(directed_speed(part, -toward, settings), std::max(0.0, std::copysign(closing, closing * factor)), present,
+                                reaction, margin);
+      }
+      if (distance >= matters) continue;
       double& best = closing > 0 ? forward : backward;
       if (part.excepted) {
         verdict.exchange_clear = false;

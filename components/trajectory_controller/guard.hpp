@@ -42,14 +42,16 @@ struct Wall {
 };
 
 struct GuardVerdict {
-  double forward{1.0};        ///< largest allowed time-law factor, [0, 1]
-  double backward{-1.0};      ///< least allowed (running back), [-1, 0]
-  double distance{1e9};       ///< to the nearest person, excepted parts left out [m]
-  bool separation{};          ///< the separation rule made it less than 1
-  bool wall{};                ///< a wall made it less than 1
-  bool uncovered{};           ///< nobody seen, but nobody is not a fact
-  bool too_near{};            ///< nearer than the stop needs at the present factor, still closing in
-  bool exchange_clear{true};  ///< no excepted part within exchange_range
+  double forward{1.0};                                            ///< largest allowed time-law factor, [0, 1]
+  double backward{-1.0};                                          ///< least allowed (running back), [-1, 0]
+  double distance{1e9};                                           ///< to the nearest person, excepted parts left out [m]
+  double needed{};                                                ///< distance the rule asks for there at the present factor [m]
+  Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< on the axes of the two nearest capsules, world [m]
+  bool separation{};                                              ///< the separation rule made it less than 1
+  bool wall{};                                                    ///< a wall made it less than 1
+  bool uncovered{};                                               ///< nobody seen, but nobody is not a fact
+  bool too_near{};                                                ///< nearer than the stop needs at the present factor, still closing in
+  bool exchange_clear{true};                                      ///< no excepted part within exchange_range
 };
 
 /// Time of the jerk-limited stop of one axis from velocity v (a = 0) [s]; the way is v times half of it.

@@ -74,6 +74,23 @@ TEST_F(GuardTest, nobody_and_covered_is_full_speed_both_ways) {
   EXPECT_FALSE(v.separation || v.uncovered || v.too_near);
 }
 
+TEST_F(GuardTest, says_where_the_nearest_person_is_and_what_the_rule_asks_for_there) {
+  Person p = standing(1.6);
+  const double margin = settings_.intrusion + settings_.uncertainty_human + settings_.uncertainty_robot;
+  const GuardVerdict rest = judge(p, 0.02);
+  EXPECT_LT(rest.distance, 1.6);
+  const double axes_apart = (rest.on_robot - rest.on_person).norm();
+  EXPECT_GT(axes_apart, rest.distance);
+  EXPECT_LT(axes_apart, rest.distance + 0.4);  // two radii
+  EXPECT_NEAR(rest.needed, 0.1 * (settings_.reaction + 0.02) + margin, 1e-12);
+  walk(p, Vector3(-0.5, 0, 0));
+  EXPECT_GT(judge(p, 0.02).needed, rest.needed);
+  swing(1.0);
+  const double slow = judge(p, 0.02, 0.25).needed, fast = judge(p, 0.02, 1.0).needed;
+  EXPECT_GT(fast, slow);
+  EXPECT_EQ(judge(HumanState{0, {}, true}).distance, 1e9);
+}
+
 TEST_F(GuardTest, nobody_but_not_covered_is_slow) {
   swing(0.5);
   const GuardVerdict v = judge(HumanState{0, {}, false});
