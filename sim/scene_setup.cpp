@@ -53,6 +53,7 @@ class Reader {
       break;
     }
     out_.never_releases = scenario_.robot_never_releases();
+    out_.no_weld = scenario_.no_weld();
     return std::move(out_);
   }
 

@@ -48,6 +48,7 @@ struct SceneSetup {
   std::vector<TimedControl> disturbances;  ///< in time order
   std::string watched;                     ///< object of the first task, else the first object; may be empty
   bool never_releases{};
+  bool no_weld{};
 };
 
 /// Throws ConfigError or MissingError naming what in the scenario is wrong and what there is.

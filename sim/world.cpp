@@ -83,6 +83,7 @@ struct SimWorld::Impl {
         side(robot_model, setup.start, side_settings()),
         limits(robot_model, s.robot_side.max_gap, s.setpoint_period),
         separations(robot_model, s.ssm) {
+    settings.constraint = settings.constraint && !setup.no_weld;
     dynamics.setGravity(btVector3(0, 0, -9.81));
     dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
     dynamics.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // with one, a contact slides freely across it
@@ -667,6 +668,9 @@ void SimWorld::truth(GroundTruth& out) const {
     out.object = w.objects[w.watched].start.id;
     out.T_world_object = w.objects[w.watched].T_world_object;
     w.handover->write(out);
+    out.hold = w.gripped != w.watched ? "" : w.constraint_carries ? "constraint" : "contact";
+    out.held_time = w.held_time;
+    out.constraint_time = w.constraint_time;
   }
   out.separation = w.near.distance;
   out.least_separation = w.least_separation;

@@ -75,6 +75,8 @@ enum class Cause : std::uint8_t {
   limit_violation,     ///< Fault
   cycle_late,          ///< Hold after 5 in a row
   override_slow,       ///< Slow
+  wall,                ///< Slow: a virtual wall or the end of the workspace is ahead
+  contact,             ///< Stop: the arm feels a contact
 };
 const char* name(Cause);
 const char* name(Mode);

@@ -15,10 +15,24 @@
 namespace handsel {
 
 inline constexpr const char* kBehaviourNames[] = {"search", "track", "avoid", "pick", "place", "give", "receive"};
-inline constexpr const char* kCauseNames[] = {
-    "none",           "no_go",           "supervisor_silent",  "forecast_silent",    "forecast_collision", "attention_silent",
-    "attention_slow", "separation",      "robot_state_silent", "human_state_silent", "human_unknown",      "drive_not_enabled",
-    "tracking_error", "limit_violation", "cycle_late",         "override_slow"};
+inline constexpr const char* kCauseNames[] = {"none",
+                                              "no_go",
+                                              "supervisor_silent",
+                                              "forecast_silent",
+                                              "forecast_collision",
+                                              "attention_silent",
+                                              "attention_slow",
+                                              "separation",
+                                              "robot_state_silent",
+                                              "human_state_silent",
+                                              "human_unknown",
+                                              "drive_not_enabled",
+                                              "tracking_error",
+                                              "limit_violation",
+                                              "cycle_late",
+                                              "override_slow",
+                                              "wall",
+                                              "contact"};
 inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
 inline constexpr const char* kTaskKindNames[] = {"give", "receive", "pick",  "place",  "clear",  "tidy",        "regrasp",
                                                  "lift", "go_to",   "pause", "resume", "cancel", "acknowledge", "speed"};

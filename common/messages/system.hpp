@@ -69,6 +69,9 @@ struct GroundTruth {
   std::string carrier;  ///< who carries the watched object: "", "surface", "robot", "both", "human"
   std::string object;
   Pose T_world_object{Pose::Identity()};
+  std::string hold;                       ///< what the robot holds it by: "", "contact", "constraint"
+  double held_time{};                     ///< how long the robot has held it so far [s]
+  double constraint_time{};               ///< of that, how long the constraint did [s]
   double lifted{};                        ///< height above where it started [m]
   double max_lifted{};                    ///< while carried by the robot [m]
   double human_contact_before_release{};  ///< how long the person's hand touched the object before the robot let go [s]

@@ -11,8 +11,7 @@ constexpr const char* kHandActions[] = {"move", "grasp", "release_on_pull", "rel
 constexpr const char* kMotions[] = {"idle", "running", "finished", "refused", "stopped"};
 constexpr const char* kHands[] = {"idle", "moving", "grasped", "empty", "released", "refused"};
 constexpr Range kLimitShare{0, 1e9};
-static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) &&
-                  handsel_CAUSE_OVERRIDE_SLOW == static_cast<int>(Cause::override_slow),
+static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) && handsel_CAUSE_CONTACT == static_cast<int>(Cause::contact),
               "the bits of ExecutionStatus.causes are the enumerators of Cause in IDL and domain");
 
 }  // namespace

@@ -46,6 +46,9 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.text("carrier", m.carrier, w.carrier, Text::maybe_empty);
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.pose("T_world_object", m.T_world_object, w.T_world_object);
+  io.text("hold", m.hold, w.hold, Text::maybe_empty);
+  io.number("held_time", m.held_time, w.held_time, kTime);
+  io.number("constraint_time", m.constraint_time, w.constraint_time, kTime);
   io.number("lifted", m.lifted, w.lifted, kCoordinate);
   io.number("max_lifted", m.max_lifted, w.max_lifted, kCoordinate);
   io.number("human_contact_before_release", m.human_contact_before_release, w.human_contact_before_release, kTime);

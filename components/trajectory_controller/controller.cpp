@@ -388,10 +388,11 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
     in.forecast_collision_hold = soon && exchanging_.empty();
     in.forecast_collision_slow = !in.forecast_collision_hold && forecast_.time_to_collision < settings_.forecast_slow;
   }
-  in.separation_slow = (guard_verdict_.separation || guard_verdict_.wall) && guard_verdict_.forward < 0.999;
+  in.separation_slow = guard_verdict_.separation && guard_verdict_.forward < 0.999;
+  in.wall_slow = guard_verdict_.wall && guard_verdict_.forward < 0.999;
   too_near_for_ = in.running && guard_verdict_.too_near ? too_near_for_ + settings_.period : 0.0;
-  in.separation_stop = too_near_for_ > settings_.guard.stop_persistence || (touched_ && !in.at_rest);
-  if (in.separation_stop) contact_stop_ = touched_;
+  in.separation_stop = too_near_for_ > settings_.guard.stop_persistence;
+  in.contact_stop = touched_ && !in.at_rest;
   in.human_unknown = human_seen_.ever && !crowd_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.override_slow = go_.override_factor < 0.999;
@@ -575,13 +576,11 @@ ExecutionStatus Controller::status() const {
     s.reason = refusal_;
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
-    if (latched_cause_ == Cause::separation && contact_stop_)
-      s.reason += ": contact felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
+    if (latched_cause_ == Cause::contact) s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
   } else if (motion_ == MotionState::stopped && off_path_) {
     s.reason = "no speed along the path kept the limits; stopped beside it";
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
     s.reason = name(cause);
-    if (cause == Cause::separation && guard_verdict_.wall && !guard_verdict_.separation) s.reason += ": a wall is ahead";
     if (cause == Cause::attention_slow) s.reason += ": " + advice_.reason;
     if (cause == Cause::forecast_collision) s.reason += ": " + forecast_.reason;
   }

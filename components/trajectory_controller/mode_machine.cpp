@@ -16,6 +16,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(stop, Cause::human_state_silent, in.human_age > timeouts_.human_state);
   set(stop, Cause::drive_not_enabled, in.robot_age >= 0 && !in.drive_enabled);
   set(stop, Cause::separation, in.separation_stop);
+  set(stop, Cause::contact, in.contact_stop);
 
   const double forecast_age = in.forecast_age < 0 ? in.running_for : std::min(in.forecast_age, in.running_for);
   set(hold, Cause::forecast_silent, in.running && forecast_age > timeouts_.forecast);
@@ -33,6 +34,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(slow, Cause::attention_silent, in.attention_age < 0 || in.attention_age > timeouts_.attention);
   set(slow, Cause::forecast_collision, in.forecast_collision_slow);
   set(slow, Cause::separation, in.separation_slow);
+  set(slow, Cause::wall, in.wall_slow);
   set(slow, Cause::human_unknown, in.human_unknown);
   set(slow, Cause::attention_slow, in.attention_slow);
   set(slow, Cause::override_slow, in.override_slow);
@@ -61,10 +63,11 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
 }
 
 Cause gravest(std::uint32_t causes) {
-  constexpr Cause kOrder[] = {Cause::limit_violation,    Cause::tracking_error,     Cause::drive_not_enabled, Cause::robot_state_silent,
-                              Cause::human_state_silent, Cause::forecast_collision, Cause::separation,        Cause::human_unknown,
-                              Cause::forecast_silent,    Cause::cycle_late,         Cause::supervisor_silent, Cause::no_go,
-                              Cause::attention_silent,   Cause::attention_slow,     Cause::override_slow};
+  constexpr Cause kOrder[] = {Cause::limit_violation, Cause::tracking_error,     Cause::drive_not_enabled,  Cause::robot_state_silent,
+                              Cause::contact,         Cause::human_state_silent, Cause::forecast_collision, Cause::separation,
+                              Cause::human_unknown,   Cause::forecast_silent,    Cause::cycle_late,         Cause::supervisor_silent,
+                              Cause::no_go,           Cause::attention_silent,   Cause::attention_slow,     Cause::wall,
+                              Cause::override_slow};
   for (Cause cause : kOrder)
     if (causes & bit(cause)) return cause;
   return Cause::none;

@@ -81,6 +81,8 @@ Observer::Observer(Bus& bus) {
     const auto& seen = snapshot_.truth;
     if (!seen.ever || seen.sample.carrier != truth.carrier)
       note(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
+    if (truth.hold == "constraint" && !(seen.ever && seen.sample.hold == truth.hold))
+      note(at, truth.object + " held by the constraint more than by contact");
     if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
     if (truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, truth.object + " dropped");
     if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");

@@ -81,6 +81,9 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"tasks", std::move(tasks)},
           {"oracle",
            {{"carrier", truth.carrier},
+            {"held_s", truth.held_time},
+            {"constraint_s", truth.constraint_time},
+            {"contact_share", truth.held_time > 0 ? Json(1 - truth.constraint_time / truth.held_time) : Json(nullptr)},
             {"max_lifted_m", truth.max_lifted},
             {"human_contact_before_release_s", truth.human_contact_before_release},
             {"human_alone_s", truth.human_alone},
@@ -131,6 +134,9 @@ std::string summary(const nlohmann::json& report) {
   text += format("oracle  lifted %.2f m, person's hand on it %.2f s before release, person alone %.1f s\n",
                  oracle["max_lifted_m"].get<double>(), oracle["human_contact_before_release_s"].get<double>(),
                  oracle["human_alone_s"].get<double>());
+  if (!oracle["contact_share"].is_null())
+    text += format("hold    %.1f s in the robot's hand, %.0f %% of it by contact alone\n", oracle["held_s"].get<double>(),
+                   100 * oracle["contact_share"].get<double>());
   const Json& share = report["limit_share"];
   text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed", 100 * share["v"].get<double>(),
                  100 * share["a"].get<double>(), 100 * share["j"].get<double>());

@@ -132,6 +132,7 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                {"contact_force_n", truth.contact_force},
                {"drops", truth.dropped ? 1 : 0},
                {"lifted_m", truth.max_lifted},
+               {"contact_share", report["oracle"]["contact_share"]},
                {"activations", activations},
                {"activations_at_pmin", fastest},
                {"reaction_p50_s", nullptr},

@@ -371,6 +371,11 @@ TEST(Controller, a_person_standing_by_does_not_slow_and_one_in_the_way_does) {
   EXPECT_LT(b.core.speed_factor(), 0.2);
   EXPECT_TRUE(has(b, Cause::separation));
   EXPECT_GT(b.core.guard_verdict().distance, 0.0);
+  const ExecutionStatus near = b.core.status();
+  EXPECT_GT(near.separation, 0.0);
+  EXPECT_LT(near.separation, 0.75);
+  EXPECT_GT(near.separation_limit, 0.0);
+  EXPECT_GT((near.nearest_on_robot - near.nearest_on_person).norm(), near.separation);
   b.people.people.clear();
   b.run(6);
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
@@ -390,7 +395,9 @@ TEST(Controller, a_push_on_the_moving_arm_stops_it_and_a_load_does_not) {
   b.external_torque[1] += 35.0;
   b.run(0.04);
   EXPECT_EQ(b.core.mode(), Mode::stop);
-  EXPECT_THAT(b.core.status().reason, HasSubstr("contact felt by shoulder"));
+  EXPECT_THAT(b.core.status().reason, HasSubstr("contact: felt by shoulder"));
+  EXPECT_TRUE(has(b, Cause::contact));
+  EXPECT_FALSE(has(b, Cause::separation));
   b.external_torque[1] -= 35.0;
   b.run(1.0);
   EXPECT_TRUE(b.at_rest());
