@@ -58,17 +58,18 @@ async function compare() {
 }
 
 test("while it hands over, the angles drawn are those on DDS at the same stamp, and the tables tell the story", async () => {
-  const seen = [], told = { phases: new Set(), speeds: new Set(), distances: new Set() };
+  const seen = [], told = { phases: new Set(), speeds: new Set(), distances: new Set(), limits: new Set() };
   const task = new Program("handsel", ["task", "give", "mug", "--domain", kDomain]);
   let over = false, pictured = !process.env.HANDSEL_PICTURE;
   void task.ended.then(() => (over = true));
   while (!over) {
     const sample = await compare();
     if (sample && sample.stamp !== seen.at(-1)?.stamp) seen.push(sample);
-    const [phase, speed, distance] = await page.evaluate(() => ["phase", "speed", "separation"].map((id) => document.getElementById(id).textContent));
+    const [phase, speed, distance, limit] = await page.evaluate(() => ["phase", "speed", "separation", "separation-limit"].map((id) => document.getElementById(id).textContent));
     told.phases.add(phase);
     told.speeds.add(speed);
     told.distances.add(distance);
+    told.limits.add(limit);
 
     if (!pictured && phase === "carry" && /\d/.test(speed)) {
       await mkdir(dirname(process.env.HANDSEL_PICTURE), { recursive: true });
@@ -82,10 +83,11 @@ test("while it hands over, the angles drawn are those on DDS at the same stamp, 
   console.log(`moving: ${seen.length} stamps, the axes moved up to ${moved.toFixed(2)} rad, largest difference ${worst.toExponential(1)} rad`);
   assert.ok(seen.length >= 8 && moved >= 0.3, "too few matching stamps, or the arm did not move");
   assert.ok(worst <= kAngle);
-  const [phases, speeds, distances] = [told.phases, told.speeds, told.distances].map((set) => [...set]);
+  const [phases, speeds, distances, limits] = [told.phases, told.speeds, told.distances, told.limits].map((set) => [...set]);
   assert.ok(phases.filter(Boolean).length >= 3, `phases told: ${phases}`);
   assert.ok(speeds.some((text) => /^\d+ %$/.test(text)), `speeds told: ${speeds}`);
   assert.ok(distances.some((text) => /^\d\.\d\d m$/.test(text)), `distances told: ${distances}`);
+  assert.ok(limits.filter((text) => /^limit \d\.\d\d m$/.test(text)).length >= 2, `what the rule asks for, told: ${limits}`);
 });
 
 test("at rest the angles drawn and written are those on DDS", async () => {
