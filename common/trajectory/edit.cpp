@@ -102,14 +102,12 @@ Trajectory stretched(const Trajectory& whole, double factor) {
 Trajectory to_trajectory(const SegmentTable& table) {
   Trajectory out;
   const auto n = static_cast<std::size_t>(table.axes());
-  std::vector<double> v(n), a(n), j(n);
   MotionState3 start = rest_state(Eigen::VectorXd::Zero(table.axes()));
   int cursor = 0;
   table.evaluate(0, cursor, start);
   for (int i = 0; i < table.axes(); ++i) out.axes.push_back({{start.position[i], start.velocity[i], start.acceleration[i]}, {}});
   for (int k = 0; k < table.segments(); ++k) {
-    table.rates(table.knot(k), k, v.data(), a.data(), j.data());
-    for (std::size_t i = 0; i < n; ++i) out.axes[i].segments.push_back({table.knot(k + 1) - table.knot(k), j[i]});
+    for (std::size_t i = 0; i < n; ++i) out.axes[i].segments.push_back({table.knot(k + 1) - table.knot(k), table.jerks(k)[i]});
   }
   return out;
 }

@@ -36,6 +36,32 @@ struct alignas(64) LaneBlock {
   bool rest;
 };
 
+struct alignas(64) Lane8 {
+  double value[kLanes];
+};
+
+/// Where a time law is within a path, and what it must keep there: `limits` of acceleration, then of jerk, each part `stride` long.
+struct LawStep {
+  double alpha, beta;  ///< d(tau)/dt and its rate [1/s]
+  double step;         ///< [s]
+  double margin;       ///< of the limits, that alpha'' may use
+  double whole;        ///< of the jerk limit over a step, where the path itself uses more than that
+  const double* limits;
+  int stride;
+};
+
+/// Two scalar motions with common knots. An axis moves by the first times its weight plus the second times its other weight.
+struct Blend {
+  static constexpr int kSegments = 16;
+  struct Motion {
+    double velocity[kSegments + 1], acceleration[kSegments + 1];  ///< at the knots
+    double jerk[kSegments];
+  };
+  int count;  ///< segments
+  double duration[kSegments];
+  Motion a, b;
+};
+
 struct LaneKernels {
   const char* name;
   /// Reads `lanes` axes; returns the bits of the odd ones, whose minimum is 0.
@@ -46,6 +72,19 @@ struct LaneKernels {
   /// State `t` after the start of a segment: `row` has positions, velocities, accelerations and jerks of all axes, each part `stride` long,
   /// a multiple of kLanes; on 64 bytes.
   void (*evaluate)(const double* row, int axes, int stride, double t, double* position, double* velocity, double* acceleration) noexcept;
+  /// Velocities, accelerations, jerks of the path at that time; each part `stride` long, on 64 bytes. The same layout is read below.
+  void (*rates)(const double* row, int stride, double t, double* out) noexcept;
+  /// Narrows the range of alpha'' to what keeps the limits at both ends of a step, whose end is known up to what alpha'' adds to it.
+  /// False if nothing does.
+  bool (*push_range)(const LawStep& at, const double* begin, const double* end, double* range) noexcept;
+  /// The same for the jerk at one place passed `after` the begin of the step.
+  bool (*push_range_at)(const LawStep& at, double after, const double* there, double* range) noexcept;
+  /// Whether a step that ends in `next` keeps limits * `allowed` there, and the acceleration's change over it.
+  bool (*step_holds)(const LawStep& at, const LawStep& next, double push, double allowed, const double* begin, const double* end) noexcept;
+  /// Largest share of a limit that an axis of the blend uses, on the exact extremes; some share beyond `enough` as soon as one is found.
+  /// `inverse`: 1 / limit of velocity, acceleration, jerk, each part `stride` long.
+  double (*blend_share)(const Blend&, const double* weight_a, const double* weight_b, const double* inverse, int stride,
+                        double enough) noexcept;
 };
 
 extern const LaneKernels kLaneKernelsBase;

@@ -1,5 +1,5 @@
 #include "common/trajectory/lanes_body.hpp"
 
 namespace handsel::detail {
-const LaneKernels kLaneKernelsAvx2{"avx2", prepare, finish, evaluate};
+constinit const LaneKernels kLaneKernelsAvx2 = kernels("avx2");
 }  // namespace handsel::detail

@@ -1,5 +1,5 @@
 #include "common/trajectory/lanes_body.hpp"
 
 namespace handsel::detail {
-const LaneKernels kLaneKernelsAvx512{"avx512", prepare, finish, evaluate};
+constinit const LaneKernels kLaneKernelsAvx512 = kernels("avx512");
 }  // namespace handsel::detail

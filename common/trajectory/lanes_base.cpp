@@ -1,5 +1,5 @@
 #include "common/trajectory/lanes_body.hpp"
 
 namespace handsel::detail {
-const LaneKernels kLaneKernelsBase{"base", prepare, finish, evaluate};
+constinit const LaneKernels kLaneKernelsBase = kernels("base");
 }  // namespace handsel::detail

@@ -79,6 +79,13 @@ MotionFamily::MotionFamily(double v0, double a0, double vf, double af, const Axi
   at_limit_ = duration(s_hi);
 }
 
+bool MotionFamily::gap_is_rounding() const noexcept { return island && island_hi * island_hi <= 1e-13 * A_ * (a0_ + std::sqrt(C_)); }
+
+void MotionFamily::close_gap() noexcept {
+  s_lo = C_ == 0 ? std::max(island_lo, 0.0) : island_lo;
+  island = false;
+}
+
 double MotionFamily::duration(double s) const noexcept {
   const double R = s * s + C_, A2 = A_ * A_;
   const double a1 = R < A2 ? std::sqrt(R) : A_;
@@ -165,6 +172,28 @@ double MotionFamily::least_gain() const noexcept {
   return root * root + C_ <= A2 ? -root : -std::sqrt(A2 - C_);
 }
 
+double MotionFamily::top(double lo, double hi) const noexcept {
+  double g_lo = gain(lo), g_hi = gain(hi), middle = lo;
+  int side = 0;
+  for (int k = 0; k < 60; ++k) {
+    middle = k < 40 ? (lo * g_hi - hi * g_lo) / (g_hi - g_lo) : 0.5 * (lo + hi);
+    if (!(middle > lo && middle < hi)) break;
+    const double g = gain(middle);
+    if (g == 0 || hi - lo <= 2 * kEps * std::abs(middle)) break;
+    // The end that stays counts for half: both ends close in.
+    if (g > 0) {
+      lo = middle, g_lo = g;
+      if (side == 1) g_hi /= 2;
+      side = 1;
+    } else {
+      hi = middle, g_hi = g;
+      if (side == -1) g_lo /= 2;
+      side = -1;
+    }
+  }
+  return middle;
+}
+
 bool MotionFamily::first_root(double D, double from, double to, double* s) const noexcept {
   double f = displacement(from) - D;
   *s = from;
@@ -173,13 +202,7 @@ bool MotionFamily::first_root(double D, double from, double to, double* s) const
     const double turn = std::clamp(least_gain(), from, to);
     if (gain(from) > 0) {
       double peak = turn;
-      if (gain(turn) < 0) {
-        double lo = from, hi = turn;
-        for (int k = 0; k < 60 && lo < hi; ++k) {
-          peak = 0.5 * (lo + hi);
-          (gain(peak) > 0 ? lo : hi) = peak;
-        }
-      }
+      if (gain(turn) < 0) peak = top(from, turn);
       if (displacement(peak) >= D) {
         *s = bracketed(D, from, peak, f);
         return true;
@@ -340,9 +363,24 @@ AxisOutcome AxisProblem::init(const AxisState& from, const AxisState& to, const 
     return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
   }
   down_ = detail::MotionFamily(start.velocity, start.acceleration, to.velocity, to.acceleration, l, true);
+  start_ = from;
+  end_ = to;
+  limits_ = l;
+  settle_islands();
   best_ = first_from(0);
   minimum_ = brake_time_ + best_.duration;
   return std::isfinite(minimum_) ? AxisOutcome::ok : AxisOutcome::not_finite;
+}
+
+/// The durations possible are the same for the largest and the least displacement; where the two families see that differently, rounding
+/// has decided in one of them.
+void AxisProblem::settle_islands() noexcept {
+  for (detail::MotionFamily* f : {&up_, &down_}) {
+    if (f->gap_is_rounding()) f->close_gap();
+  }
+  const double up = up_.duration(up_.s_lo), down = down_.duration(down_.s_lo);
+  alike_ = std::abs(up - down) <= 1e-6 * up;
+  main_ = alike_ ? up : std::max(up, down);
 }
 
 double AxisProblem::slack(const Span& at) const noexcept {
@@ -370,9 +408,8 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
       if (std::abs(D - ending) <= tolerance) return {last, up_.island_hi, 0, false};
     }
   }
-  const double first = up_.duration(up_.s_lo);
-  Span at = span_at(T > first ? T : -1);
-  at.T = std::max(T, first);
+  Span at = span_at(T > main_ ? T : alike_ ? -1 : main_);
+  at.T = std::max(T, main_);
   const double tolerance = slack(at);
   double cruise;
   if (D > at.largest && (D > at.largest + tolerance || (at.s_up >= 0 && up_.gain(at.s_up) >= 0))) {
@@ -383,7 +420,7 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
     const double s = down_.root(-D, at.s_down, &cruise);
     return {down_.duration(s) + cruise, s, cruise, true};
   }
-  return {std::max(T, first), at.s_up, at.cruise_up, false};
+  return {at.T, at.s_up, at.cruise_up, false};
 }
 
 AxisProblem::Span AxisProblem::span_at(double T) const noexcept {
@@ -445,7 +482,7 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
     at.largest = up_.displacement(at.s_up);
     at.least = -down_.displacement(at.s_down);
   } else {
-    if (T < up_.duration(up_.s_lo) * (1 - 1e-14)) return AxisOutcome::blocked;
+    if (T < main_ * (1 - 1e-14)) return AxisOutcome::blocked;
     at = span_at(T);
   }
   return profile_in(at, out);
@@ -466,7 +503,22 @@ AxisOutcome AxisProblem::profile_in(const Span& at, AxisProfile& out) const noex
     down_.emit(at.s_down, at.cruise_down, low);
     blend(high, weight, low, 1 - weight, out);
   }
-  return AxisOutcome::ok;
+  return arrives(out, brake_time_ + at.T) ? AxisOutcome::ok : AxisOutcome::blocked;
+}
+
+/// Rounding decides some problems twice: a motion is handed out only if it is one.
+bool AxisProblem::arrives(const AxisProfile& profile, double duration) const noexcept {
+  constexpr double kNear = 1e-9;
+  AxisState s = start_;
+  double T = 0, fastest = limits_.velocity;
+  for (int k = 0; k < profile.count; ++k) {
+    fastest = std::max(fastest, std::abs(s.velocity));
+    s = advanced(s, profile.segments[k].duration, profile.segments[k].jerk);
+    T += profile.segments[k].duration;
+  }
+  const double hardest = std::max(limits_.acceleration, std::abs(start_.acceleration));
+  return std::abs(T - duration) <= kNear * duration && std::abs(s.position - end_.position) <= kNear * (scale_ + fastest * T) &&
+         std::abs(s.velocity - end_.velocity) <= kNear * fastest && std::abs(s.acceleration - end_.acceleration) <= kNear * hardest;
 }
 
 AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept {

@@ -90,6 +90,9 @@ class MotionFamily {
   /// Change of displacement per change of duration.
   double gain(double s) const noexcept;
   double cruise_velocity() const noexcept { return V_; }
+  /// Whether the gap after the island is nothing but rounding.
+  bool gap_is_rounding() const noexcept;
+  void close_gap() noexcept;
   /// Jerks times `share`.
   void emit(double s, double cruise, AxisProfile& out, double share = 1) const noexcept;
 
@@ -99,6 +102,8 @@ class MotionFamily {
 
  private:
   double least_gain() const noexcept;
+  /// Where the displacement is largest between a place where it grows and one where it falls.
+  double top(double lo, double hi) const noexcept;
   double bracketed(double D, double lo, double hi, double f_lo) const noexcept;
   double v0_{}, a0_{}, vf_{}, af_{}, V_{}, A_{}, J_{}, over_J_{}, over_JA_{}, C_{}, at_limit_{};
   bool mirrored_{}, reversed_{};
@@ -131,13 +136,18 @@ class AxisProblem {
   Span span_at(double T) const noexcept;
   double slack(const Span& at) const noexcept;
   Choice first_from(double duration) const noexcept;
+  void settle_islands() noexcept;
+  bool arrives(const AxisProfile&, double duration) const noexcept;
   AxisOutcome profile_in(const Span& span, AxisProfile& out) const noexcept;
 
   AxisProfile brake_;
   double brake_time_{};
   detail::MotionFamily up_, down_;
   double distance_{}, scale_{}, speed_{}, over_J_{}, minimum_{};
-  bool still_{}, rest_{};
+  double main_{};  ///< the main component of durations begins here
+  AxisState start_, end_;
+  AxisLimits limits_;
+  bool still_{}, rest_{}, alike_{};
   Choice best_{};
 };
 

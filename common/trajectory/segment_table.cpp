@@ -20,7 +20,7 @@ SegmentTable::SegmentTable(const Trajectory& trajectory)
   knots_.assign(1, 0.0);
   for (std::size_t k = 0; k < count; ++k) knots_.push_back(knots_.back() + alike.axes[0].segments[k].duration);
   if (count == 0) knots_.push_back(0.0);
-  data_.assign(std::max<std::size_t>(count, 1) * 4 * static_cast<std::size_t>(stride_) / detail::kLanes, Lane8{});
+  data_.assign(std::max<std::size_t>(count, 1) * 4 * static_cast<std::size_t>(stride_) / detail::kLanes, detail::Lane8{});
   for (int i = 0; i < axes_; ++i) {
     AxisState s = alike.axes[i].start;
     for (std::size_t k = 0; k < std::max<std::size_t>(count, 1); ++k) {
@@ -57,7 +57,7 @@ void SegmentTable::clear(int axes) noexcept {
 
 void SegmentTable::add(double duration, const double* x, const double* v, const double* a, const double* j) noexcept {
   knots_.push_back(knots_.back() + duration);
-  data_.resize(data_.size() + 4 * static_cast<std::size_t>(stride_) / detail::kLanes, Lane8{});
+  data_.resize(data_.size() + 4 * static_cast<std::size_t>(stride_) / detail::kLanes, detail::Lane8{});
   double* row = data_.data()->value + data_.size() * detail::kLanes - 4 * static_cast<std::size_t>(stride_);
   for (const double* part : {x, v, a, j}) {
     std::copy(part, part + axes_, row);
@@ -80,18 +80,6 @@ void SegmentTable::evaluate(double t, int& cursor, MotionState3& out) const noex
   cursor = find(t, cursor);
   kernels_->evaluate(row(cursor), axes_, stride_, t - knots_[static_cast<std::size_t>(cursor)], out.position.data(), out.velocity.data(),
                      out.acceleration.data());
-}
-
-void SegmentTable::rates(double t, int k, double* v, double* a, double* j) const noexcept {
-  const double* row = this->row(k);
-  const double s = t - knots_[k];
-  const int n = stride_;
-  for (int i = 0; i < axes_; ++i) {
-    const double a0 = row[2 * n + i], jerk = row[3 * n + i];
-    j[i] = jerk;
-    a[i] = a0 + s * jerk;
-    v[i] = row[n + i] + s * (a0 + s / 2 * jerk);
-  }
 }
 
 }  // namespace handsel

@@ -29,17 +29,18 @@ class SegmentTable {
   int find(double t, int hint) const noexcept;
   /// State at t, clamped to [0, duration]. `cursor` is kept between calls for speed; 0 at first.
   void evaluate(double t, int& cursor, MotionState3& out) const noexcept;
-  /// Velocity, acceleration and jerk at t within segment k; arrays of axes().
-  void rates(double t, int k, double* v, double* a, double* j) const noexcept;
+  /// Velocities, accelerations and jerks at t within segment k; each part stride() long, on 64 bytes.
+  void rates(double t, int k, double* out) const noexcept {
+    kernels_->rates(row(k), stride_, t - knots_[static_cast<std::size_t>(k)], out);
+  }
+  const double* jerks(int k) const noexcept { return row(k) + 3 * static_cast<std::size_t>(stride_); }  ///< of segment k, axes()
+  int stride() const noexcept { return stride_; }  ///< axes(), filled up to a multiple of detail::kLanes
 
  private:
-  struct alignas(64) Lane8 {
-    double value[detail::kLanes];
-  };
   const double* row(int k) const noexcept { return data_.data()->value + static_cast<std::size_t>(k) * 4 * stride_; }
-  int axes_{}, stride_{};      // axes, and the next multiple of kLanes
-  std::vector<double> knots_;  // segments + 1
-  std::vector<Lane8> data_;    // a segment: x of all axes, v, a, j
+  int axes_{}, stride_{};            // axes, and the next multiple of kLanes
+  std::vector<double> knots_;        // segments + 1
+  std::vector<detail::Lane8> data_;  // a segment: x of all axes, v, a, j
   const detail::LaneKernels* kernels_{};
 };
 

@@ -170,7 +170,7 @@ void TrajectorySwitch::add_to(SegmentTable& out, const SegmentTable& next) noexc
     t += step;
     if (step > kShortest) out.add(step, there_.position.data(), there_.velocity.data(), there_.acceleration.data(), jerk_.data());
   }
-  add_part(next, join_, next.duration(), out, there_, jerk_);
+  add_part(next, join_, next.duration(), out, there_);
 }
 
 AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept {
@@ -188,7 +188,7 @@ AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLi
   return AxisOutcome::ok;
 }
 
-void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state, Eigen::VectorXd& jerk) noexcept {
+void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state) noexcept {
   if (!(end - begin > kShortest)) return;
   int cursor = 0;
   for (int k = from.find(begin, 0); k < from.segments() && from.knot(k) < end; ++k) {
@@ -196,8 +196,7 @@ void add_part(const SegmentTable& from, double begin, double end, SegmentTable& 
     if (!(length > kShortest)) continue;
     cursor = k;
     from.evaluate(start, cursor, state);
-    from.rates(start, k, state.velocity.data(), state.acceleration.data(), jerk.data());
-    out.add(length, state.position.data(), state.velocity.data(), state.acceleration.data(), jerk.data());
+    out.add(length, state.position.data(), state.velocity.data(), state.acceleration.data(), from.jerks(k));
   }
 }
 

@@ -72,7 +72,7 @@ class TrajectorySwitch {
 AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept;
 
 /// The rows of `from` in [begin, its end], or up to `end`, added to `out`. No allocation within the room of `out`.
-void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state, Eigen::VectorXd& jerk) noexcept;
+void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state) noexcept;
 
 struct Switched {
   Trajectory trajectory;  ///< from the present state: the connecting motion, then the rest of the new trajectory

@@ -1,7 +1,6 @@
 #include "common/trajectory/time_law.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -13,12 +12,18 @@ namespace handsel {
 namespace {
 // Of the guard: what is planned with leaves something for what happens between two steps, and for rounding of what was planned.
 constexpr double kMargin = 0.99;
-constexpr std::array<double, 3> kSpareMargins{0.994, 0.998, 0.9995};
+constexpr double kAllowed = 1 + 5e-7;
 constexpr double kWhole = 1 - 1e-4;
 constexpr double kMaxPush = 100.0;  // [1/s^2]
 constexpr double kMaxRate = 20.0;   // [1/s]
 constexpr int kHorizon = 600;       // steps of a way back to constant alpha
 constexpr double kLanded = 1e-9;
+
+/// What happens to tau, alpha and its rate in a time of constant alpha''.
+template <typename State>
+State moved(const State& s, double u, double t) noexcept {
+  return {s.tau + t * (s.alpha + t * (s.beta / 2 + t * u / 6)), s.alpha + t * (s.beta + t * u / 2), s.beta + t * u};
+}
 
 bool still(const MotionState3& s) noexcept {
   return s.velocity.cwiseAbs().maxCoeff() < 1e-6 && s.acceleration.cwiseAbs().maxCoeff() < 1e-5;
@@ -46,17 +51,14 @@ std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& g
   connection_ = TrajectorySwitch(n);
   guard_ = guard;
   from_ = row_ = state_ = start;
-  row_jerk_ = jerk_ = Eigen::VectorXd::Zero(n);
-  moving_.reserve(n);
-  A_.assign(guard.acceleration.data(), guard.acceleration.data() + n);
-  J_.assign(guard.jerk.data(), guard.jerk.data() + n);
-  for (Rates* r : {&begin_, &end_, &between_, &here_}) {
-    r->v.assign(n, 0.0);
-    r->a.assign(n, 0.0);
-    r->j.assign(n, 0.0);
-    r->segment = 0;
-  }
-  find_moving();
+  jerk_ = Eigen::VectorXd::Zero(n);
+  const auto rows = static_cast<std::size_t>(table_.stride() / detail::kLanes);
+  limits_.assign(2 * rows, detail::Lane8{{1, 1, 1, 1, 1, 1, 1, 1}});
+  std::copy_n(guard.acceleration.data(), n, limits_.data()->value);
+  std::copy_n(guard.jerk.data(), n, limits_.data()->value + table_.stride());
+  for (Rates* r : {&begin_, &end_, &between_}) *r = {0, std::vector<detail::Lane8>(3 * rows)};
+  for (Way* w : {&way_, &tried_, &best_}) w->pushes.resize(kHorizon);
+  way_.stay(alpha);
   step_ = step;
   lowest_ = starts_still ? -1 : 0;
   now_ = {0, alpha, 0};
@@ -67,19 +69,6 @@ std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& g
   return {};
 }
 
-void TimeLaw::find_moving() noexcept {
-  moving_.clear();
-  for (int i = 0; i < table_.axes(); ++i) jerk_[i] = 0;
-  for (int k = 0; k < table_.segments(); ++k) {
-    table_.rates(table_.knot(k), k, between_.v.data(), between_.a.data(), between_.j.data());
-    for (int i = 0; i < table_.axes(); ++i) jerk_[i] += std::abs(between_.v[i]) + std::abs(between_.a[i]) + std::abs(between_.j[i]);
-  }
-  for (int i = 0; i < table_.axes(); ++i) {
-    if (jerk_[i] > 0) moving_.push_back(i);
-    jerk_[i] = 0;
-  }
-}
-
 SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double keep_from, const SegmentTable& next,
                                  const SwitchSettings& settings) noexcept {
   if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings); found != SwitchOutcome::ok) return found;
@@ -87,27 +76,24 @@ SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double
   if (coming > spare_.room()) return SwitchOutcome::too_long;
   const int before = keep_from < at.tau ? table_.find(at.tau, 0) - table_.find(keep_from, 0) + 1 : 0;
   spare_.clear(table_.axes());
-  if (before > 0 && before + coming <= spare_.room()) add_part(table_, keep_from, at.tau, spare_, row_, row_jerk_);
+  if (before > 0 && before + coming <= spare_.room()) add_part(table_, keep_from, at.tau, spare_, row_);
   const Now begin{spare_.segments() > 0 ? spare_.duration() : 0.0, at.alpha, at.beta};
   const bool has_past = spare_.segments() > 0;
   connection_.add_to(spare_, next);
-  if (spare_.segments() == 0)
-    spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), row_jerk_.setZero().data());
+  if (spare_.segments() == 0) spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), jerk_.setZero().data());
   const Now old = now_;
   const double old_lowest = lowest_;
   std::swap(table_, spare_);
-  find_moving();
   now_ = begin;
   lowest_ = has_past ? lowest_ : still(from) ? -1 : 0;
-  double unused, end;
-  if (at.beta != 0 && !recover(now_, &unused, &end)) {
+  if (!recover(now_, tried_)) {
     std::swap(table_, spare_);
-    find_moving();
     now_ = old;
     lowest_ = old_lowest;
     publish();
     return SwitchOutcome::not_now;
   }
+  std::swap(way_, tried_);
   joined_at_ = connection_.joins_at();
   offset_ = begin.tau + connection_.duration() - joined_at_;
   target_ = std::max(target_, lowest_);
@@ -144,88 +130,65 @@ SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable&
 
 void TimeLaw::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
 
-TimeLaw::Now TimeLaw::moved(const Now& s, double u, double t) noexcept {
-  return {s.tau + t * (s.alpha + t * (s.beta / 2 + t * u / 6)), s.alpha + t * (s.beta + t * u / 2), s.beta + t * u};
-}
-
 void TimeLaw::rates_at(double tau, Rates& r) const noexcept {
   if (tau < 0 || tau >= table_.duration()) {
-    for (const int i : moving_) r.v[i] = r.a[i] = r.j[i] = 0;
+    std::fill(r.values.begin(), r.values.end(), detail::Lane8{});
     r.segment = tau < 0 ? 0 : table_.segments() - 1;
     return;
   }
   r.segment = table_.find(tau, r.segment);
-  table_.rates(tau, r.segment, r.v.data(), r.a.data(), r.j.data());
+  table_.rates(tau, r.segment, r.data());
 }
 
-bool TimeLaw::bounds(const Now& s, const Rates& begin, const Rates& end, double* lo, double* hi) noexcept {
-  double low = -kMaxPush, high = kMaxPush;
-  bool possible = true;
-  const auto within = [&](double c, double w, double bound) {
-    if (std::abs(w) < 1e-12) {
-      if (std::abs(c) > bound + 1e-9) possible = false;
-      return;
-    }
-    const double inverse = 1 / w, centre = -c * inverse, half = bound * std::abs(inverse);
-    low = std::max(low, centre - half);
-    high = std::min(high, centre + half);
-  };
+detail::LawStep TimeLaw::step_from(const Now& s) const noexcept {
+  return {s.alpha, s.beta, step_, kMargin, kWhole, limits_.data()->value, table_.stride()};
+}
+
+bool TimeLaw::pushes(const Now& s, const Rates& begin, const Rates& end, double* range) noexcept {
+  const detail::LaneKernels& kernels = detail::lane_kernels();
+  const detail::LawStep at = step_from(s);
   const double h = step_;
-  const double a0 = s.alpha, a1 = s.alpha + h * s.beta;
-  const double a0_squared = a0 * a0, a0_cubed = a0 * a0_squared, a1_squared = a1 * a1, a1_cubed = a1_squared * a1;
+  range[0] = std::max(-kMaxPush, (-kMaxRate - s.beta) / h);
+  range[1] = std::min(kMaxPush, (kMaxRate - s.beta) / h);
+  bool possible = kernels.push_range(at, begin.data(), end.data(), range);
   const int from = std::min(begin.segment, end.segment), to = std::max(begin.segment, end.segment);
-  for (const int i : moving_) {
-    const double steady0 = a0_cubed * begin.j[i];
-    within(steady0 + 3 * a0 * s.beta * begin.a[i], begin.v[i], std::max(margin_ * J_[i], std::abs(steady0)));
-    const double steady1 = a1_cubed * end.j[i];
-    within(steady1 + 3 * a1 * s.beta * end.a[i], end.v[i] + 3 * h * (end.a[i] * (a1 + h * s.beta / 2) + h * a1_squared * end.j[i] / 2),
-           std::max(margin_ * J_[i], std::min(std::abs(steady1), std::abs(end.j[i]))));
-    const double push1 = a1_squared * end.a[i], gain1 = h * (end.v[i] + h * a1 * end.a[i]);
-    within(push1 + s.beta * end.v[i], gain1, std::max(margin_ * A_[i], std::min(std::abs(push1), std::abs(end.a[i]))));
-    const double change = push1 - a0_squared * begin.a[i];
-    within(change + s.beta * (end.v[i] - begin.v[i]), gain1, std::max(margin_ * J_[i] * h, std::min(std::abs(change), kWhole * J_[i] * h)));
-  }
   // Where a step ends is known up to what alpha'' adds; a knot that near is passed, or not.
-  const double span = h * (a0 + h * s.beta / 2), unsure = kMaxPush * h * h * h / 6, stop = s.tau + span;
+  const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h * h / 6, stop = s.tau + span;
   const bool on = span >= 0 && to + 1 < table_.segments() && table_.knot(to + 1) - stop < unsure;
   const bool back = span < 0 && from > 0 && stop - table_.knot(from) < unsure;
   for (int k = from - back; k < to + on; ++k) {
-    const double knot = table_.knot(k + 1), at = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
-    const double ak = a0 + at * s.beta, ak_cubed = ak * ak * ak;
+    const double knot = table_.knot(k + 1), after = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
     for (const int side : {k, k + 1}) {
-      table_.rates(knot, side, between_.v.data(), between_.a.data(), between_.j.data());
-      for (const int i : moving_) {
-        const double steady = ak_cubed * between_.j[i];
-        within(steady + 3 * ak * s.beta * between_.a[i], between_.v[i] + 3 * ak * between_.a[i] * at,
-               std::max(margin_ * J_[i], std::min(std::abs(steady), std::abs(between_.j[i]))));
-      }
+      table_.rates(knot, side, between_.data());
+      possible = kernels.push_range_at(at, after, between_.data(), range) && possible;
     }
   }
-  *lo = std::max(low, (-kMaxRate - s.beta) / h);
-  *hi = std::min(high, (kMaxRate - s.beta) / h);
-  return possible && *lo <= *hi;
+  return possible && range[0] <= range[1];
 }
 
-bool TimeLaw::recover(Now s, double* first, double* alpha_end) noexcept {
-  *first = 0;
+bool TimeLaw::holds(const Now& s, const Now& next, double push) const noexcept {
+  return detail::lane_kernels().step_holds(step_from(s), step_from(next), push, kAllowed, begin_.data(), end_.data());
+}
+
+/// False if the way back to a constant alpha leaves the limits anywhere.
+bool TimeLaw::recover(Now s, Way& out) noexcept {
+  out.next = out.count = 0;
   rates_at(s.tau, begin_);
-  for (int k = 0; k < kHorizon; ++k) {
-    if (s.beta == 0) {
-      *alpha_end = s.alpha;
-      return s.alpha >= lowest_ - kLanded && s.alpha <= 1 + kLanded;
-    }
+  while (s.beta != 0) {
+    if (out.count == kHorizon) return false;
     rates_at(s.tau + step_ * (s.alpha + step_ * s.beta / 2), end_);
-    double lo, hi;
-    if (!bounds(s, begin_, end_, &lo, &hi)) {
-      if (k == 0) *first = 0.5 * (lo + hi);
-      return false;
-    }
-    const double u = std::clamp(-s.beta / step_, lo, hi);
-    if (k == 0) *first = u;
-    s = next_of(s, u);
+    double range[2];
+    if (!pushes(s, begin_, end_, range)) return false;
+    const double u = std::clamp(-s.beta / step_, range[0], range[1]);
+    const Now next = next_of(s, u);
+    rates_at(next.tau, end_);
+    if (!holds(s, next, u)) return false;
+    out.pushes[static_cast<std::size_t>(out.count++)] = u;
+    s = next;
     std::swap(begin_, end_);
   }
-  return false;
+  out.end = s.alpha;
+  return s.alpha >= lowest_ - kLanded && s.alpha <= 1 + kLanded;
 }
 
 TimeLaw::Now TimeLaw::next_of(const Now& s, double u) const noexcept {
@@ -237,79 +200,55 @@ TimeLaw::Now TimeLaw::next_of(const Now& s, double u) const noexcept {
 double TimeLaw::choose() noexcept {
   if (now_.beta == 0 && std::abs(now_.alpha - target_) <= kLanded) {
     now_.alpha = target_;
+    way_.stay(target_);
     return 0;
   }
-  double safe, end_safe;
-  if (!recover(now_, &safe, &end_safe)) {
-    bool found = false;
-    for (std::size_t k = 0; k < kSpareMargins.size() && !found; ++k) {
-      margin_ = kSpareMargins[k];
-      found = recover(now_, &safe, &end_safe);
-    }
-    margin_ = kMargin;
-    return safe;
-  }
-  const double want = target_ - end_safe;
-  if (std::abs(want) <= kLanded) return safe;
+  const double want = target_ - way_.end;
+  if (std::abs(want) <= kLanded) return way_.take();
   rates_at(now_.tau, begin_);
   rates_at(now_.tau + step_ * (now_.alpha + step_ * now_.beta / 2), end_);
-  double lo, hi, unused;
-  if (!bounds(now_, begin_, end_, &lo, &hi)) return safe;
-  const double full = (want > 0 ? hi : lo) - safe;
+  double range[2];
+  if (!pushes(now_, begin_, end_, range)) return way_.take();
+  const double safe = way_.next < way_.count ? way_.pushes[static_cast<std::size_t>(way_.next)] : 0.0, full = range[want > 0] - safe;
   const auto miss = [&](double share, double* out) {
-    double end;
-    if (!recover(next_of(now_, safe + share * full), &unused, &end)) return false;
-    *out = (target_ - end) * (want > 0 ? 1 : -1);
+    const double u = safe + share * full;
+    const Now next = next_of(now_, u);
+    rates_at(now_.tau, begin_);
+    rates_at(next.tau, end_);
+    if (!holds(now_, next, u) || !recover(next, tried_)) return false;
+    *out = (target_ - tried_.end) * (want > 0 ? 1 : -1);
     return true;
+  };
+  const auto go = [&](double share, Way& with) {
+    std::swap(way_, with);
+    return safe + share * full;
   };
   double share = 1, left = 0;
   while (!miss(share, &left)) {
     share /= 2;
-    if (share < 0.05) return safe;
+    if (share < 0.05) return way_.take();
   }
-  if (left >= -kLanded) return safe + share * full;
+  if (left >= -kLanded) return go(share, tried_);
   double under = 0, over = share, left_under = std::abs(want), left_over = left;
   for (int k = 0; k < 20; ++k) {
     double middle = under + (over - under) * left_under / (left_under - left_over);
     if (k % 4 == 3) middle = 0.5 * (under + over);
     if (!miss(middle, &left)) break;
-    if (std::abs(left) <= kLanded) return safe + middle * full;
-    (left > 0 ? under : over) = middle;
-    (left > 0 ? left_under : left_over) = left;
-  }
-  return safe + under * full;
-}
-
-bool TimeLaw::holds(const Now& s, double u) noexcept {
-  constexpr double kAllowed = 1 + 5e-7;
-  const Now next = next_of(s, u);
-  rates_at(s.tau, begin_);
-  rates_at(next.tau, end_);
-  for (const int i : moving_) {
-    const double a0 = s.alpha * s.alpha * begin_.a[i] + s.beta * begin_.v[i];
-    const double a1 = next.alpha * next.alpha * end_.a[i] + next.beta * end_.v[i];
-    const double j1 = next.alpha * (next.alpha * next.alpha * end_.j[i] + 3 * next.beta * end_.a[i]) + u * end_.v[i];
-    if (std::max({std::abs(a1) / A_[i], std::abs(a1 - a0) / (J_[i] * step_), std::abs(j1) / J_[i]}) > kAllowed) return false;
-  }
-  return true;
-}
-
-/// The choice, or one near it where curvature within the step would carry it beyond a limit.
-double TimeLaw::amended(double u) noexcept {
-  if (holds(now_, u)) return u;
-  double unused, end;
-  for (double by = 0.05; by < 60; by *= 2) {
-    for (const double other : {u - by, u + by}) {
-      if (holds(now_, other) && recover(next_of(now_, other), &unused, &end)) return other;
+    if (std::abs(left) <= kLanded) return go(middle, tried_);
+    if (left > 0) {
+      under = middle, left_under = left;
+      std::swap(best_, tried_);
+    } else {
+      over = middle, left_over = left;
     }
   }
-  return u;
+  return under > 0 ? go(under, best_) : way_.take();
 }
 
 void TimeLaw::advance(double dt) noexcept {
   while (dt > 0) {
     if (phase_ == 0) {
-      push_ = amended(choose());
+      push_ = choose();
       tick_ = now_;
     }
     if (phase_ + dt >= step_ * (1 - 1e-9)) {
@@ -328,13 +267,17 @@ void TimeLaw::advance(double dt) noexcept {
 
 void TimeLaw::publish() noexcept {
   table_.evaluate(now_.tau, cursor_, state_);
-  rates_at(now_.tau, here_);
-  const double a = now_.alpha, b = now_.beta;
-  for (const int i : moving_) {
-    state_.velocity[i] = a * here_.v[i];
-    state_.acceleration[i] = a * a * here_.a[i] + b * here_.v[i];
-    jerk_[i] = a * a * a * here_.j[i] + 3 * a * b * here_.a[i] + push_ * here_.v[i];
+  if (now_.tau < 0 || now_.tau >= table_.duration()) {
+    state_.velocity.setZero();
+    state_.acceleration.setZero();
+    jerk_.setZero();
+    return;
   }
+  const double a = now_.alpha, b = now_.beta;
+  const Eigen::Map<const Eigen::VectorXd> jerk(table_.jerks(cursor_), table_.axes());
+  jerk_ = (a * a * a) * jerk + (3 * a * b) * state_.acceleration + push_ * state_.velocity;
+  state_.acceleration = (a * a) * state_.acceleration + b * state_.velocity;
+  state_.velocity *= a;
 }
 
 }  // namespace handsel

@@ -59,21 +59,30 @@ class TimeLaw {
   struct Now {
     double tau{}, alpha{}, beta{};
   };
+  /// Velocities, accelerations and jerks of the path at one of its times.
   struct Rates {
     int segment{};
-    std::vector<double> v, a, j;
+    std::vector<detail::Lane8> values;
+    double* data() noexcept { return values.data()->value; }
+    const double* data() const noexcept { return values.data()->value; }
   };
   void rates_at(double tau, Rates&) const noexcept;
-  bool bounds(const Now&, const Rates& begin, const Rates& end, double* lo, double* hi) noexcept;
-  bool recover(Now s, double* first, double* alpha_end) noexcept;
+  detail::LawStep step_from(const Now&) const noexcept;
+  bool pushes(const Now&, const Rates& begin, const Rates& end, double* range) noexcept;
+  bool holds(const Now& s, const Now& next, double push) const noexcept;
+  /// A way to a constant alpha: what to choose step by step, and the alpha it ends with.
+  struct Way {
+    std::vector<double> pushes;
+    int next{}, count{};
+    double end{};
+    double take() noexcept { return next < count ? pushes[static_cast<std::size_t>(next++)] : 0.0; }
+    void stay(double alpha) noexcept { next = count = 0, end = alpha; }
+  };
+  bool recover(Now s, Way& out) noexcept;
   Now next_of(const Now& s, double u) const noexcept;
   SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, const SegmentTable& next,
                           const SwitchSettings& settings) noexcept;
-  void find_moving() noexcept;
   double choose() noexcept;
-  bool holds(const Now& s, double u) noexcept;
-  double amended(double u) noexcept;
-  static Now moved(const Now& s, double u, double t) noexcept;
   void publish() noexcept;
 
   static constexpr int kRoom = 2000;
@@ -81,13 +90,12 @@ class TimeLaw {
   TrajectorySwitch connection_;
   KinematicLimits guard_;
   MotionState3 from_, row_;
-  Eigen::VectorXd row_jerk_;
   double offset_{}, joined_at_{};
-  std::vector<int> moving_;
-  std::vector<double> A_, J_;
-  double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{}, margin_{0.99};
+  std::vector<detail::Lane8> limits_;  // of acceleration, then of jerk; as table_ lays out its axes
+  double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{};
   Now now_, tick_;
-  Rates begin_, end_, between_, here_;
+  Way way_, tried_, best_;  // from now; of the choice looked at; of the best choice so far
+  Rates begin_, end_, between_;
   MotionState3 state_;
   Eigen::VectorXd jerk_;
   int cursor_{};

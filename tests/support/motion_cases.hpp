@@ -25,7 +25,7 @@ inline std::ostream& operator<<(std::ostream& out, const Case& c) {
 
 class Cases {
  public:
-  static constexpr int kFamilies = 9;
+  static constexpr int kFamilies = 10;
   explicit Cases(std::uint64_t seed) : random_(seed) {}
   double uniform(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random_); }
   int pick(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
@@ -47,11 +47,24 @@ class Cases {
     if (family != 5) fill(c.from, c.limits, family), fill(c.to, c.limits, family);
     if (family == 6) c.to.velocity = c.to.acceleration = 0;
     if (family == 7) c.limits.velocity *= 1e6, c.limits.acceleration *= 1e6, c.limits.jerk *= 1e6;
+    if (family == 9) through_zero(c);
     if (family == 8) c.from = {0.0049921875, 0, 0}, c.to = {0.005 + pick(3) * 1e-13, 0, 0};
     return c;
   }
 
  private:
+  /// Accelerations of one sign whose direct way touches zero in between, exactly or by rounding: where short durations become isolated.
+  void through_zero(Case& c) {
+    const double side = pick(2) ? 1 : -1, V = c.limits.velocity, A = c.limits.acceleration, J = c.limits.jerk;
+    const double a = std::min(A, 0.7 * std::sqrt(J * V)), from = uniform(0, 1) * a, to = pick(8) ? uniform(0, 1) * a : from;
+    const double gain = (from * from + to * to) / (2 * J);
+    c.from.acceleration = side * from, c.to.acceleration = side * to;
+    c.from.velocity = side * uniform(from * from / (2 * J) - V, V - gain - to * to / (2 * J));
+    c.to.velocity = c.from.velocity + side * gain;
+    if (pick(2)) c.to.velocity *= 1 + 1e-15 * (pick(5) - 2);
+    const double T = (from + to) / J, way = T * c.from.velocity + side * (from * from * (from / 3 + to / 2) + to * to * to / 6) / (J * J);
+    c.to.position = c.from.position + way + (pick(3) ? uniform(-1, 1) * std::pow(10.0, -pick(14)) : 0);
+  }
   void fill(AxisState& s, const AxisLimits& l, int family) {
     for (;;) {
       s.velocity = uniform(-1, 1) * l.velocity;
