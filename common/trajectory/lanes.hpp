@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 
 namespace handsel::detail {
 
@@ -92,7 +93,9 @@ extern const LaneKernels kLaneKernelsBase;
 extern const LaneKernels kLaneKernelsAvx2;
 extern const LaneKernels kLaneKernelsAvx512;
 #endif
-/// The widest this processor has.
+/// The widest this processor has, unless others were chosen.
 const LaneKernels& lane_kernels() noexcept;
+/// For tests, before anything else runs: "avx512", "avx2" or "base" from now on; false if this processor does not have them.
+bool choose_lanes(std::string_view name) noexcept;
 
 }  // namespace handsel::detail

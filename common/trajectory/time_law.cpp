@@ -172,10 +172,11 @@ bool TimeLaw::holds(const Now& s, const Now& next, double push) const noexcept {
 
 /// False if the way back to a constant alpha leaves the limits anywhere.
 bool TimeLaw::recover(Now s, Way& out) noexcept {
+  const auto allowed = [this](double alpha) { return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded; };
   out.next = out.count = 0;
   rates_at(s.tau, begin_);
   while (s.beta != 0) {
-    if (out.count == kHorizon) return false;
+    if (out.count == kHorizon || !allowed(s.alpha)) return false;
     rates_at(s.tau + step_ * (s.alpha + step_ * s.beta / 2), end_);
     double range[2];
     if (!pushes(s, begin_, end_, range)) return false;
@@ -188,7 +189,7 @@ bool TimeLaw::recover(Now s, Way& out) noexcept {
     std::swap(begin_, end_);
   }
   out.end = s.alpha;
-  return s.alpha >= lowest_ - kLanded && s.alpha <= 1 + kLanded;
+  return allowed(s.alpha);
 }
 
 TimeLaw::Now TimeLaw::next_of(const Now& s, double u) const noexcept {

@@ -134,4 +134,48 @@ inline double slow_min_time(const AxisState& from, const AxisState& to, const Ax
   return bounds.empty() ? std::numeric_limits<double>::infinity() : bounds[0];
 }
 
+/// From outside the limits to their border: what is beyond the acceleration limit comes back at full jerk; what is beyond the velocity
+/// limit, or cannot help getting there, decelerates to a depth, holds it and comes up so far that it does not head beyond the other limit
+/// when it is back. The deepest depth that leaves time to hold is searched by halving. Returns the time taken; negative where the state is
+/// beyond one limit and heads beyond the other, which this does not know.
+inline double slow_way_inside(AxisState& s, const AxisLimits& l) {
+  const double V = l.velocity, A = l.acceleration, J = l.jerk;
+  double time = 0;
+  const auto go = [&](double t, double jerk) {
+    s = advanced(s, t, jerk);
+    time += t;
+  };
+  if (std::abs(s.acceleration) > A) {
+    const double side = s.acceleration > 0 ? 1 : -1;
+    go((std::abs(s.acceleration) - A) / J, -side * J);
+    s.acceleration = side * A;
+  }
+  const auto heading = [&] { return s.velocity + s.acceleration * std::abs(s.acceleration) / (2 * J); };
+  const bool above = s.velocity > V || (s.acceleration > 0 && heading() > V),
+             below = s.velocity < -V || (s.acceleration < 0 && heading() < -V);
+  if (above && below) return -1;
+  if (!above && !below) return time;
+  const double side = above ? 1 : -1, v = side * s.velocity, a = side * s.acceleration;
+  const double steepest = std::sqrt(4 * J * V);
+  const auto hold = [&](double depth) {
+    const double risen = std::min(depth, steepest);
+    return (v + (a * a - depth * depth) / (2 * J) - V - (depth * depth - risen * risen) / (2 * J)) / depth;
+  };
+  double lo = std::max(0.0, -a), hi = A;
+  if (hold(hi) < 0) {
+    for (int k = 0; k < 200; ++k) {
+      const double middle = 0.5 * (lo + hi);
+      (hold(middle) >= 0 ? lo : hi) = middle;
+    }
+  } else {
+    lo = hi;
+  }
+  go((a + lo) / J, -side * J);
+  if (lo > 0) go(std::max(0.0, hold(lo)), 0);
+  if (lo > steepest) go((lo - steepest) / J, side * J);
+  s.velocity = side * V;
+  s.acceleration = -side * std::min(lo, steepest);
+  return time;
+}
+
 }  // namespace handsel::test

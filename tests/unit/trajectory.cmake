@@ -1,7 +1,20 @@
-handsel_test(trajectory SOURCES ${CMAKE_CURRENT_LIST_DIR}/min_time_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_test.cpp ${CMAKE_CURRENT_LIST_DIR}/time_law_test.cpp ${CMAKE_CURRENT_LIST_DIR}/smooth_test.cpp ${CMAKE_CURRENT_LIST_DIR}/approximate_test.cpp
+handsel_test(trajectory SOURCES ${CMAKE_CURRENT_LIST_DIR}/min_time_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_test.cpp ${CMAKE_CURRENT_LIST_DIR}/time_law_test.cpp ${CMAKE_CURRENT_LIST_DIR}/smooth_test.cpp ${CMAKE_CURRENT_LIST_DIR}/approximate_test.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/lane_level.cpp
   LINK handsel_trajectory LABEL unit)
 handsel_test(trajectory_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/trajectory_property_test.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/../support/allocation_counter.cpp LINK handsel_trajectory LABEL property)
+  ${CMAKE_CURRENT_LIST_DIR}/../support/allocation_counter.cpp ${CMAKE_CURRENT_LIST_DIR}/../support/lane_level.cpp LINK handsel_trajectory LABEL property)
 # Ten million problems: some minutes of one core.
 add_test(NAME trajectory_ten_million COMMAND test_trajectory_property --gtest_filter=SevenAxes.EndTogether*)
-set_tests_properties(trajectory_ten_million PROPERTIES LABELS full TIMEOUT 3600 ENVIRONMENT "HANDSEL_CASES=10000000;HANDSEL_SLOW=100000")
+set_tests_properties(trajectory_ten_million PROPERTIES LABELS full TIMEOUT 3600 ENVIRONMENT "HANDSEL_CASES=10000000;HANDSEL_SLOW=1000")
+# A hundred thousand problems, all of them by the slow solver too.
+add_test(NAME trajectory_slow_solver COMMAND test_trajectory_property --gtest_filter=SevenAxes.EndTogether*)
+set_tests_properties(trajectory_slow_solver PROPERTIES LABELS full TIMEOUT 1200 ENVIRONMENT "HANDSEL_CASES=100000;HANDSEL_SLOW=1")
+# Registers narrower than this processor's widest.
+foreach(level avx2 base)
+  add_test(NAME trajectory_lanes_${level} COMMAND test_trajectory_property)
+  set_tests_properties(trajectory_lanes_${level} PROPERTIES LABELS property SKIP_RETURN_CODE 77
+    ENVIRONMENT "HANDSEL_LANES=${level};HANDSEL_CASES=20000;HANDSEL_SLOW=100")
+  add_test(NAME trajectory_path_${level} COMMAND test_trajectory --gtest_filter=Smooth.*:TimeLaw.*)
+  set_tests_properties(trajectory_path_${level} PROPERTIES LABELS unit SKIP_RETURN_CODE 77 ENVIRONMENT "HANDSEL_LANES=${level};HANDSEL_RUNS=8")
+  add_test(NAME motion_stories_${level} COMMAND test_motion_stories)
+  set_tests_properties(motion_stories_${level} PROPERTIES LABELS property SKIP_RETURN_CODE 77 ENVIRONMENT "HANDSEL_LANES=${level};HANDSEL_RUNS=500")
+endforeach()

@@ -1,0 +1,19 @@
+// HANDSEL_LANES=avx512|avx2|base runs the tests this is linked into with registers of that width. What this processor does not have is
+// skipped: ctest counts exit code 77 so.
+#include <cstdio>
+#include <cstdlib>
+
+#include "common/trajectory/lanes.hpp"
+
+namespace {
+
+const bool kChosen = [] {
+  const char* wanted = std::getenv("HANDSEL_LANES");
+  if (wanted && !handsel::detail::choose_lanes(wanted)) {
+    std::printf("this processor has no lanes called %s\n", wanted);
+    std::exit(77);
+  }
+  return true;
+}();
+
+}  // namespace
