@@ -193,6 +193,7 @@ bool TimeLaw::recover(Now s, Way& out) noexcept {
 }
 
 TimeLaw::Now TimeLaw::next_of(const Now& s, double u) const noexcept {
+  if (s.beta == 0 && u == 0) return {s.tau + step_ * s.alpha, s.alpha, 0};
   Now next = moved(s, u, step_);
   if (u == -s.beta / step_) next.beta = 0;
   return next;
@@ -276,6 +277,10 @@ void TimeLaw::publish() noexcept {
   }
   const double a = now_.alpha, b = now_.beta;
   const Eigen::Map<const Eigen::VectorXd> jerk(table_.jerks(cursor_), table_.axes());
+  if (a == 1 && b == 0 && push_ == 0) {
+    jerk_ = jerk;
+    return;
+  }
   jerk_ = (a * a * a) * jerk + (3 * a * b) * state_.acceleration + push_ * state_.velocity;
   state_.acceleration = (a * a) * state_.acceleration + b * state_.velocity;
   state_.velocity *= a;

@@ -14,6 +14,7 @@
 #include "common/trajectory/three_segment.hpp"
 #include "tests/support/allocation_counter.hpp"
 #include "tests/support/motion_cases.hpp"
+#include "tests/support/ruckig_peer.hpp"
 #include "tests/support/slow_min_time.hpp"
 
 namespace handsel {
@@ -172,6 +173,41 @@ void judge(const Problem& p, const SynchronisedBatch& solved, int k, Tally& tall
   ASSERT_LE(T, slow * (1 + kTight) + 1e-12) << "longer than the slow solver";
 }
 
+#ifdef HANDSEL_RUCKIG
+/// The last problems solved, by Ruckig too.
+class Peer {
+ public:
+  void compare(const Problem& p, double T) {
+    test::PeerProblem q;
+    const VectorXd* all[9] = {&p.from.position,   &p.from.velocity,   &p.from.acceleration,   &p.to.position, &p.to.velocity,
+                              &p.to.acceleration, &p.limits.velocity, &p.limits.acceleration, &p.limits.jerk};
+    for (int k = 0; k < 9; ++k) std::copy(all[k]->begin(), all[k]->end(), k < 3 ? q.from[k] : k < 6 ? q.to[k - 3] : q.limits[k - 6]);
+    test::RuckigPeer peer({q});
+    if (!peer.solve(0)) {
+      ++unsolved_;
+      return;
+    }
+    const double more = peer.duration() > 0 ? T / peer.duration() - 1 : T;
+    equal_ += std::abs(more) <= kTight;
+    shorter_ += more < -kTight;
+    if (more > kTight) ++longer_, longest_ = std::max(longest_, more);
+  }
+  void print() const {
+    std::printf("Ruckig: %ld equal within 1e-9, ours shorter %ld, longer %ld (largest %.1e), %ld it does not solve\n", equal_, shorter_,
+                longer_, longest_, unsolved_);
+  }
+
+ private:
+  long equal_{}, shorter_{}, longer_{}, unsolved_{};
+  double longest_{};
+};
+#else
+struct Peer {
+  void compare(const Problem&, double) {}
+  void print() const {}
+};
+#endif
+
 TEST(SevenAxes, EndTogetherInsideTheLimitsAndAsSoonAsTheSlowSolver) {
   const long count = setting("HANDSEL_CASES", 100000) / kBatch * kBatch, every = setting("HANDSEL_SLOW", 20);
   const std::uint64_t seed = 31;
@@ -182,6 +218,7 @@ TEST(SevenAxes, EndTogetherInsideTheLimitsAndAsSoonAsTheSlowSolver) {
   for (auto& f : flat) f.resize(kAxes * kBatch);
   Tally tally;
   Hash hash;
+  Peer peer;
   for (long first = 0; first < count; first += kBatch) {
     std::vector<Problem> problems;
     for (int k = 0; k < kBatch; ++k) {
@@ -202,6 +239,7 @@ TEST(SevenAxes, EndTogetherInsideTheLimitsAndAsSoonAsTheSlowSolver) {
     ASSERT_NEAR(single.duration(), batch.duration(0), 1e-12 * single.duration()) << "seed " << seed << " problem " << first;
     for (int k = 0; k < kBatch; ++k) {
       judge(problems[static_cast<std::size_t>(k)], batch, k, tally, every > 0 && (first + k) % every == 0);
+      peer.compare(problems[static_cast<std::size_t>(k)], batch.duration(k));
       if (::testing::Test::HasFatalFailure()) FAIL() << "seed " << seed << " problem " << first + k;
     }
   }
@@ -211,6 +249,7 @@ TEST(SevenAxes, EndTogetherInsideTheLimitsAndAsSoonAsTheSlowSolver) {
       "%ld the slow solver does not know\n",
       tally.problems, static_cast<unsigned long long>(hash.value), detail::lane_kernels().name, tally.blocked, tally.outside, tally.slow,
       tally.slow_blocked, tally.slow_outside, tally.equal_to_slow, tally.longest_against_slow, tally.unknown);
+  peer.print();
   if (count < 100000) return;
   EXPECT_GE(tally.blocked, 1000);
   EXPECT_GE(tally.outside, 1000);

@@ -32,84 +32,125 @@ SmoothResult run(std::optional<double> tau) {
   return smooth(three_points(), kLimits, settings);
 }
 
+/// Colours are classes, so that the drawing follows a dark page.
+constexpr const char* kStyle = R"(<style>
+text { fill: #222; } .paper { fill: #fff; } polyline { fill: none; stroke-width: 1.6; }
+.axis { stroke: #777; stroke-width: 1; } .grid { stroke: #ddd; stroke-width: 0.7; } .bound { stroke: #c33; stroke-width: 1; stroke-dasharray: 5 3; }
+.x { stroke: #1f5fa8; } .y { stroke: #b35a00; } .t0 { stroke: #777; } .t1 { stroke: #b35a00; } .t2 { stroke: #a0307a; } .t3 { stroke: #23804a; } .t4 { stroke: #1f5fa8; }
+@media (prefers-color-scheme: dark) {
+text { fill: #ddd; } .paper { fill: #16181c; } .axis { stroke: #999; } .grid { stroke: #34383f; } .bound { stroke: #ff7b72; }
+.x { stroke: #6cb0ff; } .y { stroke: #ffa657; } .t0 { stroke: #aaa; } .t1 { stroke: #ffa657; } .t2 { stroke: #f08bd0; } .t3 { stroke: #5fd38d; } .t4 { stroke: #6cb0ff; }
+}
+</style>
+<rect class="paper" width="100%" height="100%"/>
+)";
+
+using Points = std::vector<std::pair<double, double>>;
+
 class Drawing {
  public:
   Drawing(int width, int height) {
     out_ << "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" << width << "\" height=\"" << height << "\" viewBox=\"0 0 " << width << ' '
-         << height << "\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n";
+         << height << "\" font-family=\"sans-serif\" font-size=\"12\">\n"
+         << kStyle;
   }
-  void text(double x, double y, const std::string& s, const char* colour = "#333") {
-    out_ << "<text x=\"" << number(x) << "\" y=\"" << number(y) << "\" fill=\"" << colour << "\">" << s << "</text>\n";
+  void text(double x, double y, const std::string& s, const char* anchor = "start") {
+    out_ << "<text x=\"" << number(x) << "\" y=\"" << number(y) << "\" text-anchor=\"" << anchor << "\">" << s << "</text>\n";
   }
-  void line(const std::vector<std::pair<double, double>>& points, const char* colour, double width = 1.2) {
-    out_ << "<polyline fill=\"none\" stroke=\"" << colour << "\" stroke-width=\"" << width << "\" points=\"";
+  void line(const Points& points, const std::string& kind) {
+    out_ << "<polyline class=\"" << kind << "\" points=\"";
     for (const auto& [x, y] : points) out_ << number(x) << ',' << number(y) << ' ';
     out_ << "\"/>\n";
   }
   std::string finish() { return out_.str() + "</svg>\n"; }
-  static std::string number(double x) {
+  static std::string number(double x, int digits = 2) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.2f", x + 0.0);
-    return std::string(text) == "-0.00" ? "0.00" : text;
+    std::snprintf(text, sizeof text, "%.*f", digits, x + 0.0);
+    return std::atof(text) == 0 && text[0] == '-' ? text + 1 : text;
   }
 
  private:
   std::ostringstream out_;
 };
 
-/// A frame with one curve of x and one of y over time.
-void curves(Drawing& d, double left, double top, const Trajectory& t, int derivative, double bound, const std::string& title) {
-  const double width = 330, height = 100, longest = 14;
-  const auto at = [&](double time, double value) {
-    return std::pair{left + width * time / longest, top + height / 2 - value / bound * height / 2};
-  };
-  const double low = derivative == 0 ? 0 : -bound;
-  d.line({at(0, low), at(longest, low)}, "#bbb", 0.8);
-  d.line({at(0, low), at(0, bound)}, "#bbb", 0.8);
-  if (derivative > 0) {
-    d.line({at(0, 0), at(longest, 0)}, "#ddd", 0.6);
-    d.line({at(0, bound / 1.1), at(longest, bound / 1.1)}, "#e0a0a0", 0.6);
-    d.line({at(0, -bound / 1.1), at(longest, -bound / 1.1)}, "#e0a0a0", 0.6);
+/// A frame with numbers at its axes.
+struct Frame {
+  double left, top, width, height, x_lo, x_hi, y_lo, y_hi;
+  std::pair<double, double> at(double x, double y) const {
+    return {left + width * (x - x_lo) / (x_hi - x_lo), top + height * (y_hi - y) / (y_hi - y_lo)};
   }
-  d.text(left, top - 4, title);
+  void draw(Drawing& d, double x_step, double y_step, int digits, const std::string& across, const std::string& up) const {
+    for (int k = 0; x_lo + k * x_step <= x_hi + 1e-9; ++k) {
+      const double x = x_lo + k * x_step;
+      d.line({at(x, y_lo), at(x, y_hi)}, "grid");
+      d.text(at(x, y_lo).first, top + height + 15, Drawing::number(x, x_step < 1 ? 2 : 0), "middle");
+    }
+    for (int k = 0; y_lo + k * y_step <= y_hi + 1e-9; ++k) {
+      const double y = y_lo + k * y_step;
+      d.line({at(x_lo, y), at(x_hi, y)}, "grid");
+      d.text(left - 6, at(x_lo, y).second + 4, Drawing::number(y, digits), "end");
+    }
+    d.line({at(x_lo, y_hi), at(x_lo, y_lo), at(x_hi, y_lo)}, "axis");
+    d.text(left + width, top + height + 30, across, "end");
+    d.text(left, top - 8, up);
+  }
+};
+
+/// One curve of x and one of y over time, with the limits.
+void curves(Drawing& d, const Frame& frame, const Trajectory& t, int derivative, double limit) {
+  if (limit > 0) {
+    for (const double bound : {limit, -limit}) d.line({frame.at(frame.x_lo, bound), frame.at(frame.x_hi, bound)}, "bound");
+  }
   for (int axis = 0; axis < 2; ++axis) {
-    std::vector<std::pair<double, double>> points;
+    Points points;
     for (int k = 0; k <= 280; ++k) {
       const double time = t.duration() * k / 280;
       const MotionState3 s = t.at(time);
-      points.push_back(at(time, (derivative == 0 ? s.position : derivative == 1 ? s.velocity : s.acceleration)[axis]));
+      points.push_back(frame.at(time, (derivative == 0 ? s.position : derivative == 1 ? s.velocity : s.acceleration)[axis]));
     }
-    d.line(points, axis == 0 ? "#1f5fa8" : "#2e8b57");
+    d.line(points, axis == 0 ? "x" : "y");
   }
 }
 
 std::string draw() {
-  Drawing d(760, 720);
+  Drawing d(860, 1010);
   const auto nodes = three_points();
-  const auto at = [](const VectorXd& p) { return std::pair{60 + 700 * p[0], 330 - 700 * p[1]}; };
-  d.line({at(nodes[0]), at(nodes[1]), at(nodes[2])}, "#999", 0.8);
-  d.text(40, 24, "Transition at the middle of three points, legs of 0.5 m at 127\xc2\xb0; V 0.1 m/s, A 0.3 m/s\xc2\xb2, J 0.9 m/s\xc2\xb3");
-  static constexpr std::array<const char*, 5> kColours{"#999999", "#c06000", "#a03070", "#2e8b57", "#1f5fa8"};
+  d.text(20, 24,
+         "Corner of 127\xc2\xb0 between legs of 0.5 m; V 0.1 m/s, A 0.3 m/s\xc2\xb2, J 0.9 m/s\xc2\xb3 (dashed: limits, 10 % of excess "
+         "allowed)");
+  const Frame corner{80, 60, 560, 336, 0.40, 0.60, -0.02, 0.10};
+  corner.draw(d, 0.02, 0.02, 2, "x [m]", "y [m], near the node");
   static constexpr std::array<double, 5> kTaus{0, 0.25, 0.5, 0.75, 1.0};
   for (std::size_t k = 0; k < kTaus.size(); ++k) {
     const SmoothResult r = run(kTaus[k]);
-    std::vector<std::pair<double, double>> points;
-    for (int i = 0; i <= 700; ++i) {
-      const VectorXd p = r.trajectory.at(r.trajectory.duration() * i / 700).position;
-      if ((p - nodes[1]).norm() < 0.12) points.push_back(at(p));
+    Points points;
+    for (int i = 0; i <= 2000; ++i) {
+      const VectorXd p = r.trajectory.at(r.trajectory.duration() * i / 2000).position;
+      if (p[0] >= corner.x_lo && p[0] <= corner.x_hi && p[1] <= corner.y_hi) points.push_back(corner.at(p[0], p[1]));
     }
-    d.line(points, kColours[k]);
-    char label[120];
-    std::snprintf(label, sizeof label, "\xcf\x84 = %.2f s: %.2f s, %s", kTaus[k], r.trajectory.duration(), name(r.corners[0].method));
-    d.text(60, 60 + 16.0 * static_cast<double>(k), label, kColours[k]);
+    const std::string kind = "t" + std::to_string(k);
+    d.line(points, kind);
+    const double y = 90 + 36.0 * static_cast<double>(k);
+    d.line({{660, y - 4}, {684, y - 4}}, kind);
+    d.text(692, y, "\xcf\x84 = " + Drawing::number(kTaus[k]) + " s: " + Drawing::number(r.trajectory.duration()) + " s");
+    d.text(692, y + 15, std::string(name(r.corners[0].method)));
   }
   for (const double tau : {0.0, 1.0}) {
-    const double left = tau == 0 ? 40 : 400;
+    const double left = tau == 0 ? 80 : 500;
     const Trajectory t = run(tau).trajectory;
-    const std::string label = tau == 0 ? ", \xcf\x84 = 0" : ", \xcf\x84 = 1 s";
-    curves(d, left, 380, t, 0, 0.85, "position x, y [m]" + label);
-    curves(d, left, 480, t, 1, 0.11, "velocity [m/s]" + label);
-    curves(d, left, 600, t, 2, 0.33, "acceleration [m/s\xc2\xb2]" + label);
+    const std::string of = tau == 0 ? " of x and y, \xcf\x84 = 0" : " of x and y, \xcf\x84 = 1 s";
+    const Frame position{left, 470, 330, 110, 0, 12, 0, 0.8}, velocity{left, 660, 330, 110, 0, 12, -0.12, 0.12},
+        acceleration{left, 850, 330, 110, 0, 12, -0.4, 0.4};
+    position.draw(d, 2, 0.2, 1, "t [s]", "position [m]" + of);
+    velocity.draw(d, 2, 0.06, 2, "t [s]", "velocity [m/s]" + of);
+    acceleration.draw(d, 2, 0.2, 1, "t [s]", "acceleration [m/s\xc2\xb2]" + of);
+    curves(d, position, t, 0, 0);
+    curves(d, velocity, t, 1, 0.1);
+    curves(d, acceleration, t, 2, 0.3);
+    d.line({{left + 230, 452}, {left + 250, 452}}, "x");
+    d.text(left + 255, 456, "x");
+    d.line({{left + 280, 452}, {left + 300, 452}}, "y");
+    d.text(left + 305, 456, "y");
   }
   return d.finish();
 }
