@@ -12,6 +12,7 @@
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/time_law.hpp"
+#include "tests/support/motion_draw.hpp"
 
 namespace handsel {
 namespace {
@@ -129,7 +130,6 @@ struct Story {
   std::map<std::string, long> count;
 };
 
-int runs(int in_suite) { return std::getenv("HANDSEL_RUNS") ? std::atoi(std::getenv("HANDSEL_RUNS")) : in_suite; }
 std::uint64_t first_seed() { return std::getenv("HANDSEL_SEED") ? std::strtoull(std::getenv("HANDSEL_SEED"), nullptr, 10) : 1; }
 
 /// Tells the story of a seed.
@@ -147,7 +147,7 @@ Story told(std::uint64_t seed) {
 }
 
 TEST(MotionStories, EverySampleIsWithinTheLimitsAndContinuous) {
-  const int stories = runs(3000);
+  const int stories = test::runs(3000);
   long samples = 0;
   std::uint64_t hash = 0;
   double largest = 0;

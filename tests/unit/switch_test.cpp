@@ -12,21 +12,14 @@
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/time_law.hpp"
 #include "tests/support/allocation_counter.hpp"
+#include "tests/support/motion_draw.hpp"
 
 namespace handsel {
 namespace {
 
 using Eigen::VectorXd;
 
-struct Draw {
-  std::mt19937_64 random;
-  double operator()(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); }
-  VectorXd vector(int n, double lo, double hi) {
-    VectorXd v(n);
-    for (double& x : v) x = (*this)(lo, hi);
-    return v;
-  }
-  KinematicLimits limits(int n) { return {vector(n, 0.3, 2), vector(n, 0.6, 4), vector(n, 2, 16)}; }
+struct Draw : test::Draw {
   /// In motion, inside the limits for good.
   MotionState3 state(const KinematicLimits& l) {
     const int n = static_cast<int>(l.velocity.size());
@@ -38,7 +31,7 @@ struct Draw {
     const int n = static_cast<int>(guard.velocity.size());
     std::vector<VectorXd> nodes;
     for (int i = 0; i < 3; ++i) nodes.push_back(vector(n, -1, 1));
-    return smooth(nodes, {guard.velocity / 1.1, guard.acceleration / 1.1, guard.jerk / 1.1}).trajectory;
+    return smooth(nodes, test::scaled(guard, 1 / 1.1)).trajectory;
   }
 };
 

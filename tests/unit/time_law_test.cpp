@@ -2,34 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <random>
-
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/setpoint_filter.hpp"
 #include "common/trajectory/smooth.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
+#include "tests/support/motion_draw.hpp"
 
 namespace handsel {
 namespace {
 
 using Eigen::VectorXd;
-
-struct Draw {
-  std::mt19937_64 random;
-  double operator()(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); }
-  VectorXd vector(int n, double lo, double hi) {
-    VectorXd v(n);
-    for (double& x : v) x = (*this)(lo, hi);
-    return v;
-  }
-};
-
-/// Random runs of a property test: few in the suite, as many as HANDSEL_RUNS says on demand.
-int runs(int in_suite) { return std::getenv("HANDSEL_RUNS") ? std::atoi(std::getenv("HANDSEL_RUNS")) : in_suite; }
-
-KinematicLimits scaled(const KinematicLimits& l, double k) { return {l.velocity * k, l.acceleration * k, l.jerk * k}; }
+using test::Draw;
+using test::runs;
+using test::scaled;
 
 TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
   const std::uint64_t seed = 31;
@@ -37,7 +23,7 @@ TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
   double largest = 0;
   for (int k = 0; k < runs(40); ++k) {
     const int n = 7;
-    const KinematicLimits guard{draw.vector(n, 0.3, 2), draw.vector(n, 0.6, 4), draw.vector(n, 2, 16)};
+    const KinematicLimits guard = draw.limits(n);
     Trajectory t = solve(rest_state(draw.vector(n, -1, 1)), rest_state(draw.vector(n, -1, 1)), scaled(guard, 1 / 1.1)).trajectory;
     TimeLaw law;
     ASSERT_EQ(law.init(t, guard), "");
@@ -75,7 +61,7 @@ TEST(TimeLaw, CornersThatUseTheWholeGuardAreKeptToo) {
   Draw draw{std::mt19937_64(seed)};
   for (int k = 0; k < runs(25); ++k) {
     const int n = 7;
-    const KinematicLimits guard{draw.vector(n, 0.3, 2), draw.vector(n, 0.6, 4), draw.vector(n, 2, 16)};
+    const KinematicLimits guard = draw.limits(n);
     std::vector<VectorXd> nodes;
     for (int i = 0; i < 4; ++i) nodes.push_back(draw.vector(n, -1, 1));
     const SmoothResult smoothed = smooth(nodes, scaled(guard, 1 / 1.1));

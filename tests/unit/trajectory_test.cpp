@@ -9,15 +9,14 @@
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/three_segment.hpp"
+#include "tests/support/motion_draw.hpp"
 
 namespace handsel {
 namespace {
 
 using Eigen::VectorXd;
 
-struct Draw {
-  std::mt19937_64 random;
-  double operator()(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); }
+struct Draw : test::Draw {
   MotionState3 state(const KinematicLimits& l, double share) {
     const Eigen::Index n = l.velocity.size();
     MotionState3 s = rest_state(VectorXd(n));
