@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/trajectory/edit.hpp"
@@ -14,9 +15,9 @@ namespace {
 constexpr double kMargin = 0.99;
 constexpr double kAllowed = 1 + 5e-7;
 constexpr double kWhole = 1 - 1e-4;
-constexpr double kMaxPush = 100.0;  // [1/s^2]
-constexpr double kMaxRate = 20.0;   // [1/s]
-constexpr int kHorizon = 600;       // steps of a way back to constant alpha
+constexpr double kMaxPush = 0.8;   // alpha'' times the step [1/s]: what alpha' changes by in one
+constexpr double kMaxRate = 28.0;  // [1/s]
+constexpr int kHorizon = 600;      // steps of a way back to constant alpha
 constexpr double kLanded = 1e-9;
 
 /// What happens to tau, alpha and its rate in a time of constant alpha''.
@@ -63,44 +64,64 @@ std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& g
   lowest_ = starts_still ? -1 : 0;
   now_ = {0, alpha, 0};
   target_ = alpha;
-  push_ = phase_ = offset_ = joined_at_ = 0;
+  push_ = phase_ = offset_ = joined_at_ = left_at_ = 0;
   cursor_ = 0;
   publish();
   return {};
 }
 
-SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double keep_from, const SegmentTable& next,
+SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
                                  const SwitchSettings& settings) noexcept {
   if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings); found != SwitchOutcome::ok) return found;
   const int coming = connection_.segments() + next.segments() + 1;
-  if (coming > spare_.room()) return SwitchOutcome::too_long;
-  const int before = keep_from < at.tau ? table_.find(at.tau, 0) - table_.find(keep_from, 0) + 1 : 0;
+  const auto fits = [&](double begin) {
+    return (begin < leave ? table_.find(leave, 0) - table_.find(begin, 0) + 1 : 0) + coming <= spare_.room();
+  };
+  const bool ahead = leave > at.tau;
+  const double kept = fits(keep_from) ? keep_from : ahead ? std::max(0.0, at.tau) : leave;
+  if (!fits(kept)) return SwitchOutcome::too_long;
+  before_ = {now_, lowest_, target_, offset_, joined_at_, left_at_};
   spare_.clear(table_.axes());
-  if (before > 0 && before + coming <= spare_.room()) add_part(table_, keep_from, at.tau, spare_, row_);
-  const Now begin{spare_.segments() > 0 ? spare_.duration() : 0.0, at.alpha, at.beta};
+  if (kept < leave) add_part(table_, kept, leave, spare_, row_);
   const bool has_past = spare_.segments() > 0;
+  left_at_ = has_past ? spare_.duration() : 0.0;
   connection_.add_to(spare_, next);
   if (spare_.segments() == 0) spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), jerk_.setZero().data());
-  const Now old = now_;
-  const double old_lowest = lowest_;
   std::swap(table_, spare_);
-  now_ = begin;
-  lowest_ = has_past ? lowest_ : still(from) ? -1 : 0;
+  now_ = {ahead ? at.tau - kept : left_at_, at.alpha, at.beta};
+  if (!has_past)
+    lowest_ = still(from) ? -1 : 0;
+  else if (kept > keep_from)
+    lowest_ = 0;
+  joined_at_ = connection_.joins_at();
+  offset_ = left_at_ + connection_.duration() - joined_at_;
+  target_ = std::max(target_, lowest_);
   if (!recover(now_, tried_)) {
-    std::swap(table_, spare_);
-    now_ = old;
-    lowest_ = old_lowest;
-    publish();
+    back_to_before();
     return SwitchOutcome::not_now;
   }
   std::swap(way_, tried_);
-  joined_at_ = connection_.joins_at();
-  offset_ = begin.tau + connection_.duration() - joined_at_;
-  target_ = std::max(target_, lowest_);
   push_ = phase_ = 0;
   cursor_ = 0;
   publish();
   return SwitchOutcome::ok;
+}
+
+void TimeLaw::back_to_before() noexcept {
+  std::swap(table_, spare_);
+  now_ = before_.now;
+  lowest_ = before_.lowest;
+  target_ = before_.target;
+  offset_ = before_.offset;
+  joined_at_ = before_.joined_at;
+  left_at_ = before_.left_at;
+  cursor_ = 0;
+  publish();
+}
+
+void TimeLaw::undo_switch() noexcept {
+  std::swap(way_, tried_);
+  back_to_before();
 }
 
 SwitchOutcome TimeLaw::switch_to(const SegmentTable& next, const SwitchSettings& settings) noexcept {
@@ -110,20 +131,32 @@ SwitchOutcome TimeLaw::switch_to(const SegmentTable& next, const SwitchSettings&
   if (ended || standing()) {
     from_.velocity.setZero();
     from_.acceleration.setZero();
-    return take_over(from_, {0, std::max(0.0, target_), 0}, 0, next, settings);
+    return take_over(from_, {0, std::max(0.0, target_), 0}, 0, 0, next, settings);
   }
   if (now_.alpha < 0 || (now_.alpha == 0 && now_.beta < 0)) {
     from_.velocity = -from_.velocity;
-    return take_over(from_, {0, -now_.alpha, -now_.beta}, 0, next, settings);
+    return take_over(from_, {0, -now_.alpha, -now_.beta}, 0, 0, next, settings);
   }
-  return take_over(from_, now_, lowest_ < 0 ? 0.0 : now_.tau, next, settings);
+  return take_over(from_, now_, lowest_ < 0 ? 0.0 : now_.tau, now_.tau, next, settings);
+}
+
+SwitchOutcome TimeLaw::switch_at(double leave, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+  if (!(leave > now_.tau) || !(now_.tau < duration())) return switch_to(next, settings);
+  if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
+  leave = std::min(leave, duration());
+  table_.evaluate(leave, cursor_, from_);
+  if (leave == duration()) {
+    from_.velocity.setZero();
+    from_.acceleration.setZero();
+  }
+  return take_over(from_, now_, lowest_ < 0 ? 0.0 : std::max(0.0, now_.tau), leave, next, settings);
 }
 
 SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& settings) noexcept {
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   const double target = target_;
   target_ = 1;
-  const SwitchOutcome outcome = take_over(state, {0, 1, 0}, 0, next, settings);
+  const SwitchOutcome outcome = take_over(state, {0, 1, 0}, 0, 0, next, settings);
   if (outcome != SwitchOutcome::ok) target_ = target;
   return outcome;
 }
@@ -148,12 +181,12 @@ bool TimeLaw::pushes(const Now& s, const Rates& begin, const Rates& end, double*
   const detail::LaneKernels& kernels = detail::lane_kernels();
   const detail::LawStep at = step_from(s);
   const double h = step_;
-  range[0] = std::max(-kMaxPush, (-kMaxRate - s.beta) / h);
-  range[1] = std::min(kMaxPush, (kMaxRate - s.beta) / h);
+  range[0] = std::max(-kMaxPush / h, (-kMaxRate - s.beta) / h);
+  range[1] = std::min(kMaxPush / h, (kMaxRate - s.beta) / h);
   bool possible = kernels.push_range(at, begin.data(), end.data(), range);
   const int from = std::min(begin.segment, end.segment), to = std::max(begin.segment, end.segment);
   // Where a step ends is known up to what alpha'' adds; a knot that near is passed, or not.
-  const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h * h / 6, stop = s.tau + span;
+  const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h / 6, stop = s.tau + span;
   const bool on = span >= 0 && to + 1 < table_.segments() && table_.knot(to + 1) - stop < unsure;
   const bool back = span < 0 && from > 0 && stop - table_.knot(from) < unsure;
   for (int k = from - back; k < to + on; ++k) {
@@ -174,6 +207,7 @@ bool TimeLaw::holds(const Now& s, const Now& next, double push) const noexcept {
 bool TimeLaw::recover(Now s, Way& out) noexcept {
   const auto allowed = [this](double alpha) { return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded; };
   out.next = out.count = 0;
+  out.end = std::numeric_limits<double>::quiet_NaN();
   rates_at(s.tau, begin_);
   while (s.beta != 0) {
     if (out.count == kHorizon || !allowed(s.alpha)) return false;
@@ -217,7 +251,7 @@ double TimeLaw::choose() noexcept {
     const Now next = next_of(now_, u);
     rates_at(now_.tau, begin_);
     rates_at(next.tau, end_);
-    if (!holds(now_, next, u) || !recover(next, tried_)) return false;
+    if (!holds(now_, next, u) || (!recover(next, tried_) && std::isnan(tried_.end))) return false;  // beyond [lowest, 1]: too far
     *out = (target_ - tried_.end) * (want > 0 ? 1 : -1);
     return true;
   };
@@ -228,7 +262,7 @@ double TimeLaw::choose() noexcept {
   double share = 1, left = 0;
   while (!miss(share, &left)) {
     share /= 2;
-    if (share < 0.05) return way_.take();
+    if (share < 0.006) return way_.take();
   }
   if (left >= -kLanded) return go(share, tried_);
   double under = 0, over = share, left_under = std::abs(want), left_over = left;

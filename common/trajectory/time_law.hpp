@@ -33,6 +33,10 @@ class TimeLaw {
   /// in the direction of the motion, and never runs back beyond here. The way so far is forgotten only when there is no room for it.
   /// `next` is runnable and laid out beforehand. On anything but ok nothing has changed.
   SwitchOutcome switch_to(const SegmentTable& next, const SwitchSettings& = {}) noexcept;
+  /// The same, but the path is left only at `leave` on its time() [s]; what was to come beyond is given up. A place already passed is now.
+  SwitchOutcome switch_at(double leave, const SegmentTable& next, const SwitchSettings& = {}) noexcept;
+  /// Takes the last switch back, as if it had not been; before the next advance() only.
+  void undo_switch() noexcept;
   /// Starts on a trajectory from any state of the axes, moving or not, whatever ran before; alpha is 1, and it never runs back beyond here.
   SwitchOutcome start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& = {}) noexcept;
 
@@ -47,6 +51,7 @@ class TimeLaw {
   /// On the own time of the trajectory given last; while the connecting motion of a switch runs: before joined_at() [s].
   double own_time() const noexcept { return now_.tau - offset_; }
   double joined_at() const noexcept { return joined_at_; }      ///< own time at which the trajectory given last was joined [s]
+  double left_at() const noexcept { return left_at_; }          ///< time() at which the path before the last switch is left [s]
   const SegmentTable& path() const noexcept { return table_; }  ///< what is run: trajectories given and connecting motions
   double alpha() const noexcept { return now_.alpha; }
   double alpha_rate() const noexcept { return now_.beta; }  ///< [1/s]
@@ -80,8 +85,9 @@ class TimeLaw {
   };
   bool recover(Now s, Way& out) noexcept;
   Now next_of(const Now& s, double u) const noexcept;
-  SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, const SegmentTable& next,
+  SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
                           const SwitchSettings& settings) noexcept;
+  void back_to_before() noexcept;
   double choose() noexcept;
   void publish() noexcept;
 
@@ -90,7 +96,11 @@ class TimeLaw {
   TrajectorySwitch connection_;
   KinematicLimits guard_;
   MotionState3 from_, row_;
-  double offset_{}, joined_at_{};
+  double offset_{}, joined_at_{}, left_at_{};
+  struct Before {
+    Now now;
+    double lowest{}, target{}, offset{}, joined_at{}, left_at{};
+  } before_;  // the last switch
   std::vector<detail::Lane8> limits_;  // of acceleration, then of jerk; as table_ lays out its axes
   double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{};
   Now now_, tick_;

@@ -18,6 +18,15 @@ bool same(const Attachment& a, const Attachment& b) {
   return a.object == b.object && (a.object.empty() || a.T_tool_object.isApprox(b.T_tool_object, 1e-4));
 }
 
+bool same(const Trajectory& a, const Trajectory& b) {
+  const auto same_segment = [](const Segment& s, const Segment& t) { return s.duration == t.duration && s.jerk == t.jerk; };
+  const auto same_axis = [&](const AxisTrajectory& s, const AxisTrajectory& t) {
+    return s.start.position == t.start.position && s.start.velocity == t.start.velocity && s.start.acceleration == t.start.acceleration &&
+           std::equal(s.segments.begin(), s.segments.end(), t.segments.begin(), t.segments.end(), same_segment);
+  };
+  return std::equal(a.axes.begin(), a.axes.end(), b.axes.begin(), b.axes.end(), same_axis);
+}
+
 }  // namespace
 
 Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings)
@@ -51,7 +60,7 @@ void Forecaster::remember_for(const ActiveTrajectory& active) {
   Vector others = active.position;
   for (std::uint32_t axis : active.axes) others[axis] = 0;
   const bool known = !memory_.empty() && trajectory_ == active.trajectory && same(attachment_, active.attachment) &&
-                     allowed_ == active.allowed_contacts && others_.size() == others.size() &&
+                     allowed_ == active.allowed_contacts && same(path_, active.rest) && others_.size() == others.size() &&
                      (others - others_).cwiseAbs().maxCoeff() < kOtherAxes;
   if (known) return;
   if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts || trajectory_ != active.trajectory)
@@ -60,6 +69,7 @@ void Forecaster::remember_for(const ActiveTrajectory& active) {
   attachment_ = active.attachment;
   allowed_ = active.allowed_contacts;
   others_ = others;
+  path_ = active.rest;
   const std::size_t states = 2 + static_cast<std::size_t>(active.rest.duration() / settings_.spacing);
   memory_.assign(states, Memory::unknown);
   contacts_.assign(states, {});

@@ -49,6 +49,7 @@ class Forecaster {
   std::uint64_t trajectory_{0};  // that memory_ is about
   Attachment attachment_;
   std::vector<std::string> allowed_;
+  Trajectory path_;             // whose times memory_ goes by; it grows while it runs when commands queue
   Vector others_;               // positions of the axes the trajectory does not move, when memory_ began
   std::vector<Memory> memory_;  // by state of the trajectory
   std::vector<CollisionVerdict> contacts_;

@@ -11,8 +11,9 @@ class AxisMover {
   void reset(double position) noexcept;
   /// In motion at `state`; comes to rest as fast as it can.
   void take_over(const AxisState& state, const AxisLimits& limits) noexcept;
-  /// Minimum-time motion from the present state to rest at `target`.
-  void go_to(double target, const AxisLimits& limits) noexcept;
+  /// Minimum-time motion from the present state to rest at `target`. Where `limits` would let the present state go on to a velocity beyond
+  /// theirs, acceleration and jerk may be as large as `most`.
+  void go_to(double target, const AxisLimits& limits, const AxisLimits& most) noexcept;
   /// Minimum-time stop from the present state.
   void stop(const AxisLimits& limits) noexcept;
   const AxisState& step(double dt) noexcept;  ///< state dt later

@@ -6,15 +6,14 @@
 
 #include "common/base/errors.hpp"
 #include "common/trajectory/edit.hpp"
-#include "common/trajectory/limits_check.hpp"
-#include "common/trajectory/solve.hpp"
+#include "common/trajectory/stop.hpp"
 #include "components/trajectory_controller/gaze.hpp"
 
 namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kAtRest = 1e-6;
+constexpr double kStopSlack = 0.05;  // [s] after detection and the fastest stop the robot rests
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
   std::vector<int> axes;
@@ -73,138 +72,9 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   head_target_.assign(head_axes_.size(), 0.0);
   set_point_ = rest_state(Vector::Zero(n));
   next_ = set_point_;
-  full_velocity_ = full_acceleration_ = posture_ = Vector::Zero(n);
+  full_velocity_ = full_acceleration_ = posture_ = yield_from_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
-}
-
-KinematicLimits Controller::of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const {
-  KinematicLimits part;
-  const auto n = static_cast<Eigen::Index>(axes.size());
-  part.velocity.resize(n);
-  part.acceleration.resize(n);
-  part.jerk.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const auto axis = axes[static_cast<std::size_t>(i)];
-    part.velocity[i] = limits.velocity[axis];
-    part.acceleration[i] = limits.acceleration[axis];
-    part.jerk[i] = limits.jerk[axis];
-  }
-  return part;
-}
-
-std::string Controller::why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const {
-  if (robot != robot_->name()) return "it is for robot " + robot + ", this is " + robot_->name();
-  if (!ready_) return "the robot's posture is not known yet";
-  if (to_seconds(age) > settings_.max_command_age) return "it is " + std::to_string(to_seconds(age)) + " s old";
-  if (!go_seen_.ever || epoch != go_.epoch)
-    return "its epoch " + std::to_string(epoch) + " is not the one in force, " + std::to_string(go_.epoch);
-  if (verdict_.mode >= Mode::stop) return std::string("the controller is in mode ") + name(verdict_.mode) + ": " + name(latched_cause_);
-  return {};
-}
-
-std::string Controller::why_not(const TrajectoryCommand& command, Duration age) const {
-  if (std::string reason = why_not_now(command.robot, command.epoch, age); !reason.empty()) return reason;
-  if (command.axes.empty() && command.trajectory.size() == 0) return {};
-  if (command.trajectory.size() != static_cast<int>(command.axes.size()))
-    return "it has " + std::to_string(command.trajectory.size()) + " axes and names " + std::to_string(command.axes.size());
-  std::vector<char> used(part_.size(), 0);
-  for (std::uint32_t axis : command.axes) {
-    if (axis >= part_.size()) return "axis " + std::to_string(axis) + " does not exist";
-    if (part_[axis] != Part::arm) return "axis " + robot_->axes()[axis].name + " is not moved by trajectories";
-    if (used[axis]++) return "axis " + robot_->axes()[axis].name + " comes twice";
-  }
-  if (std::string reason = why_not_within(command.trajectory, of_axes(robot_->guard_limits(), command.axes), kLimitTolerance);
-      !reason.empty())
-    return reason;
-  if (arm_ == Arm::running && !runner_.standing()) return "trajectory " + std::to_string(command_.id) + " is running";
-  for (int axis : arm_axes_)
-    if (set_point_.velocity[axis] != 0.0 || set_point_.acceleration[axis] != 0.0) return "the arm is still in motion";
-  const MotionState3 first = command.trajectory.at(0.0), last = final_state(command.trajectory);
-  for (std::size_t i = 0; i < command.axes.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
-    const Axis& axis = robot_->axes()[command.axes[i]];
-    if (std::abs(first.velocity[k]) > kAtRest || std::abs(first.acceleration[k]) > kAtRest)
-      return "axis " + axis.name + " does not start at rest";
-    if (std::abs(last.velocity[k]) > kAtRest || std::abs(last.acceleration[k]) > kAtRest)
-      return "axis " + axis.name + " does not end at rest";
-    const double off = std::abs(first.position[k] - set_point_.position[command.axes[i]]);
-    if (!(off <= settings_.start_tolerance)) return "axis " + axis.name + " starts " + std::to_string(off) + " rad from the set-point";
-    const AxisExtremes reach = extremes(command.trajectory.axes[i]);
-    if (reach.lowest < axis.lower - kAtRest || reach.highest > axis.upper + kAtRest)
-      return "axis " + axis.name + " would reach [" + std::to_string(reach.lowest) + ", " + std::to_string(reach.highest) +
-             "] rad, outside its bounds";
-  }
-  return {};
-}
-
-std::string Controller::accept(const TrajectoryCommand& command, Duration age, TimePoint now) {
-  if (command.id != 0 && command.id == accepted_trajectory_) return {};
-  last_trajectory_ = command.id;
-  const std::string reason = why_not(command, age);
-  if (!reason.empty()) {
-    refusal_ = "trajectory " + std::to_string(command.id) + ": " + reason;
-    motion_ = MotionState::refused;
-    return reason;
-  }
-  if (command.axes.empty()) {
-    accepted_trajectory_ = command.id;
-    refusal_.clear();
-    cancelled_ = arm_ == Arm::running;
-    motion_ = MotionState::stopped;
-    return {};
-  }
-  MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
-  for (std::size_t i = 0; i < command.axes.size(); ++i) here.position[static_cast<Eigen::Index>(i)] = set_point_.position[command.axes[i]];
-  const MotionState3 there = rest_state(command.trajectory.at(0.0).position);
-  Trajectory path = command.trajectory;
-  constexpr double kSame = 1e-6;
-  if ((here.position - there.position).cwiseAbs().maxCoeff() > kSame) {
-    Solution bridge = solve(here, there, of_axes(robot_->comfort_limits(), command.axes));
-    if (!bridge.ok()) {
-      motion_ = MotionState::refused;
-      refusal_ = "trajectory " + std::to_string(command.id) + ": no motion to its start: " + bridge.reason;
-      return bridge.reason;
-    }
-    path = std::move(bridge.trajectory);
-    append(path, command.trajectory);
-  } else {
-    for (std::size_t i = 0; i < path.axes.size(); ++i) path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
-  }
-  cancelled_ = off_path_ = false;
-  const double factor = std::max(0.0, wanted_factor(now));
-  if (const std::string why = runner_.start(path, of_axes(robot_->guard_limits(), command.axes), factor); !why.empty()) {
-    motion_ = MotionState::refused;
-    refusal_ = "trajectory " + std::to_string(command.id) + ": " + why;
-    return why;
-  }
-  accepted_trajectory_ = command.id;
-  refusal_.clear();
-  stand_arm();
-  command_ = command;
-  command_.trajectory = {};
-  path_ = runner_.state();
-  arm_ = Arm::running;
-  motion_ = MotionState::running;
-  started_ = now;
-  too_near_for_ = 0.0;
-  verdict_now_ = verdict_ahead_ = {};
-  return {};
-}
-
-std::string Controller::accept(const HandCommand& command, Duration age, TimePoint) {
-  if (command.id != 0 && command.id == accepted_hand_) return {};
-  last_hand_ = command.id;
-  std::string reason = why_not_now(command.robot, command.epoch, age);
-  if (reason.empty()) reason = hand_.accept(command);
-  hand_refused_ = !reason.empty();
-  if (hand_refused_) {
-    refusal_ = "hand command " + std::to_string(command.id) + ": " + reason;
-  } else {
-    accepted_hand_ = command.id;
-    refusal_.clear();
-  }
-  return reason;
 }
 
 void Controller::on(const RobotState& state, TimePoint sampled) {
@@ -213,7 +83,7 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
   constexpr double kRestart = 0.5;
   // In an exchange the person's pull is wanted; at rest a push does no harm.
   const double since = robot_seen_.ever ? std::clamp(to_seconds(sampled - robot_seen_.at), 0.0, 0.1) : 0.0;
-  touched_ = contact_.update(state.external_torque, since) && exchanging_.empty();
+  touched_ = contact_.update(state.external_torque, since, arm_ == Arm::standing) && exchanging_.empty();
   const bool restarted = robot_seen_.ever && state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart;
   state_ = state;
   robot_seen_.mark(sampled);
@@ -224,7 +94,7 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
   set_point_ = rest_state(state.position);
   for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), state.position[i]);
   next_ = set_point_;
-  if (arm_ == Arm::running) motion_ = MotionState::stopped;
+  if (arm_ == Arm::running || rejoin_) give_up_path();
   stand_arm();
   hand_.reset(set_point_.position);
   for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
@@ -290,6 +160,12 @@ double Controller::inside(int axis, double position) const noexcept {
   return std::abs(within - position) <= kNoise ? within : position;
 }
 
+/// The piece of the path that is being run.
+void Controller::find_piece() noexcept {
+  while (current_ + 1 < pieces_.size() && runner_.time() >= pieces_[current_ + 1].begin) ++current_;
+  while (current_ > 0 && runner_.time() < pieces_[current_].begin) --current_;
+}
+
 void Controller::stand_arm() noexcept {
   for (int axis : arm_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
   arm_ = Arm::standing;
@@ -334,9 +210,9 @@ void Controller::judge_path(bool ahead, double age) noexcept {
   if (arm_ == Arm::running) {
     full_velocity_.setZero();
     full_acceleration_.setZero();
-    runner_.trajectory().sample(runner_.time() + (ahead ? settings_.look_ahead * std::max(runner_.factor(), 0.2) : 0.0), path_);
-    for (std::size_t i = 0; i < command_.axes.size(); ++i) {
-      const auto axis = static_cast<Eigen::Index>(command_.axes[i]);
+    runner_.look(runner_.time() + (ahead ? settings_.look_ahead * std::max(runner_.factor(), 0.2) : 0.0), path_);
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      const auto axis = static_cast<Eigen::Index>(axes_[i]);
       const auto k = static_cast<Eigen::Index>(i);
       posture_[axis] = path_.position[k];
       full_velocity_[axis] = path_.velocity[k];
@@ -354,7 +230,7 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   const double attention_age = advice_seen_.age(now);
   const bool silent = attention_age < 0 || attention_age > settings_.timeouts.attention;
   double wanted = std::min({go_.override_factor, guard_verdict_.forward, silent ? settings_.attention_lost_factor : advice_.speed_factor});
-  if (forecast_.collides && forecast_.trajectory == command_.id) {
+  if (forecast_.collides && forecast_.trajectory == piece().id) {
     const double share = (forecast_.time_to_collision - settings_.forecast_hold) / (settings_.forecast_slow - settings_.forecast_hold);
     wanted = std::min(wanted, exchanging_.empty() ? std::clamp(share, 0.0, 1.0) : 0.5);
   }
@@ -368,14 +244,14 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.forecast_age = forecast_seen_.age(now);
   in.attention_age = advice_seen_.age(now);
   in.go_age = go_seen_.age(now);
-  in.running = arm_ == Arm::running;
+  in.running = arm_ == Arm::running || rejoin_;
   in.running_for = in.running ? to_seconds(now - started_) : 0.0;
-  in.at_rest = set_point_.velocity.isZero(0.0) && set_point_.acceleration.isZero(0.0);
+  in.at_rest = at_rest();
   in.drive_enabled = state_.mode == DriveMode::enabled;
 
   double off = 0.0;
   for (int axis : arm_axes_) off = std::max(off, std::abs(state_.position[axis] - set_point_.position[axis]));
-  tracking_for_ = in.drive_enabled && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
+  tracking_for_ = in.drive_enabled && !settings_.dry_run && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
   in.tracking_error = tracking_for_ > settings_.tracking_time;
   in.limit_violation = limit_violation_;
   limit_violation_ = false;
@@ -383,7 +259,7 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   if (late) ++late_cycles_;
   in.cycle_late = late_in_a_row_ >= settings_.late_limit;
 
-  if (in.running && forecast_.collides && forecast_.trajectory == command_.id) {
+  if (in.running && forecast_.collides && forecast_.trajectory == piece().id) {
     const bool soon = forecast_.time_to_collision < settings_.forecast_hold;
     in.forecast_collision_hold = soon && exchanging_.empty();
     in.forecast_collision_slow = !in.forecast_collision_hold && forecast_.time_to_collision < settings_.forecast_slow;
@@ -392,7 +268,7 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.wall_slow = guard_verdict_.wall && guard_verdict_.forward < 0.999;
   too_near_for_ = in.running && guard_verdict_.too_near ? too_near_for_ + settings_.period : 0.0;
   in.separation_stop = too_near_for_ > settings_.guard.stop_persistence;
-  in.contact_stop = touched_ && !in.at_rest;
+  in.contact_stop = touched_ && !in.at_rest && !yielding_;
   in.human_unknown = human_seen_.ever && !crowd_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.override_slow = go_.override_factor < 0.999;
@@ -402,18 +278,57 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   return in;
 }
 
+/// Of the arm, each axis by itself [s].
+double Controller::fastest_stop() const noexcept {
+  double longest = 0.0;
+  const KinematicLimits& l = robot_->stop_limits();
+  for (int axis : arm_axes_)
+    longest = std::max(longest,
+                       measure_stop(set_point_.velocity[axis], set_point_.acceleration[axis], l.acceleration[axis], l.jerk[axis]).duration);
+  return longest;
+}
+
+/// A stop along the path may take longer than the axes need: then it is ended beside it, in the time that is promised.
+bool Controller::must_leave_path(TimePoint now) const noexcept {
+  return verdict_.mode == Mode::hold && !runner_.standing() && now + from_seconds(fastest_stop() + 3 * settings_.period) >= hold_due_;
+}
+
+void Controller::give_up_path() noexcept {
+  motion_ = MotionState::stopped;
+  rejoin_ = false;
+}
+
+void Controller::go_back_to_path() noexcept {
+  for (std::size_t i = 0; i < axes_.size(); ++i) path_.position[static_cast<Eigen::Index>(i)] = set_point_.position[axes_[i]];
+  path_.velocity.setZero();
+  path_.acceleration.setZero();
+  rejoin_ = false;
+  if (!runner_.rejoin(path_)) {
+    give_up_path();
+    return;
+  }
+  for (Piece& p : pieces_) {
+    p.begin += runner_.rejoin_shift();
+    p.offset += runner_.rejoin_shift();
+  }
+  arm_ = Arm::running;
+  new_people_ = true;
+}
+
 void Controller::step_arm(TimePoint now) noexcept {
+  if (rejoin_ && verdict_.mode >= Mode::stop) give_up_path();
+  if (rejoin_ && arm_ == Arm::standing && verdict_.mode < Mode::hold) go_back_to_path();
   if (arm_ == Arm::running) {
     if (verdict_.mode >= Mode::stop) {
-      motion_ = MotionState::stopped;
+      give_up_path();
       stop_arm();
-    } else if (!runner_.step(wanted_factor(now))) {
-      off_path_ = true;
-      motion_ = MotionState::stopped;
+    } else if (must_leave_path(now) || !runner_.step(wanted_factor(now))) {
+      rejoin_ = !cancelled_;
       stop_arm();
     } else {
-      for (std::size_t i = 0; i < command_.axes.size(); ++i) {
-        const auto axis = static_cast<Eigen::Index>(command_.axes[i]);
+      find_piece();
+      for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const auto axis = static_cast<Eigen::Index>(axes_[i]);
         const auto k = static_cast<Eigen::Index>(i);
         next_.position[axis] = runner_.state().position[k];
         next_.velocity[axis] = runner_.finished() ? 0.0 : runner_.state().velocity[k];
@@ -431,8 +346,7 @@ void Controller::step_arm(TimePoint now) noexcept {
   bool resting = true;
   for (int axis : arm_axes_) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    const bool on_path = arm_ == Arm::running &&
-                         std::find(command_.axes.begin(), command_.axes.end(), static_cast<std::uint32_t>(axis)) != command_.axes.end();
+    const bool on_path = arm_ == Arm::running && std::find(axes_.begin(), axes_.end(), static_cast<std::uint32_t>(axis)) != axes_.end();
     if (on_path || (arm_ == Arm::standing && mover.at_rest() && next_.velocity[axis] == 0.0 && next_.acceleration[axis] == 0.0)) continue;
     write(axis, mover.step(settings_.period));
     resting = resting && mover.at_rest();
@@ -475,21 +389,56 @@ void Controller::step_head() noexcept {
     if (!may_move && !head_paused_) {
       mover.stop(limits_of(robot_->stop_limits(), axis));
     } else if (may_move && head_wanted_ && std::abs(head_target_[i] - mover.target()) > settings_.head_dead_band) {
-      mover.go_to(head_target_[i], limits_of(robot_->comfort_limits(), axis));
+      mover.go_to(head_target_[i], limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
     }
     write(axis, mover.step(settings_.period));
   }
   head_paused_ = !may_move;
 }
 
+/// At rest the arm gives way to who pushes it, axis by axis, until the push ends.
+void Controller::step_yield() noexcept {
+  constexpr int kEvery = 10;      // cycles
+  constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
+  const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && exchanging_.empty() &&
+                   state_.mode == DriveMode::enabled && hand_.state() != HandState::moving && settings_.yield_speed > 0.0;
+  const bool pushed = may && contact_.pushed() && (verdict_.causes & (bit(Cause::robot_state_silent))) == 0;
+  if (pushed && !yielding_ && at_rest()) {
+    yield_from_ = set_point_.position;
+    yielding_ = true;
+  }
+  if (!yielding_) return;
+  bool resting = true;
+  for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
+    const int axis = arm_axes_[i];
+    AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
+    const double push = pushed ? contact_.push(i) : 0.0;
+    if (arm_ == Arm::standing && push == 0.0) {
+      if (!mover.at_rest()) mover.stop(limits_of(robot_->stop_limits(), axis));
+    } else if (arm_ == Arm::standing && cycles_ % kEvery == 0) {
+      const double speed = settings_.yield_speed * std::min(1.0, std::abs(push) / settings_.contact.yield_torque - 1.0);
+      AxisLimits limits = limits_of(robot_->comfort_limits(), axis);
+      limits.velocity = std::clamp(speed, 1e-3, limits.velocity);
+      const Axis& bounds = robot_->axes()[static_cast<std::size_t>(axis)];
+      double target = std::clamp(mover.state().position + std::copysign(kAhead * limits.velocity, push),
+                                 yield_from_[axis] - settings_.yield_reach, yield_from_[axis] + settings_.yield_reach);
+      if (bounds.lower < bounds.upper) target = std::clamp(target, bounds.lower, bounds.upper);
+      mover.go_to(target, limits, limits_of(robot_->stop_limits(), axis));
+    }
+    resting = resting && mover.at_rest();
+  }
+  if (!pushed && resting) yielding_ = false;
+}
+
 void Controller::resync(TimePoint now) noexcept {
-  const bool wanted = verdict_.mode == Mode::fault || state_.mode != DriveMode::enabled;
-  if (!wanted || arm_ != Arm::standing || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
+  const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || state_.mode != DriveMode::enabled;
+  if (!wanted || arm_ != Arm::standing || !at_rest() || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
   constexpr double kDeadBand = 0.002;
   for (int axis : arm_axes_) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
     const double measured = inside(axis, state_.position[axis]);
-    if (std::abs(measured - mover.target()) > kDeadBand) mover.go_to(measured, limits_of(robot_->comfort_limits(), axis));
+    if (std::abs(measured - mover.target()) > kDeadBand)
+      mover.go_to(measured, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
   }
   if (hand_.size() > 0) hand_.follow(state_.position);
 }
@@ -504,7 +453,7 @@ void Controller::check_last() noexcept {
   if (!arm && !hand && !head) return;
   limit_violation_ = true;
   if (arm) {
-    if (arm_ == Arm::running) motion_ = MotionState::stopped;
+    if (arm_ == Arm::running || rejoin_) give_up_path();
     stop_arm();
     for (int axis : arm_axes_) write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
   }
@@ -542,9 +491,15 @@ bool Controller::step(TimePoint now, bool late) noexcept {
       latched_cause_ = Cause::no_go;
   } else {
     latched_cause_ = Cause::none;
+    hold_due_ = now + from_seconds(fastest_stop() + kStopSlack);
+  }
+  if (refused_for_ > 0 && --refused_for_ == 0) {
+    refused_ = false;
+    refusal_.clear();
   }
   next_ = set_point_;
   resync(now);
+  step_yield();
   step_arm(now);
   step_hand(now);
   step_head();
@@ -554,8 +509,11 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   return true;
 }
 
+MotionState Controller::told_motion() const noexcept { return refused_ ? MotionState::refused : motion_; }
+
 StatusKey Controller::status_key() const {
-  return {verdict_.mode, go_.epoch, last_trajectory_, last_hand_, motion_, hand_refused_ ? HandState::refused : hand_.state()};
+  return {verdict_.mode, go_.epoch,     refused_ ? refused_trajectory_ : accepted_trajectory_,
+          last_hand_,    told_motion(), hand_refused_ ? HandState::refused : hand_.state()};
 }
 
 ExecutionStatus Controller::status() const {
@@ -564,11 +522,14 @@ ExecutionStatus Controller::status() const {
   s.mode = verdict_.mode;
   s.causes = verdict_.causes;
   s.epoch = go_.epoch;
-  s.trajectory = last_trajectory_;
-  s.motion = motion_;
-  s.progress = motion_ == MotionState::finished                            ? 1.0
-               : runner_.duration() > 0 && last_trajectory_ == command_.id ? runner_.time() / runner_.duration()
-                                                                           : 0.0;
+  s.trajectory = refused_ ? refused_trajectory_ : accepted_trajectory_;
+  s.motion = told_motion();
+  if (s.motion == MotionState::finished) {
+    s.progress = 1.0;
+  } else if (!refused_ && accepted_trajectory_ == pieces_.back().id && runner_.duration() > pieces_.back().begin) {
+    const double begin = pieces_.back().begin;
+    s.progress = std::clamp((runner_.time() - begin) / (runner_.duration() - begin), 0.0, 1.0);
+  }
   s.hand_command = last_hand_;
   s.hand = hand_refused_ ? HandState::refused : hand_.state();
   s.pull = hand_.pull();
@@ -577,12 +538,12 @@ ExecutionStatus Controller::status() const {
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
     if (latched_cause_ == Cause::contact) s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
-  } else if (motion_ == MotionState::stopped && off_path_) {
-    s.reason = "no speed along the path kept the limits; stopped beside it";
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
     s.reason = name(cause);
     if (cause == Cause::attention_slow) s.reason += ": " + advice_.reason;
     if (cause == Cause::forecast_collision) s.reason += ": " + forecast_.reason;
+  } else if (settings_.dry_run) {
+    s.reason = "dry run: no set-point is sent";
   }
   s.cycles = cycles_;
   s.late_cycles = late_cycles_;
@@ -603,14 +564,14 @@ ActiveTrajectory Controller::active() const {
   a.position = set_point_.position;
   a.velocity = set_point_.velocity;
   a.acceleration = set_point_.acceleration;
-  if (hand_.state() != HandState::released) a.attachment = command_.attachment;
+  if (hand_.state() != HandState::released) a.attachment = piece().attachment;
   if (arm_ != Arm::running) return a;
-  a.trajectory = command_.id;
+  a.trajectory = piece().id;
   a.time = runner_.time();
   a.speed_factor = runner_.factor();
-  a.axes = command_.axes;
-  a.rest = runner_.trajectory();
-  a.allowed_contacts = command_.allowed_contacts;
+  a.axes = axes_;
+  a.rest = runner_.path();
+  a.allowed_contacts = piece().allowed_contacts;
   return a;
 }
 

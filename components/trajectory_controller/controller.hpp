@@ -27,6 +27,10 @@ struct ControllerSettings {
   double recoil_limit{0.2};           ///< fastest running back along the path, [0, 1]
   double max_command_age{0.5};        ///< older commands are refused [s]
   double start_tolerance{0.05};       ///< a trajectory may start this far from the set-point; a short motion bridges it [rad]
+  double switch_reach{0.3};           ///< in motion, a trajectory is joined at most this far from where the one before is left [rad]
+  double yield_speed{0.2};            ///< fastest giving way to a push at rest [rad/s]
+  double yield_reach{0.3};            ///< farthest, each axis [rad]
+  bool dry_run{};                     ///< everything but the output: the robot does not follow, and need not
   double tracking_tolerance{0.3};     ///< measured beyond this from the set-point (hand left out): Fault [rad]
   double tracking_time{0.1};          ///< for this long [s]
   double forecast_hold{0.6};          ///< collision forecast within this time: Hold [s]
@@ -55,9 +59,11 @@ class Controller {
   /// Throws ConfigError naming the field. Robot groups "hand" and "head" may be missing; all other axes are moved by trajectories.
   Controller(const ControllerSettings& settings, std::shared_ptr<const RobotModel> robot);
 
-  /// Empty when accepted (or already known), else why not, one sentence. A command without axes stops the running trajectory softly.
-  /// `age`: of the command at arrival.
-  std::string accept(const TrajectoryCommand& command, Duration age, TimePoint now);
+  /// Empty when accepted, else why not, one sentence; then what runs goes on. While the arm moves the path is left for it at once, or, with
+  /// switch_at, when the command accepted before has run so far; commands wait in line. A command without axes stops the running trajectory
+  /// softly, and ends those that wait. `age`: of the command at arrival; `switch_at`: on the own time of the command accepted before, when
+  /// that is left for this one; 0 or past: now [s].
+  std::string accept(const TrajectoryCommand& command, Duration age, TimePoint now, double switch_at = 0.0);
   std::string accept(const HandCommand& command, Duration age, TimePoint now);
 
   // Samples: `sampled` is the arrival minus the age at arrival.
@@ -92,6 +98,13 @@ class Controller {
     }
     double age(TimePoint now) const { return ever ? std::max(0.0, to_seconds(now - at)) : -1.0; }
   };
+  /// The path of the arm is one motion made of the commands accepted: where each begins on it.
+  struct Piece {
+    std::uint64_t id{};
+    double begin{}, offset{};  // where the path turns to it; where its own time is 0 [s]
+    Attachment attachment;
+    std::vector<std::string> allowed_contacts;
+  };
   struct PersonPoints {
     std::string id;
     Vector3 torso, left_hand, right_hand;  // world
@@ -99,9 +112,22 @@ class Controller {
 
   std::string why_not(const TrajectoryCommand& command, Duration age) const;
   std::string why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const;
+  std::string why_not_from_rest(const TrajectoryCommand& command) const;
+  std::string start(const TrajectoryCommand& command, TimePoint now);
+  std::string go_over(const TrajectoryCommand& command, double switch_at);
+  std::string refuse(const TrajectoryCommand& command, const std::string& reason);
+  void take(const TrajectoryCommand& command, double begin, double offset);
+  const Piece& piece() const noexcept { return pieces_[current_]; }
+  void find_piece() noexcept;
+  MotionState told_motion() const noexcept;
   KinematicLimits of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const;
+  PathLimits path_limits(const std::vector<std::uint32_t>& axes) const;
   double inside(int axis, double position) const noexcept;
   void stop_arm() noexcept;
+  bool must_leave_path(TimePoint now) const noexcept;
+  double fastest_stop() const noexcept;
+  void give_up_path() noexcept;
+  void go_back_to_path() noexcept;
   void stand_arm() noexcept;
   void run_guard(TimePoint now) noexcept;
   void judge_path(bool ahead, double age) noexcept;
@@ -110,8 +136,10 @@ class Controller {
   void step_arm(TimePoint now) noexcept;
   void step_hand(TimePoint now) noexcept;
   void step_head() noexcept;
+  void step_yield() noexcept;
   void check_last() noexcept;
   AxisState sent(int axis) const noexcept;
+  bool at_rest() const noexcept { return set_point_.velocity.isZero(0.0) && set_point_.acceleration.isZero(0.0); }
   void write(int axis, const AxisState& s) noexcept;
   void resync(TimePoint now) noexcept;
   void refresh_crowd();
@@ -145,12 +173,18 @@ class Controller {
   // Arm.
   Arm arm_{Arm::standing};
   PathRunner runner_;
-  TrajectoryCommand command_;
-  bool cancelled_{}, off_path_{};
+  std::vector<std::uint32_t> axes_;  // of the path
+  std::vector<Piece> pieces_{Piece{}};
+  std::size_t current_{};
+  bool cancelled_{};
+  bool rejoin_{};  // the arm left the path to stop in time, and goes back to it
+  TimePoint hold_due_{};
   TimePoint started_{};
   std::vector<AxisMover> movers_;  // one a robot axis; those of the hand unused
-  std::uint64_t last_trajectory_{}, accepted_trajectory_{};
-  MotionState motion_{MotionState::idle};
+  std::uint64_t accepted_trajectory_{}, refused_trajectory_{};
+  MotionState motion_{MotionState::idle};  // of what was accepted last
+  bool refused_{};                         // is told instead
+  int refused_for_{};                      // cycles still; 0: until something is accepted
 
   // Hand and head.
   HandExecutor hand_;
@@ -161,6 +195,8 @@ class Controller {
 
   // Judging.
   ContactWatch contact_;
+  bool yielding_{};
+  Vector yield_from_;
   ModeMachine modes_;
   ModeVerdict verdict_;
   GuardVerdict guard_verdict_, verdict_now_, verdict_ahead_, nearest_;

@@ -17,6 +17,7 @@ void prepare(const HumanState& people, const Exception& exception, double unknow
       c.a = body.a;
       c.b = body.b;
       c.radius = body.radius;
+      c.age = person.inflation > 0 ? 0.0 : std::max(0.0, person.age);
       c.centre = 0.5 * (body.a + body.b);
       c.reach = 0.5 * (body.b - body.a).norm() + body.radius;
       if (known)

@@ -18,6 +18,7 @@ struct CrowdCapsule {
   std::array<Vector3, 8> velocities{};  ///< of the joints that carry it, world [m/s]
   int joints{};                         ///< 0: lost, velocity unknown
   double fastest{};                     ///< of the joints [m/s]
+  double age{};                         ///< since this person was last seen, when the radius does not hold it yet [s]
   bool excepted{};                      ///< exchanging forearm or hand
 };
 

@@ -116,7 +116,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       // What is farther than this changes nothing: rough first, then exactly.
       const double matters = part.excepted       ? settings.exchange_range
                              : quickest < kStill ? 0.0
-                                                 : needed(fastest(part, settings), quickest, high, reaction, margin);
+                                                 : needed(fastest(part, settings), quickest, high, reaction + part.age, margin);
       const double rough = (part.excepted ? matters : std::max(matters, verdict.distance)) + reach + part.reach;
       if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       Vector3 on_robot, on_person;
@@ -132,7 +132,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
         verdict.on_robot = on_robot;
         verdict.on_person = on_person;
         verdict.needed = needed(directed_speed(part, -toward, settings), std::max(0.0, std::copysign(closing, closing * factor)), present,
-                                reaction, margin);
+                                reaction + part.age, margin);
       }
       if (distance >= matters) continue;
       double& best = closing > 0 ? forward : backward;
@@ -143,10 +143,11 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       }
       if (std::abs(closing) < kStill) continue;
       const double v_h = directed_speed(part, -toward, settings);
-      best = allowed(distance, v_h, std::abs(closing), margin, best);
+      const double left = distance - v_h * part.age;  // the person may have come that much nearer since
+      best = allowed(left, v_h, std::abs(closing), margin, best);
       high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kGrid - 1e-9)));
       const bool closes_now = closing * factor > 0.05;
-      if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > distance) verdict.too_near = true;
+      if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > left) verdict.too_near = true;
     }
   }
   verdict.separation = forward < 1.0 || backward < 1.0;

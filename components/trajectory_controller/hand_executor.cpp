@@ -49,7 +49,7 @@ void HandExecutor::follow(const Vector& robot_position) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     f.target = f.final = std::clamp(robot_position[axes_[i]], lower_[i], upper_[i]);
-    if (std::abs(f.target - f.mover.target()) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0));
+    if (std::abs(f.target - f.mover.target()) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0), limits(i, stop_, 1.0));
   }
   phase_ = Phase::hold;
   by_pull_ = false;
@@ -93,7 +93,7 @@ void HandExecutor::retarget(std::size_t i, double target) {
     l.acceleration *= f.share;
     l.jerk *= f.share;
   }
-  f.mover.go_to(f.target, l);
+  f.mover.go_to(f.target, l, limits(i, stop_, 1.0));
 }
 
 void HandExecutor::start(Phase phase) {

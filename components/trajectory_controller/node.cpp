@@ -28,7 +28,7 @@ Node::Node(Bus& bus, const NodeContext& context)
 
 void Node::tick(TimePoint now) {
   const std::uint64_t late = timer_ ? timer_->late_cycles : 0;
-  if (core_.step(now, late != late_before_)) {
+  if (core_.step(now, late != late_before_) && !settings_.dry_run) {
     ++command_.sequence;
     command_.position = core_.set_point().position;
     command_.velocity = core_.set_point().velocity;

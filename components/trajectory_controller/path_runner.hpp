@@ -1,5 +1,5 @@
-// Runs along one trajectory by the time law (common/trajectory/time_law) and looks at every step before it is taken.
-// No heap in step(), noexcept.
+// Runs along trajectories by the time law (common/trajectory/time_law), goes over from one to the next, and looks at every step before it
+// is taken. No heap in step() and look(), noexcept.
 #pragma once
 
 #include <algorithm>
@@ -9,29 +9,56 @@
 
 namespace handsel::trajectory_controller {
 
+/// What a path may use.
+struct PathLimits {
+  KinematicLimits motion;        ///< of its axes: no set-point exceeds them
+  Eigen::VectorXd lower, upper;  ///< positions a connecting motion stays in; where lower >= upper there is no bound
+};
+
 class PathRunner {
  public:
   explicit PathRunner(double period) : dt_(period) {}
 
-  /// From rest at its beginning, at once with `factor` in [0, 1]. `limits` of its axes: no set-point exceeds them. Empty, or why it
-  /// cannot be run. May allocate.
-  std::string start(const Trajectory& trajectory, const KinematicLimits& limits, double factor);
+  /// From rest at its beginning, at once with `factor` in [0, 1]. Empty, or why it cannot be run. May allocate.
+  std::string start(const Trajectory& trajectory, const PathLimits& limits, double factor);
+  /// Leaves the present path at `leave` on its time() [s] (at once when that is past) for `next`, over the fastest connecting motion that
+  /// joins it no farther than `reach` [rad] from there in any axis, at its beginning when the present path is run to its end; the factor is
+  /// kept. Empty, or why not; then nothing has changed. May allocate.
+  std::string switch_at(double leave, const Trajectory& next, double reach);
+  /// The same from any state of the axes, whatever ran before.
+  std::string start_from(const MotionState3& state, const Trajectory& next, double reach);
+  /// From rest a little beside the path back onto it, a little further on. False: it cannot be joined again. No heap.
+  bool rejoin(const MotionState3& state) noexcept;
+  /// By how much rejoin() has moved the times of the path [s].
+  double rejoin_shift() const noexcept { return shift_; }
   /// One period later, the factor led toward `wanted` in [-1, 1]. False when the step would break a limit: the caller stops from state().
   bool step(double wanted) noexcept;
 
+  /// Position, velocity and acceleration of the path at `time` [s] at full speed.
+  void look(double time, MotionState3& out) noexcept { law_.path().evaluate(time, cursor_, out); }
   const MotionState3& state() const noexcept { return state_; }
-  const Trajectory& trajectory() const noexcept { return trajectory_; }
-  double time() const noexcept { return std::max(0.0, law_.time()); }  ///< along the path [s]
-  double factor() const noexcept { return law_.alpha(); }              ///< alpha
-  double duration() const noexcept { return trajectory_.size() > 0 ? law_.duration() : 0.0; }
+  const Trajectory& path() const;                                           ///< all of it, connecting motions included; may allocate
+  double time() const noexcept { return std::max(0.0, law_.time()); }       ///< along the path [s]
+  double offset() const noexcept { return law_.time() - law_.own_time(); }  ///< time() of the beginning of what was given last [s]
+  double left_at() const noexcept { return law_.left_at(); }                ///< time() at which the path before was or will be left [s]
+  double factor() const noexcept { return law_.alpha(); }                   ///< alpha
+  double duration() const noexcept { return axes() > 0 ? law_.duration() : 0.0; }
+  int axes() const noexcept { return static_cast<int>(state_.position.size()); }
   bool finished() const noexcept { return finished_; }
   bool standing() const noexcept { return law_.standing(); }
 
  private:
+  template <class Switch>
+  std::string go_over(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go);
+  std::string why_out_of_bounds() const;
+
   double dt_;
-  Trajectory trajectory_;
-  KinematicLimits limits_;
+  PathLimits limits_;
   TimeLaw law_;
+  mutable Trajectory path_;  // as law_ has it, unless stale
+  mutable bool stale_{};
+  double shift_{};
+  int cursor_{};
   bool finished_{true};
   MotionState3 state_;
 };

@@ -34,6 +34,10 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.recoil_limit = read(in.recoil_limit(), "recoil_limit", 0, 1);
   s.max_command_age = read(in.max_command_age(), "max_command_age", kTiny, 60);
   s.start_tolerance = read(in.start_tolerance(), "start_tolerance", 0, 1);
+  s.yield_speed = read(in.yield_speed(), "yield_speed", 0, 2);
+  s.yield_reach = read(in.yield_reach(), "yield_reach", 0, 2);
+  s.dry_run = in.dry_run();
+  s.switch_reach = read(in.switch_reach(), "switch_reach", 0, 10);
   s.tracking_tolerance = read(in.tracking_tolerance(), "tracking_tolerance", kTiny, 10);
   s.tracking_time = read(in.tracking_time(), "tracking_time", 0, 10);
   s.forecast_hold = read(in.forecast_hold(), "forecast_hold", 0, 10);
@@ -68,6 +72,8 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.contact.torque = read(c.torque(), "torque", kTiny, 1000);
   s.contact.time = read(c.time(), "time", 0, 10);
   s.contact.usual_time = read(c.usual_time(), "usual_time", kTiny, 100);
+  s.contact.yield_torque = read(c.yield_torque(), "yield_torque", kTiny, 1000);
+  s.contact.yield_time = read(c.yield_time(), "yield_time", 0, 100);
 
   const auto& h = in.hand();
   s.hand.grasp_speed = read(h.grasp_speed(), "grasp_speed", kTiny, 1);

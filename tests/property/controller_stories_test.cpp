@@ -96,7 +96,9 @@ class Story {
     bench.run(0.3);
     Vector goal(3);
     goal << real(-1.5, 1.5), real(-1.5, 1.5), real(-2.0, 2.0);
-    sent += bench.go_to(goal, ++id_).empty() ? 1 : 0;
+    const std::string why = bench.go_to(goal, ++id_);
+    if (!why.empty()) std::printf("a calm trajectory was refused: %s\n", why.c_str());
+    sent += why.empty() ? 1 : 0;
   }
 
   test::ControllerBench bench;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <random>
 
 #include "tests/support/controller_bench.hpp"
@@ -33,13 +34,20 @@ class Watch {
   std::vector<Pose> links_;
 };
 
+int runs_wanted() {
+  const char* text = std::getenv("HANDSEL_SEPARATION_RUNS");
+  return text ? std::atoi(text) : 100;
+}
+
 TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) {
   const std::uint64_t seed = 77;
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   int met = 0, was_moving = 0;
-  for (int trial = 0; trial < 100; ++trial) {
+  double worst = -1.0;
+  const int runs = runs_wanted();
+  for (int trial = 0; trial < runs; ++trial) {
     test::ControllerBench b;
     b.start();
     Watch watch(b);
@@ -66,14 +74,16 @@ TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) 
       const Separation s = watch.separation_now();
       if (s.distance > 0.0) continue;
       ++met;
-      EXPECT_LE(watch.speed_toward(s), 0.02) << "trial " << trial << ", person at " << speed << " m/s";
+      worst = std::max(worst, watch.speed_toward(s));
+      EXPECT_LE(watch.speed_toward(s), 1e-6) << "trial " << trial << ", person at " << speed << " m/s";
       break;
     }
     was_moving += moved ? 1 : 0;
   }
-  std::printf("%d of 100 reached the robot; the arm had been moving in %d\n", met, was_moving);
-  EXPECT_GT(met, 60);
-  EXPECT_GT(was_moving, 80);
+  std::printf("%d of %d reached the robot; the arm had been moving in %d; its largest speed toward them when they met: %.6f m/s\n", met,
+              runs, was_moving, worst);
+  EXPECT_GT(met, 0.6 * runs);
+  EXPECT_GT(was_moving, 0.8 * runs);
 }
 
 TEST(SeparationStories, a_person_standing_still_leaves_most_of_the_time_productive) {

@@ -93,6 +93,15 @@ TEST_F(Forecast, judges_the_scene_once_a_state_while_nothing_changes) {
   EXPECT_LE(again, 33u) << "people only";
 }
 
+TEST_F(Forecast, a_path_that_grows_while_it_runs_is_judged_anew) {
+  forecaster_.set_scene(wall(0.0));
+  ActiveTrajectory active = sweep(0.0, 1.0);
+  for (AxisTrajectory& axis : active.rest.axes) axis.segments[0].duration = 1.2;
+  EXPECT_FALSE(forecaster_.forecast(active).collides);
+  active = sweep(1.0, 1.0);
+  EXPECT_TRUE(forecaster_.forecast(active).collides) << "the same command, and what was put in line behind it";
+}
+
 TEST_F(Forecast, a_torso_in_the_way_is_a_collision_a_hand_only_lowers_the_clearance) {
   Scene scene;
   scene.robot_known = true;

@@ -85,6 +85,9 @@ TEST(Controller, refuses_with_the_reason) {
   c.trajectory.axes[0].start.position += 0.2;
   refused(c, 0, "from the set-point");
   c = good;
+  c.trajectory.axes[0].start.velocity = 0.1;
+  refused(c, 0, "");
+  c = good;
   c.trajectory = cut(good.trajectory, 0.0, 0.5 * good.trajectory.duration());
   refused(c, 0, "end at rest");
   c = b.command(ControllerBench::arm(0, 2.2, 0), 5);
@@ -97,17 +100,270 @@ TEST(Controller, refuses_with_the_reason) {
   EXPECT_EQ(b.send(good), "");
 }
 
-TEST(Controller, the_same_command_twice_is_one_and_another_one_waits_its_turn) {
+TEST(Controller, the_same_command_twice_is_one) {
   ControllerBench b;
   b.start();
   const TrajectoryCommand c = b.command(goal(), 1);
   ASSERT_EQ(b.send(c), "");
   b.run(0.5);
-  EXPECT_EQ(b.send(c), "");
+  EXPECT_THAT(b.send(c), HasSubstr("came before"));
   EXPECT_EQ(b.core.status().motion, MotionState::running);
-  EXPECT_THAT(b.go_to(ControllerBench::arm(0, 0, 0), 2), HasSubstr("running"));
   b.run(5);
+  EXPECT_THAT(b.send(c), HasSubstr("came before"));
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
   EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
+}
+
+void expect_smooth(const ControllerBench& b) {
+  EXPECT_LE(b.worst_velocity, 1 + 1e-6);
+  EXPECT_LE(b.worst_acceleration, 1 + 1e-6);
+  EXPECT_LE(b.worst_jerk, 1 + 1e-6);
+  EXPECT_LE(b.worst_jump, 1 + 1e-6);
+}
+
+TEST(Controller, goes_over_to_another_trajectory_while_moving) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 1), "");
+  b.run(1.2);
+  const double speed = b.core.set_point().velocity[0];
+  EXPECT_GT(speed, 0.4);
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.4, -0.4, 0.3), 2), "");
+  EXPECT_EQ(b.core.status().motion, MotionState::running);
+  EXPECT_EQ(b.core.status().trajectory, 2u);
+  double slowest = speed;
+  for (int k = 0; k < 300; ++k) {
+    b.tick();
+    slowest = std::min(slowest, b.core.set_point().velocity[0]);
+    const ActiveTrajectory a = b.core.active();
+    ASSERT_NEAR(a.rest.at(a.time).position[0], b.core.set_point().position[0], 1e-9);
+  }
+  EXPECT_GT(slowest, 0.6 * speed) << "no stop between";
+  EXPECT_EQ(b.core.active().trajectory, 2u);
+  b.run(6);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(1.4, -0.4, 0.3), 1e-6));
+  expect_smooth(b);
+}
+
+TEST(Controller, turns_round_for_another_trajectory_while_running_back) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 1), "");
+  b.run(2.0);
+  b.advice.speed_factor = -1.0;
+  b.run(1.5);
+  ASSERT_LT(b.core.speed_factor(), -0.1);
+  ASSERT_EQ(b.go_to(ControllerBench::arm(-0.5, 0.2, 0.1), 2), "");
+  b.advice.speed_factor = 1.0;
+  b.run(8);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(-0.5, 0.2, 0.1), 1e-6));
+  expect_smooth(b);
+}
+
+TEST(Controller, what_comes_late_in_a_stop_on_the_path_goes_on_from_there) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 1), "");
+  b.run(1.5);
+  b.go.allowed = false;
+  b.run(0.35);
+  ASSERT_FALSE(b.at_rest());
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.0, 0.0), 2), "") << "Hold forbids motion, not plans";
+  b.run(1.5);
+  EXPECT_TRUE(b.at_rest());
+  EXPECT_EQ(b.core.status().motion, MotionState::running);
+  b.go.allowed = true;
+  ++b.go.epoch;
+  b.run(6);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(1.2, 0.0, 0.0), 1e-6));
+  expect_smooth(b);
+}
+
+/// From where the one before is left: planned for the moment of the switch, with its velocity and acceleration.
+TrajectoryCommand planned_for_a_switch(const ControllerBench& b, const TrajectoryCommand& before, double at, const Vector& goal,
+                                       std::uint64_t id) {
+  const KinematicLimits& l = b.robot->comfort_limits();
+  TrajectoryCommand c = before;
+  c.id = id;
+  c.trajectory = solve(before.trajectory.at(at), rest_state(goal), {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
+  return c;
+}
+
+TEST(Controller, trajectories_queue_with_switch_times_and_are_joined_exactly_there) {
+  ControllerBench b;
+  b.start();
+  const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
+  const TrajectoryCommand second = planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2);
+  TrajectoryCommand third = second;  // from where the second ends
+  third.id = 3;
+  const KinematicLimits& l = b.robot->comfort_limits();
+  third.trajectory = solve(rest_state(ControllerBench::arm(0.3, -0.4, 0.2)), rest_state(ControllerBench::arm(0.8, 0, 0)),
+                           {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)})
+                         .trajectory;
+  ASSERT_EQ(b.send(first), "");
+  ASSERT_EQ(b.send(second, 0.0, 1.5), "");
+  ASSERT_EQ(b.send(third, 0.0, 1e6), "");
+  EXPECT_EQ(b.core.status().trajectory, 3u);
+  EXPECT_EQ(b.core.status().motion, MotionState::running);
+  EXPECT_EQ(b.core.status().progress, 0.0);
+  const double duration = second.trajectory.duration();
+  double t = 0.0;
+  for (int k = 0; k < 20000 && b.core.status().motion == MotionState::running; ++k) {
+    b.tick();
+    t += b.settings.period;
+    const Vector q = b.core.set_point().position.head(3);
+    if (t < 1.499) {
+      ASSERT_EQ(b.core.active().trajectory, 1u) << t;
+      ASSERT_TRUE(q.isApprox(first.trajectory.at(t).position, 1e-9)) << t;
+    } else if (t > 1.501 && t < 1.499 + duration) {
+      ASSERT_EQ(b.core.active().trajectory, 2u) << t;
+      ASSERT_LT((q - second.trajectory.at(t - 1.5).position).cwiseAbs().maxCoeff(), 1e-6) << t;
+    }
+  }
+  EXPECT_NEAR(t, 1.5 + duration + third.trajectory.duration(), 0.003);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.8, 0, 0), 1e-6));
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  expect_smooth(b);
+}
+
+TEST(Controller, a_queued_switch_is_kept_through_slowing_holding_and_running_back) {
+  ControllerBench b;
+  b.start();
+  const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
+  ASSERT_EQ(b.send(first), "");
+  b.run(0.5);
+  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2), 0.0, 1.5), "");
+  b.advice.speed_factor = 0.4;
+  b.run(2.2);
+  b.advice.speed_factor = -1.0;
+  b.run(2.0);
+  b.advice.speed_factor = 0.7;
+  b.run(1.0);
+  b.go.allowed = false;
+  b.run(1.0);
+  b.go.allowed = true;
+  ++b.go.epoch;
+  b.run(8.0);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.3, -0.4, 0.2), 1e-6));
+  expect_smooth(b);
+}
+
+TEST(Controller, one_that_leaves_at_once_ends_those_that_wait) {
+  ControllerBench b;
+  b.start();
+  const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
+  ASSERT_EQ(b.send(first), "");
+  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2), 0.0, 1.5), "");
+  b.run(1.0);
+  ASSERT_EQ(b.go_to(ControllerBench::arm(0.9, 0.9, 0.0), 3), "");
+  b.run(8);
+  EXPECT_EQ(b.core.status().trajectory, 3u);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(ControllerBench::arm(0.9, 0.9, 0.0), 1e-6));
+}
+
+TEST(Controller, a_stop_command_ends_those_that_wait_too) {
+  ControllerBench b;
+  b.start();
+  const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
+  ASSERT_EQ(b.send(first), "");
+  ASSERT_EQ(b.send(planned_for_a_switch(b, first, 1.5, ControllerBench::arm(0.3, -0.4, 0.2), 2), 0.0, 1.5), "");
+  b.run(1.0);
+  TrajectoryCommand stop;
+  stop.robot = "small";
+  stop.id = 3;
+  stop.epoch = 1;
+  ASSERT_EQ(b.send(stop), "");
+  b.run(3.0);
+  EXPECT_TRUE(b.at_rest());
+  EXPECT_EQ(b.core.active().trajectory, 0u);
+  EXPECT_EQ(b.core.status().motion, MotionState::stopped);
+}
+
+TEST(Controller, refused_in_motion_with_the_reason_and_the_running_one_goes_on) {
+  ControllerBench b;
+  b.start();
+  const TrajectoryCommand good = b.command(goal(), 1);
+  ASSERT_EQ(b.send(good), "");
+  std::uint64_t id = 1;
+  const auto refused = [&](TrajectoryCommand c, double age, const char* text, double switch_at = 0.0) {
+    c.id = ++id;
+    EXPECT_THAT(b.send(c, age, switch_at), HasSubstr(text));
+    EXPECT_EQ(b.core.status().motion, MotionState::refused);
+    EXPECT_EQ(b.core.status().trajectory, id);
+    EXPECT_THAT(b.core.status().reason, HasSubstr(text));
+    b.run(0.1);
+    EXPECT_EQ(b.core.active().trajectory, 1u);
+  };
+  b.run(0.5);
+  TrajectoryCommand c = good;
+  for (AxisTrajectory& axis : c.trajectory.axes) axis.start.position -= 1.0;
+  refused(c, 0, "no nearer than");
+  c = good;
+  c.trajectory.axes[1].segments[0].jerk *= 3;
+  refused(c, 0, "axis 1");
+  refused(good, 2.0, "s old");
+  c = good;
+  c.robot = "other";
+  refused(c, 0, "robot other");
+  c = good;
+  c.trajectory = cut(good.trajectory, 0.0, 0.5 * good.trajectory.duration());
+  refused(c, 0, "end at rest");
+  c = good;
+  c.axes = {0, 2, 1};
+  refused(c, 0, "other axes");
+  refused(good, 0, "switch_at", std::numeric_limits<double>::quiet_NaN());
+  refused(good, 0, "no nearer than", 100.0);  // in line behind the end, but starts elsewhere
+  b.run(0.2);
+  EXPECT_EQ(b.core.status().motion, MotionState::running) << "a refusal is told for a moment, then what runs again";
+  EXPECT_EQ(b.core.status().trajectory, 1u);
+  b.run(5);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
+}
+
+TEST(Controller, a_connecting_motion_never_leaves_the_bounds_of_an_axis) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(2.89, 0, 0), 1), "");
+  int refused = 0, taken = 0;
+  for (int k = 0; k < 70; ++k) {
+    b.run(0.1);
+    const Vector here = b.core.set_point().position.head(3);
+    if (here[0] < 2.3 || b.at_rest()) continue;
+    // Moves on outward from a little behind, ends at the bound: the stop of an axis in motion would lead beyond.
+    TrajectoryCommand c = b.command(ControllerBench::arm(here[0] + 0.02, 0, 0), 100 + static_cast<std::uint64_t>(k));
+    const std::string why = b.send(c);
+    (why.empty() ? taken : refused) += 1;
+    EXPECT_TRUE(why.empty() || why.find("bounds") != std::string::npos) << why;
+  }
+  EXPECT_GT(taken, 0);
+  b.run(3);
+  EXPECT_LE(b.core.set_point().position[0], 2.9);
+  expect_smooth(b);
+}
+
+TEST(Controller, more_than_eight_do_not_wait) {
+  ControllerBench b;
+  b.start();
+  TrajectoryCommand c = b.command(goal(), 1);
+  ASSERT_EQ(b.send(c), "");
+  Trajectory there = c.trajectory, back = reversed(c.trajectory);
+  std::string why;
+  for (std::uint64_t id = 2; id < 12 && why.empty(); ++id) {
+    c.id = id;
+    c.trajectory = id % 2 ? there : back;
+    why = b.send(c, 0.0, 1e6);
+    EXPECT_TRUE(why.empty() || id == 10u) << id;
+  }
+  EXPECT_THAT(why, HasSubstr("wait already"));
+  for (int k = 0; k < 60000 && b.core.active().trajectory != 0; ++k) b.tick();
+  EXPECT_EQ(b.core.status().trajectory, 9u);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
 }
 
 TEST(Controller, a_start_slightly_off_is_bridged_softly) {
@@ -402,6 +658,167 @@ TEST(Controller, a_push_on_the_moving_arm_stops_it_and_a_load_does_not) {
   b.run(1.0);
   EXPECT_TRUE(b.at_rest());
   EXPECT_EQ(b.core.mode(), Mode::hold);
+}
+
+TEST(Controller, a_push_at_rest_moves_the_arm_along_and_its_end_stops_it) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.start();
+  b.external_torque[0] = 25.0;
+  b.run(0.8);
+  const double pushed = b.core.set_point().position[0];
+  EXPECT_GT(pushed, 0.03);
+  EXPECT_LT(b.core.mode(), Mode::stop);
+  EXPECT_EQ(b.core.set_point().position[1], 0.0) << "only the axis that is pushed";
+  b.external_torque[0] = 0.0;
+  b.run(0.6);
+  EXPECT_TRUE(b.at_rest());
+  const double rested = b.core.set_point().position[0];
+  b.external_torque[0] = -40.0;
+  b.run(0.8);
+  EXPECT_LT(b.core.set_point().position[0], rested - 0.03);
+  b.run(2.0);
+  EXPECT_GE(b.core.set_point().position[0], rested - b.settings.yield_reach - 1e-9);
+  b.run(3.0);
+  EXPECT_TRUE(b.at_rest()) << "a push without end is a load";
+  expect_smooth(b);
+  b.external_torque[0] = 0.0;
+  b.run(2.0);
+  ASSERT_EQ(b.go_to(goal(), 1), "");
+  b.run(6);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+}
+
+TEST(Controller, after_a_contact_the_arm_gives_way_to_who_is_pressed) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0, 0), 1), "");
+  b.run(1.5);
+  b.external_torque[0] = -40.0;
+  b.run(0.8);
+  EXPECT_EQ(b.core.mode(), Mode::stop);
+  const double stopped = b.core.set_point().position[0];
+  b.external_torque[0] = -60.0;  // still pressed while the usual has grown
+  b.run(0.5);
+  EXPECT_LT(b.core.set_point().position[0], stopped);
+  b.external_torque[0] = 0.0;
+  b.run(1.5);
+  EXPECT_TRUE(b.at_rest());
+  expect_smooth(b);
+}
+
+TEST(Controller, the_least_of_all_factors_holds_and_every_cause_is_named) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 4), "");
+  b.go.override_factor = 0.8;
+  b.advice.speed_factor = 0.6;
+  b.people.covered = false;
+  b.run(1.0);
+  EXPECT_NEAR(b.core.speed_factor(), b.settings.guard.uncovered_factor, 1e-6);
+  const std::uint32_t all = bit(Cause::override_slow) | bit(Cause::attention_slow) | bit(Cause::human_unknown);
+  EXPECT_EQ(b.core.status().causes, all);
+}
+
+TEST(Controller, a_wall_ahead_is_named_and_kept) {
+  ControllerSettings s;
+  s.walls = {Wall{-Vector3::UnitY(), -0.5}};
+  ControllerBench b(s);
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0, 0), 1), "");
+  bool named = false;
+  for (int k = 0; k < 6000; ++k) {
+    b.tick();
+    named = named || has(b, Cause::wall);
+    ASSERT_FALSE(has(b, Cause::separation));
+  }
+  EXPECT_TRUE(named);
+  EXPECT_TRUE(b.core.set_point().velocity.cwiseAbs().maxCoeff() < 0.02);
+  std::vector<Pose> links;
+  b.robot->forward(b.core.set_point().position, links);
+  EXPECT_LT((links[static_cast<std::size_t>(b.robot->link_index("lower"))] * Vector3(0.4, 0, 0)).y(), 0.5);
+}
+
+TEST(Controller, an_override_of_a_tenth_runs_everything_at_a_tenth) {
+  ControllerBench b;
+  b.go.override_factor = 0.1;
+  b.start();
+  const TrajectoryCommand c = b.command(goal(), 1);
+  ASSERT_EQ(b.send(c), "");
+  double fastest = 0.0;
+  int steps = 0;
+  while (b.core.status().motion == MotionState::running && steps < 200000) {
+    b.tick();
+    ++steps;
+    fastest = std::max(fastest,
+                       (b.core.set_point().velocity.head(3).array() / b.robot->comfort_limits().velocity.head(3).array()).abs().maxCoeff());
+  }
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_LE(fastest, 0.1 + 1e-9);
+  EXPECT_NEAR(steps * b.settings.period, 10.0 * c.trajectory.duration(), 0.05);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
+}
+
+TEST(Controller, a_dry_run_computes_everything_and_begins_again_where_the_robot_stands) {
+  ControllerSettings s;
+  s.dry_run = true;
+  ControllerBench b(s);
+  b.follows = false;
+  b.start();
+  EXPECT_THAT(b.core.status().reason, HasSubstr("dry run"));
+  ASSERT_EQ(b.go_to(goal(), 1), "");
+  for (int k = 0; k < 20000 && b.core.status().motion == MotionState::running; ++k) b.tick();
+  EXPECT_EQ(b.core.status().motion, MotionState::finished) << "a robot that does not follow is no fault here";
+  EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
+  b.run(5);
+  EXPECT_TRUE(b.core.set_point().position.head(3).isZero(0.003));
+  EXPECT_LT(b.core.mode(), Mode::hold);
+  EXPECT_EQ(b.go_to(goal(), 2), "");
+  expect_smooth(b);
+}
+
+TEST(Controller, hand_and_head_stop_with_the_arm_and_keep_the_same_limits) {
+  ControllerBench b;
+  b.start();
+  const auto hand_to = [&](double x, std::uint64_t id) {
+    HandCommand c;
+    c.robot = "small";
+    c.id = id;
+    c.epoch = b.go.epoch;
+    c.position = Vector::Constant(2, x);
+    return b.core.accept(c, Duration(0), b.now);
+  };
+  ASSERT_EQ(hand_to(1.3, 1), "");
+  b.advice.has_gaze_target = true;
+  b.advice.gaze_target = Vector3(-1.0, 1.0, 1.0);
+  b.run(0.25);
+  EXPECT_GT(b.core.set_point().velocity[3], 0.5);
+  EXPECT_GT(b.core.set_point().velocity[5], 0.5);
+  b.human_speaks = false;
+  b.run(0.2 + 0.34);
+  EXPECT_EQ(b.core.mode(), Mode::stop);
+  EXPECT_TRUE(b.core.set_point().velocity.isZero(0.0)) << "hand and head too";
+  EXPECT_THAT(hand_to(0.2, 2), HasSubstr("mode stop"));
+  b.human_speaks = true;
+  b.run(0.2);
+  ++b.go.epoch;
+  b.run(3.0);
+  // A slow grasp asked for in the middle of a fast opening, again and again.
+  std::uint64_t id = 10;
+  for (int k = 0; k < 60; ++k) {
+    HandCommand c;
+    c.robot = "small";
+    c.id = ++id;
+    c.epoch = b.go.epoch;
+    c.action = k % 2 ? HandAction::grasp : HandAction::move;
+    c.position = Vector::Constant(2, k % 4 < 2 ? 1.3 : -0.1);
+    c.position[1] = k % 3 ? 0.01 * k : 1.2;
+    ASSERT_EQ(b.core.accept(c, Duration(0), b.now), "");
+    b.run(0.01 * (k % 23));
+    ASSERT_FALSE(has(b, Cause::limit_violation)) << k;
+  }
+  expect_smooth(b);
 }
 
 TEST(Controller, hand_commands_are_judged_like_trajectories) {

@@ -169,6 +169,20 @@ TEST_F(GuardTest, a_person_not_seen_just_now_counts_as_walking_in) {
   EXPECT_LT(judge(p).forward, seen);
 }
 
+TEST_F(GuardTest, the_time_since_a_person_was_seen_counts_like_a_person_that_much_nearer) {
+  swing(0.5);
+  Person p = standing(1.15), older = p;
+  for (Person* person : {&p, &older}) walk(*person, Vector3(-0.8, 0, 0));
+  older.age = 0.2;
+  const GuardVerdict now = judge(p), then = judge(older);
+  EXPECT_LT(then.forward, now.forward);
+  Person nearer = p;  // where they would be by now
+  for (BodyJoint& j : nearer.joints) j.position.x() -= 0.8 * older.age;
+  EXPECT_LE(then.forward, judge(nearer).forward + 0.02);
+  older.inflation = 0.16;  // the volumes hold it already
+  EXPECT_GT(judge(older).forward, then.forward);
+}
+
 TEST_F(GuardTest, measured_speed_is_capped_and_has_a_floor) {
   swing(0.5);
   Person fast = standing(1.9), capped = standing(1.9);

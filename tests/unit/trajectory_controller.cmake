@@ -1,6 +1,15 @@
 handsel_test(guard SOURCES ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/hand_executor_test.cpp
-  LINK handsel_trajectory_controller_core LABEL unit)
+  ${CMAKE_CURRENT_LIST_DIR}/mode_machine_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(controller_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/controller_stories_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../support/allocation_counter.cpp LINK handsel_trajectory_controller_core LABEL property)
 handsel_test(separation_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/separation_stories_test.cpp LINK handsel_trajectory_controller_core LABEL property)
+# Every branch of the guard is taken by its test: the same sources, compiled for counting.
+set(guard_source ${CMAKE_SOURCE_DIR}/components/trajectory_controller/guard.cpp)
+set_source_files_properties(${guard_source} PROPERTIES COMPILE_OPTIONS "--coverage;-O0;-fno-exceptions;-fno-inline")
+add_executable(guard_coverage ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp ${guard_source})
+target_link_libraries(guard_coverage PRIVATE handsel_trajectory_controller_core GTest::gtest_main)
+target_link_options(guard_coverage PRIVATE --coverage)
+add_test(NAME guard_branches COMMAND ${CMAKE_COMMAND} -DTEST=$<TARGET_FILE:guard_coverage> "-DOBJECT=$<FILTER:$<TARGET_OBJECTS:guard_coverage>,INCLUDE,guard\\.cpp>"
+  -DSOURCE=${guard_source} -DFOLDER=${CMAKE_CURRENT_BINARY_DIR}/guard_coverage -P ${CMAKE_SOURCE_DIR}/cmake/branch_coverage.cmake)
+set_tests_properties(guard_branches PROPERTIES LABELS unit)
