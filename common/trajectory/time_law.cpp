@@ -203,14 +203,18 @@ bool TimeLaw::holds(const Now& s, const Now& next, double push) const noexcept {
   return detail::lane_kernels().step_holds(step_from(s), step_from(next), push, kAllowed, begin_.data(), end_.data());
 }
 
-/// False if the way back to a constant alpha leaves the limits anywhere.
+/// False if the way back to a constant alpha leaves the limits anywhere; where alpha leaves its range, that is what it ends with.
 bool TimeLaw::recover(Now s, Way& out) noexcept {
   const auto allowed = [this](double alpha) { return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded; };
   out.next = out.count = 0;
   out.end = std::numeric_limits<double>::quiet_NaN();
   rates_at(s.tau, begin_);
   while (s.beta != 0) {
-    if (out.count == kHorizon || !allowed(s.alpha)) return false;
+    if (!allowed(s.alpha)) {
+      out.end = s.alpha;
+      return false;
+    }
+    if (out.count == kHorizon) return false;
     rates_at(s.tau + step_ * (s.alpha + step_ * s.beta / 2), end_);
     double range[2];
     if (!pushes(s, begin_, end_, range)) return false;
@@ -251,9 +255,10 @@ double TimeLaw::choose() noexcept {
     const Now next = next_of(now_, u);
     rates_at(now_.tau, begin_);
     rates_at(next.tau, end_);
-    if (!holds(now_, next, u) || (!recover(next, tried_) && std::isnan(tried_.end))) return false;  // beyond [lowest, 1]: too far
+    if (!holds(now_, next, u)) return false;
+    const bool kept = recover(next, tried_);
     *out = (target_ - tried_.end) * (want > 0 ? 1 : -1);
-    return true;
+    return kept || *out < 0;  // beyond its range alpha is also beyond the target: too far
   };
   const auto go = [&](double share, Way& with) {
     std::swap(way_, with);

@@ -109,7 +109,7 @@ void Controller::take(const TrajectoryCommand& command, double begin, double off
   refused_for_ = 0;
   refusal_.clear();
   arm_ = Arm::running;
-  new_people_ = true;  // the way is another: it is judged at once
+  new_path_ = true;
 }
 
 std::string Controller::accept(const TrajectoryCommand& command, Duration age, TimePoint now, double switch_at) {

@@ -15,8 +15,9 @@ bool ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, boo
     const double now = external_torque[axes_[i]];
     if (!seen_) usual_[i] = before_[i] = now;
     const double push = now - before_[i];
-    pushes_[i] = resting && std::abs(push) > settings_.yield_torque ? push : 0.0;
-    pushed = pushed || pushes_[i] != 0.0;
+    const bool beyond_yield = std::abs(push) > settings_.yield_torque;
+    pushes_[i] = resting && beyond_yield ? push : 0.0;
+    pushed = pushed || beyond_yield;
     const double beyond = std::abs(now - usual_[i]);
     if (beyond > most) {
       most = beyond;
@@ -25,8 +26,10 @@ bool ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, boo
     usual_[i] += (now - usual_[i]) * (dt / (settings_.usual_time + dt));
   }
   pushed_for_ = pushed ? pushed_for_ + dt : 0.0;
-  if (pushed_for_ > settings_.yield_time) std::fill(pushes_.begin(), pushes_.end(), 0.0);
-  if (!pushed || pushed_for_ > settings_.yield_time) before_ = usual_;
+  for (std::size_t i = 0; i < axes_.size(); ++i) {
+    if (pushed_for_ > settings_.yield_time) before_[i] = usual_[i], pushes_[i] = 0.0;
+    if (!pushed) before_[i] += (external_torque[axes_[i]] - before_[i]) * (dt / (settings_.usual_time + dt));
+  }
   seen_ = true;
   torque_ = most;
   pressed_for_ = most > settings_.torque ? pressed_for_ + dt : 0.0;

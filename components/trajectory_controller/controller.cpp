@@ -188,12 +188,13 @@ void Controller::run_guard(TimePoint now) noexcept {
     full_velocity_.setZero();
     full_acceleration_.setZero();
   }
-  // Alternates between where the path is and where it will be a little later; people just seen are judged for both at once.
-  guard_ahead_ = !guard_ahead_ && arm_ == Arm::running;
+  // Alternates between where the path is and where it will be a little later, from where it is as soon as people have just been seen; a path
+  // just taken is judged for both at once.
+  guard_ahead_ = !guard_ahead_ && !new_people_ && arm_ == Arm::running;
   judge_path(guard_ahead_, age);
-  if (new_people_ && arm_ == Arm::running) judge_path(!guard_ahead_, age);
-  if (!guard_ahead_ || new_people_) nearest_ = verdict_now_;
-  new_people_ = false;
+  if (new_path_ && arm_ == Arm::running) judge_path(!guard_ahead_, age);
+  if (!guard_ahead_ || new_path_) nearest_ = verdict_now_;
+  new_people_ = new_path_ = false;
   guard_verdict_ = verdict_now_;
   guard_verdict_.forward = std::min(verdict_now_.forward, verdict_ahead_.forward);
   guard_verdict_.backward = std::max(verdict_now_.backward, verdict_ahead_.backward);
@@ -312,7 +313,7 @@ void Controller::go_back_to_path() noexcept {
     p.offset += runner_.rejoin_shift();
   }
   arm_ = Arm::running;
-  new_people_ = true;
+  new_path_ = true;
 }
 
 void Controller::step_arm(TimePoint now) noexcept {
@@ -501,7 +502,9 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   resync(now);
   step_yield();
   step_arm(now);
+  const HandState held = hand_.state();
   step_hand(now);
+  if (hand_.state() != held) contact_.reset();  // what the arm feels changes with what the hand holds
   step_head();
   check_last();
   measure(set_point_, next_, robot_->guard_limits(), settings_.period, shares_);

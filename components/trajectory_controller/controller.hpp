@@ -206,7 +206,7 @@ class Controller {
   std::vector<LinkTwist> twists_;
 
   double too_near_for_{}, tracking_for_{};
-  bool limit_violation_{}, guard_ahead_{}, new_people_{}, touched_{};
+  bool limit_violation_{}, guard_ahead_{}, new_people_{}, new_path_{}, touched_{};
   int late_in_a_row_{};
   std::uint64_t cycles_{}, late_cycles_{};
   std::string refusal_;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <deque>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "common/trajectory/edit.hpp"
@@ -40,8 +42,10 @@ class ControllerBench {
       drive_told_ = drive;
     }
     if (human_speaks && ticks % 33 == 1) {
-      core.on(people, now);
-      human_at_ = now;
+      seen_.push_back({now, people});
+      while (seen_.size() > 1 && seen_[1].first <= now - from_seconds(human_age)) seen_.pop_front();
+      human_at_ = std::max(human_at_, std::min(seen_.front().first, now));
+      core.on(seen_.front().second, human_at_);
     }
     if (go_speaks && ticks % 100 == 1) {
       core.on(go, now);
@@ -110,6 +114,7 @@ class ControllerBench {
   Vector external_torque;  ///< empty: not measured
   bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true}, attention_speaks{true};
   HumanState people;
+  double human_age{};  ///< what is told of people was so this long ago, or a sample's period longer [s]
   Go go;
   TrajectoryForecast forecast;
   AttentionAdvice advice;
@@ -161,6 +166,7 @@ class ControllerBench {
     stop_.look(stop, at_rest(), now, least, stops, latest_stop);
     hold_.look(hold, at_rest(), now, least, holds, latest_hold);
   }
+  std::deque<std::pair<TimePoint, HumanState>> seen_;
   TimePoint robot_at_{from_seconds(50.0)}, human_at_{robot_at_}, forecast_at_{robot_at_};
   DriveMode drive_told_{DriveMode::enabled};
   bool go_told_{true};

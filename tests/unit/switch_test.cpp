@@ -137,6 +137,59 @@ TEST(Switch, KeepsThePathBehindAndTheOwnTimeOfWhatRuns) {
   }
 }
 
+TEST(Switch, IsPlannedAheadAndTakenBackWithoutATrace) {
+  Draw draw{std::mt19937_64(54)};
+  for (int k = 0; k < 15; ++k) {
+    const KinematicLimits guard = draw.limits(3);
+    const Trajectory first = draw.path(guard), next = draw.path(guard);
+    TimeLaw law, other;
+    ASSERT_EQ(law.init(first, guard), "");
+    ASSERT_EQ(other.init(first, guard), "");
+    const double leave = draw(0.3, 0.9) * first.duration();
+    for (TimeLaw* l : {&law, &other}) {
+      l->set_target(0.7);
+      for (int i = 0; i < 150; ++i) l->advance(0.001);
+    }
+    ASSERT_EQ(law.switch_at(leave, SegmentTable(next)), SwitchOutcome::ok);
+    EXPECT_DOUBLE_EQ(law.left_at(), leave);
+    law.undo_switch();
+    EXPECT_EQ(law.duration(), other.duration());
+    for (int i = 0; i < 100; ++i) {
+      law.advance(0.001);
+      other.advance(0.001);
+      ASSERT_EQ(law.state().position, other.state().position);
+    }
+    ASSERT_EQ(law.switch_at(leave, SegmentTable(next)), SwitchOutcome::ok);
+    while (law.time() < leave) {
+      ASSERT_LT((law.state().position - first.at(law.time()).position).norm(), 1e-9);
+      law.advance(0.001);
+    }
+    law.set_target(-0.5);
+    while (law.time() > leave / 2) law.advance(0.001);
+    law.set_target(1);
+    for (int i = 0; i < 60000 && !law.finished(); ++i) law.advance(0.001);
+    ASSERT_LT((law.state().position - final_state(next).position).norm(), 1e-7);
+  }
+}
+
+TEST(Switch, WhatMayNotRunBackStandsWhenAskedTo) {
+  Draw draw{std::mt19937_64(56)};
+  for (int k = 0; k < 30; ++k) {
+    const KinematicLimits guard = draw.limits(3);
+    const Trajectory first = draw.path(guard), next = draw.path(guard);
+    TimeLaw law;
+    ASSERT_EQ(law.init(first, guard), "");
+    for (double until = draw(0.2, 0.7) * first.duration(); law.time() < until;) law.advance(0.001);
+    if (law.start_from(MotionState3(law.state()), SegmentTable(next)) != SwitchOutcome::ok) continue;
+    for (int i = 0; i < 200; ++i) law.advance(0.001);
+    for (const double target : {0.3, 1e-5, 0.0}) {
+      law.set_target(target);
+      for (int i = 0; i < 3000; ++i) law.advance(0.001);
+    }
+    ASSERT_TRUE(law.standing() || law.finished()) << k << ": alpha " << law.alpha();
+  }
+}
+
 TEST(Replan, DoesNotJumpWhenStartAndEndAccelerateAlike) {
   const std::uint64_t seed = 55;
   Draw draw{std::mt19937_64(seed)};

@@ -4,6 +4,18 @@ handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/controller_test.cpp ${
 handsel_test(controller_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/controller_stories_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../support/allocation_counter.cpp LINK handsel_trajectory_controller_core LABEL property)
 handsel_test(separation_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/separation_stories_test.cpp LINK handsel_trajectory_controller_core LABEL property)
+set_tests_properties(controller_stories separation_stories PROPERTIES TIMEOUT 300)
+add_test(NAME controller_stories_million COMMAND test_controller_stories)
+set_tests_properties(controller_stories_million PROPERTIES LABELS full TIMEOUT 900
+  ENVIRONMENT "HANDSEL_STORY_STEPS=1000000;GTEST_FILTER=ControllerStories.every_set_point*")
+add_test(NAME separation_stories_thousand COMMAND test_separation_stories)
+set_tests_properties(separation_stories_thousand PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_SEPARATION_RUNS=1000)
+add_executable(test_realtime ${CMAKE_CURRENT_LIST_DIR}/../system/realtime_test.cpp)
+target_link_libraries(test_realtime PRIVATE handsel_options GTest::gtest_main GTest::gmock)
+target_compile_definitions(test_realtime PRIVATE HANDSEL_CONTROLLER="$<TARGET_FILE:handsel_trajectory_controller_process>")
+add_dependencies(test_realtime handsel_trajectory_controller_process)
+add_test(NAME realtime COMMAND test_realtime)
+set_tests_properties(realtime PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 60)
 # Every branch of the guard is taken by its test: the same sources, compiled for counting.
 set(guard_source ${CMAKE_SOURCE_DIR}/components/trajectory_controller/guard.cpp)
 set_source_files_properties(${guard_source} PROPERTIES COMPILE_OPTIONS "--coverage;-O0;-fno-exceptions;-fno-inline")
