@@ -11,7 +11,12 @@ bool ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, boo
   double most = 0.0;
   bool pushed = false;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    if (axes_[i] >= external_torque.size() || !std::isfinite(external_torque[axes_[i]])) return false;
+    if (axes_[i] >= external_torque.size() || !std::isfinite(external_torque[axes_[i]])) {
+      std::fill(pushes_.begin(), pushes_.end(), 0.0);
+      pushed_for_ = pressed_for_ = 0.0;
+      seen_ = false;
+      return false;
+    }
     const double now = external_torque[axes_[i]];
     if (!seen_) usual_[i] = before_[i] = now;
     const double push = now - before_[i];

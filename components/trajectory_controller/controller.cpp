@@ -188,8 +188,8 @@ void Controller::run_guard(TimePoint now) noexcept {
     full_velocity_.setZero();
     full_acceleration_.setZero();
   }
-  // Alternates between where the path is and where it will be a little later, from where it is as soon as people have just been seen; a path
-  // just taken is judged for both at once.
+  // Alternates between where the path is and where it will be a little later, from where it is as soon as people have just been seen; a
+  // path just taken is judged for both at once.
   guard_ahead_ = !guard_ahead_ && !new_people_ && arm_ == Arm::running;
   judge_path(guard_ahead_, age);
   if (new_path_ && arm_ == Arm::running) judge_path(!guard_ahead_, age);
@@ -403,7 +403,11 @@ void Controller::step_yield() noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
   const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && exchanging_.empty() &&
                    state_.mode == DriveMode::enabled && hand_.state() != HandState::moving && settings_.yield_speed > 0.0;
-  const bool pushed = may && contact_.pushed() && (verdict_.causes & (bit(Cause::robot_state_silent))) == 0;
+  // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.
+  if (verdict_.mode >= Mode::hold && !held_before_) yield_waits_ = true;
+  held_before_ = verdict_.mode >= Mode::hold;
+  if (at_rest()) yield_waits_ = false;
+  const bool pushed = may && !yield_waits_ && contact_.pushed() && (verdict_.causes & (bit(Cause::robot_state_silent))) == 0;
   if (pushed && !yielding_ && at_rest()) {
     yield_from_ = set_point_.position;
     yielding_ = true;

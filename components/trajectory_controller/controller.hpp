@@ -195,7 +195,7 @@ class Controller {
 
   // Judging.
   ContactWatch contact_;
-  bool yielding_{};
+  bool yielding_{}, yield_waits_{}, held_before_{};
   Vector yield_from_;
   ModeMachine modes_;
   ModeVerdict verdict_;

@@ -16,15 +16,21 @@ class Story {
   explicit Story(std::uint64_t seed) : random_(seed) { bench.start(); }
 
   void event() {
-    switch (integer(0, 15)) {
+    switch (integer(0, 17)) {
       case 0:
       case 1:
       case 2: {
         Vector goal(3);
         goal << real(-1.5, 1.5), real(-1.5, 1.5), real(-2.0, 2.0);
-        bench.go_to(goal, ++id_);
+        const bool waits = integer(0, 2) == 0;
+        switches += bench.send(bench.command(goal, ++id_), 0.0, waits ? real(0.0, 5.0) : 0.0).empty() && !bench.at_rest() ? 1 : 0;
         break;
       }
+      case 16:
+      case 17:
+        bench.external_torque = Vector::Zero(bench.robot->dof());
+        bench.external_torque[integer(0, 2)] = integer(0, 1) ? real(-60.0, 60.0) : 0.0;
+        break;
       case 3:
         bench.advice.speed_factor = real(-1.0, 1.0);
         break;
@@ -91,7 +97,7 @@ class Story {
     bench.advice.speed_factor = bench.go.override_factor = 1.0;
     bench.forecast = {};
     bench.follows = true;
-    bench.run(4.0);
+    bench.run(5.0);
     ++bench.go.epoch;
     bench.run(0.3);
     Vector goal(3);
@@ -102,7 +108,7 @@ class Story {
   }
 
   test::ControllerBench bench;
-  int sent{};
+  int sent{}, switches{};
 
  private:
   double real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
@@ -112,6 +118,7 @@ class Story {
     bench.drive = DriveMode::enabled;
     bench.go.allowed = bench.go.acknowledge = true;
     bench.late = false;
+    bench.external_torque.resize(0);
     ++bench.go.epoch;
   }
   void garbage() {
@@ -213,9 +220,13 @@ TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous
   EXPECT_EQ(story.bench.allocations, 0u);
   EXPECT_GT(story.bench.stops, steps_wanted() / 20000);
   EXPECT_GT(story.bench.holds, 0);
-  std::printf("moving in %d of %d steps; %d of %d calm trajectories finished; shares v %.6f a %.6f j %.6f\n", moved, steps_wanted(),
-              calm_finished, story.sent, story.bench.worst_velocity, story.bench.worst_acceleration, story.bench.worst_jerk);
+  std::printf(
+      "moving in %d of %d steps; %d times to another trajectory in motion; %d of %d calm trajectories finished; shares v %.6f a %.6f j "
+      "%.6f\n",
+      moved, steps_wanted(), story.switches, calm_finished, story.sent, story.bench.worst_velocity, story.bench.worst_acceleration,
+      story.bench.worst_jerk);
   EXPECT_EQ(last_check_stops, 0);
+  EXPECT_GT(story.switches, steps_wanted() / 20000);
   EXPECT_GT(moved, steps_wanted() / 10);
   EXPECT_GE(story.sent, steps_wanted() / 20000);
   EXPECT_EQ(calm_finished, story.sent);
