@@ -22,6 +22,6 @@ set_source_files_properties(${guard_source} PROPERTIES COMPILE_OPTIONS "--covera
 add_executable(guard_coverage ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp ${guard_source})
 target_link_libraries(guard_coverage PRIVATE handsel_trajectory_controller_core GTest::gtest_main)
 target_link_options(guard_coverage PRIVATE --coverage)
-add_test(NAME guard_branches COMMAND ${CMAKE_COMMAND} -DTEST=$<TARGET_FILE:guard_coverage> "-DOBJECT=$<FILTER:$<TARGET_OBJECTS:guard_coverage>,INCLUDE,guard\\.cpp>"
-  -DSOURCE=${guard_source} -DFOLDER=${CMAKE_CURRENT_BINARY_DIR}/guard_coverage -P ${CMAKE_SOURCE_DIR}/cmake/branch_coverage.cmake)
+add_test(NAME guard_branches COMMAND ${CMAKE_SOURCE_DIR}/cmake/branch_coverage.sh $<TARGET_FILE:guard_coverage>
+  "$<FILTER:$<TARGET_OBJECTS:guard_coverage>,INCLUDE,guard\\.cpp>" ${guard_source} WORKING_DIRECTORY ${CMAKE_BINARY_DIR})
 set_tests_properties(guard_branches PROPERTIES LABELS unit)
