@@ -71,6 +71,11 @@ struct CollisionShape::Exact {
 CollisionShape::CollisionShape() = default;
 CollisionShape::~CollisionShape() = default;
 
+const std::shared_ptr<const SphereCover>& CollisionShape::cover() const {
+  if (!cover_) cover_ = std::make_shared<const SphereCover>(cover_shape(shape_));
+  return cover_;
+}
+
 CollisionShapePtr CollisionShape::make(const Shape& shape) {
   std::shared_ptr<CollisionShape> out(new CollisionShape);
   out->shape_ = shape;

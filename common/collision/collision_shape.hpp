@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/geometry/shape.hpp"
+#include "common/collision/sphere_cover.hpp"
 
 namespace handsel {
 
@@ -21,6 +21,9 @@ class CollisionShape {
   bool is_mesh() const { return std::holds_alternative<MeshPtr>(shape_); }
   bool is_box() const { return std::holds_alternative<Box>(shape_); }
 
+  /// Spheres that cover it, made when first asked for.
+  const std::shared_ptr<const SphereCover>& cover() const;
+
   struct Exact;  ///< FCL geometry
   const Exact& exact() const { return *exact_; }
 
@@ -30,6 +33,7 @@ class CollisionShape {
   Vector3 sphere_center_{Vector3::Zero()}, box_center_{Vector3::Zero()}, box_half_{Vector3::Zero()};
   double sphere_radius_{};
   std::unique_ptr<Exact> exact_;
+  mutable std::shared_ptr<const SphereCover> cover_;
 };
 using CollisionShapePtr = std::shared_ptr<const CollisionShape>;
 

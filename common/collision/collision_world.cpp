@@ -2,18 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 
 #include <Eigen/Eigenvalues>
 
 #include "common/collision/collision_shape.hpp"
+#include "common/collision/wide_capsules.hpp"
+#include "common/collision/wide_world.hpp"
 #include "common/model/robot_capsules.hpp"
 
 namespace handsel {
 namespace {
 
-using AxisMask = std::vector<bool>;
+constexpr int kSweepFrom = 64;  // lines of more states are looked at in stretches first
 
 struct RobotBody {
   int link{};
@@ -100,7 +103,19 @@ struct CollisionWorld::Impl {
   std::vector<bool> hand_link;
   std::vector<std::set<int>> joints_above;
   std::map<std::string, CollisionShapePtr> meshes;
-  std::uint64_t checks{};
+  std::uint64_t checks{}, exact_checks{};
+
+  std::unique_ptr<WideWorld> wide;  // null: exact only
+  std::vector<int> moving;
+  std::vector<char> moves_axis;
+  Vector folded_at;  // empty when the wide robot is to be made anew
+  bool solids_stale{true}, rest_touches{};
+  std::vector<int> order;
+  std::vector<char> open;
+  std::vector<std::pair<Vector3, Vector3>> capsule_ends;
+  std::vector<detail::WideCapsule> wide_capsules;
+  std::vector<float> capsule_distances;
+  std::vector<double> at;
 
   std::vector<Pose> T_root_link, T_world_body;
   Vector self_free;  // configuration last found free of self collision, empty if none
@@ -286,8 +301,119 @@ struct CollisionWorld::Impl {
     return false;
   }
 
+  /// Makes the wide world agree with this one. False when the exact check has to judge everything: there is none, or what the moving axes
+  /// do not move touches something.
+  bool wide_ready(const Vector& q) {
+    if (!wide) return false;
+    bool same = folded_at.size() == q.size();
+    for (int axis = 0; same && axis < robot.dof(); ++axis) same = moves_axis[axis] || folded_at[axis] == q[axis];
+    if (same && !solids_stale) return !rest_touches;
+    place(q);
+    rest_touches = false;
+    std::vector<bool> moved(robot.links().size(), false);
+    for (std::size_t link = 0; link < moved.size(); ++link)
+      for (int joint : joints_above[link]) moved[link] = moved[link] || moves_axis[robot.joints()[joint].dof];
+    if (!same) fold(q, moved);
+    std::vector<WideWorld::Solid> solids;
+    for (const auto* things : {&scene, &obstacles})
+      for (const SceneBody& thing : *things) {
+        const std::uint8_t all = thing.allowed ? kWideArm : kWideArm | kWideHand | kWideHeld;
+        add_solid(*thing.shape, thing.T_world_shape, thing.lowered ? all & ~kWideHeld : all, solids);
+        if (thing.lowered) add_solid(*thing.lowered, thing.T_world_lowered, all & kWideHeld, solids);
+      }
+    for (const PersonBody& person : people)
+      if (person.obstacle && !(person.allowed && person.arm))
+        add_solid(*person.shape, person.T_world_shape, kWideArm | kWideHand | kWideHeld, solids);
+    wide->set_solids(solids, T_world_base);
+    for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
+      rest_touches = bodies[i].moves && !moved[bodies[i].link] &&
+                     (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) || person_touch(i, nullptr));
+    const bool holding = !attachment.object.empty();
+    for (const auto* pairs : {&link_pairs, &held_pairs})
+      for (const SelfPair& pair : *pairs) {
+        if (rest_touches || (holding && bodies[pair.a].hand && bodies[pair.b].hand) || changes(pair)) continue;
+        rest_touches = touch(*bodies[pair.a].shape, T_world_body[pair.a], *bodies[pair.b].shape, T_world_body[pair.b]);
+      }
+    solids_stale = false;
+    return !rest_touches;
+  }
+
+  bool moves_only(const Vector& from, const Vector& to) const {
+    for (int axis = 0; axis < robot.dof(); ++axis)
+      if (!moves_axis[axis] && from[axis] != to[axis]) return false;
+    return true;
+  }
+
+  static void add_solid(const CollisionShape& shape, const Pose& T, int against, std::vector<WideWorld::Solid>& solids) {
+    if (against == 0) return;
+    solids.push_back({shape.shape(), shape.is_mesh() ? shape.cover() : nullptr, T, static_cast<std::uint8_t>(against)});
+  }
+
+  bool changes(const SelfPair& pair) const {
+    return std::any_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return moves_axis[axis] != 0; });
+  }
+
+  void fold(const Vector& q, const std::vector<bool>& moved) {
+    std::vector<WideWorld::Body> wide_bodies;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const bool covered = moved[bodies[i].link] || bodies[i].shape->is_mesh();
+      wide_bodies.push_back({bodies[i].link, covered ? bodies[i].shape->cover() : nullptr, bodies[i].shape->shape(), bodies[i].T_link_shape,
+                             static_cast<std::uint8_t>(i >= link_bodies ? kWideHeld
+                                                       : bodies[i].hand ? kWideHand
+                                                                        : kWideArm)});
+    }
+    std::vector<std::pair<int, int>> wide_pairs;
+    const bool holding = !attachment.object.empty();
+    for (const auto* pairs : {&link_pairs, &held_pairs})
+      for (const SelfPair& pair : *pairs)
+        if (!(holding && bodies[pair.a].hand && bodies[pair.b].hand) && changes(pair)) wide_pairs.emplace_back(pair.a, pair.b);
+    wide->set_robot(wide_bodies, wide_pairs, moving, q);
+    folded_at = q;
+  }
+
+  /// check_motion through the wide check: the same states in the same order, with the same counts.
+  bool judge_line(const Vector& from, const Vector& to, int last, CollisionVerdict* verdict) {
+    order.clear();
+    order.push_back(0);
+    if (last > 0) order.push_back(last);
+    int stride = 1;
+    while (stride < last) stride *= 2;
+    for (; stride > 1; stride /= 2)
+      for (int i = stride / 2; i < last; i += stride) order.push_back(i);
+    open.assign(static_cast<std::size_t>(last) + 1, 1);
+    if (last >= kSweepFrom) {
+      open.assign(open.size(), 0);
+      open.front() = open.back() = 1;
+      for (const auto& [low, high] : wide->unclear_stretches(from, to, 2.0 / last, 1 + last / kSweepFrom))
+        for (int i = std::max(0, static_cast<int>(low * last) - 1); i <= std::min(last, static_cast<int>(high * last) + 1); ++i)
+          open[static_cast<std::size_t>(i)] = 1;
+    }
+    for (std::size_t next = 0; next < order.size();) {
+      at.clear();
+      std::size_t end = next;
+      for (; end < order.size() && at.size() < static_cast<std::size_t>(WideWorld::kStates); ++end)
+        if (open[static_cast<std::size_t>(order[end])]) at.push_back(static_cast<double>(order[end]) / std::max(1, last));
+      std::uint32_t unclear = at.empty() ? 0 : wide->unclear_on_line(from, to, at.data(), static_cast<int>(at.size()));
+      for (; next < end; ++next) {
+        const int i = order[next];
+        const bool asks = open[static_cast<std::size_t>(i)] && (unclear & 1) != 0;
+        if (open[static_cast<std::size_t>(i)]) unclear >>= 1;
+        if (!asks) {
+          ++checks;
+          continue;
+        }
+        const bool free = i == 0      ? judge(from, verdict)
+                          : i == last ? judge(to, verdict)
+                                      : judge(from + (to - from) * (static_cast<double>(i) / last), verdict);
+        if (!free) return false;
+      }
+    }
+    return true;
+  }
+
   bool judge(const Vector& q, CollisionVerdict* verdict, bool with_people = true) {
     ++checks;
+    ++exact_checks;
     place(q);
     for (std::size_t i = 0; i < bodies.size(); ++i)
       if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict))) return false;
@@ -304,16 +430,31 @@ CollisionWorld::CollisionWorld(const RobotModel& robot, ObjectLibrary library) :
 CollisionWorld::~CollisionWorld() = default;
 CollisionWorld::CollisionWorld(CollisionWorld&&) noexcept = default;
 
-void CollisionWorld::set_base(const Pose& T_world_base) { impl_->T_world_base = T_world_base; }
+void CollisionWorld::set_base(const Pose& T_world_base) {
+  impl_->T_world_base = T_world_base;
+  impl_->solids_stale = true;
+}
+
+void CollisionWorld::set_moving_axes(const std::vector<int>& axes) {
+  Impl& w = *impl_;
+  if (axes == w.moving) return;
+  w.moving = axes;
+  w.moves_axis.assign(static_cast<std::size_t>(w.robot.dof()), 0);
+  for (int axis : axes) w.moves_axis[axis] = 1;
+  w.folded_at.resize(0);
+  w.wide = axes.empty() ? nullptr : std::make_unique<WideWorld>(w.robot);
+}
 
 void CollisionWorld::set_scene(const Scene& scene) {
   if (scene.robot_known) impl_->T_world_base = scene.T_world_base;
   impl_->last_scene = scene;
   impl_->rebuild_scene();
+  impl_->solids_stale = true;
 }
 
 void CollisionWorld::set_obstacles(const std::vector<Obstacle>& obstacles) {
   impl_->obstacles.clear();
+  impl_->solids_stale = true;
   for (const Obstacle& obstacle : obstacles) {
     SceneBody body;
     body.id = obstacle.id;
@@ -325,6 +466,7 @@ void CollisionWorld::set_obstacles(const std::vector<Obstacle>& obstacles) {
 
 void CollisionWorld::set_people(const HumanState& state, PeopleParts parts) {
   impl_->people.clear();
+  impl_->solids_stale = true;
   for (const Person& person : state.people)
     for (const BodyCapsule& capsule : body_capsules(person)) {
       PersonBody body;
@@ -349,6 +491,8 @@ void CollisionWorld::set_attachment(const Attachment& attachment, const std::vec
   for (PersonBody& person : impl_->people) person.allowed = impl_->allowed.count(person.id) > 0;
   impl_->rebuild_scene();
   impl_->rebuild_held();
+  impl_->solids_stale = true;
+  impl_->folded_at.resize(0);
 }
 
 CollisionVerdict CollisionWorld::check(const Vector& q) {
@@ -357,7 +501,11 @@ CollisionVerdict CollisionWorld::check(const Vector& q) {
   return verdict;
 }
 
-bool CollisionWorld::is_free(const Vector& q) { return impl_->judge(q, nullptr); }
+bool CollisionWorld::is_free(const Vector& q) {
+  if (!impl_->wide_ready(q) || impl_->wide->unclear(&q, 1) != 0) return impl_->judge(q, nullptr);
+  ++impl_->checks;
+  return true;
+}
 
 CollisionVerdict CollisionWorld::check_people(const Vector& q) {
   CollisionVerdict verdict;
@@ -376,6 +524,10 @@ CollisionVerdict CollisionWorld::check_scene(const Vector& q) {
 CollisionVerdict CollisionWorld::check_motion(const Vector& from, const Vector& to, double step) {
   CollisionVerdict verdict;
   const int last = motion_states(from, to, step) - 1;
+  if (impl_->wide_ready(from) && impl_->moves_only(from, to)) {
+    impl_->judge_line(from, to, last, &verdict);
+    return verdict;
+  }
   const auto at = [&](int i) -> Vector { return from + (to - from) * (static_cast<double>(i) / std::max(1, last)); };
   if (!impl_->judge(from, &verdict) || (last > 0 && !impl_->judge(to, &verdict))) return verdict;
   int stride = 1;
@@ -386,12 +538,48 @@ CollisionVerdict CollisionWorld::check_motion(const Vector& from, const Vector& 
   return verdict;
 }
 
-double CollisionWorld::distance_to_people(const Vector& q) {
+/// All pairs at once in single precision; those that may be nearest again in double.
+double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Vector3* on_person) {
+  constexpr float kSlack = 2e-4f;
   Impl& w = *impl_;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  if (w.people.empty()) return kInfinity;
+  double least = std::numeric_limits<double>::infinity();
+  if (w.people.empty()) return least;
   w.robot.forward(q, w.T_root_link);
-  return w.people_distance([](const PersonBody&) { return true; }, kInfinity, -kInfinity);
+  const Vector3 origin = w.T_world_base.translation();
+  std::vector<std::pair<Vector3, Vector3>>& ends = w.capsule_ends;
+  ends.clear();
+  w.wide_capsules.clear();
+  for (const LinkCapsule& capsule : w.capsules) {
+    const Pose T_world_link = w.T_world_base * w.T_root_link[capsule.link];
+    ends.emplace_back(T_world_link * capsule.a, T_world_link * capsule.b);
+    w.wide_capsules.push_back(wide_capsule(ends.back().first - origin, ends.back().second - origin, capsule.radius));
+  }
+  w.capsule_distances.resize(16 * ends.size() + 16);
+  float* distances =
+      w.capsule_distances.data() + (64 - reinterpret_cast<std::uintptr_t>(w.capsule_distances.data()) % 64) % 64 / sizeof(float);
+  for (std::size_t first = 0; first < w.people.size(); first += 16) {
+    detail::WideCapsules lanes = no_capsules();
+    const std::size_t count = std::min<std::size_t>(16, w.people.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const PersonBody& body = w.people[first + i];
+      put_capsule(wide_capsule(body.a - origin, body.b - origin, body.radius), static_cast<int>(i), lanes);
+    }
+    const float nearest = detail::wide_kernels().distances(w.wide_capsules.data(), static_cast<int>(ends.size()), lanes, kSlack, distances);
+    for (std::size_t c = 0; c < ends.size(); ++c)
+      for (std::size_t i = 0; i < count; ++i) {
+        if (!(distances[16 * c + i] <= nearest + kSlack)) continue;
+        const PersonBody& body = w.people[first + i];
+        Vector3 a, b;
+        const double axes = segment_distance(ends[c].first, ends[c].second, body.a, body.b, &a, &b),
+                     d = axes - w.capsules[c].radius - body.radius;
+        if (d >= least) continue;
+        least = d;
+        const Vector3 along = axes > 1e-9 ? Vector3((b - a) / axes) : Vector3::UnitX();
+        if (on_robot) *on_robot = a + w.capsules[c].radius * along;
+        if (on_person) *on_person = b - body.radius * along;
+      }
+  }
+  return least;
 }
 
 double CollisionWorld::distance_to_scene(const Vector& q, double cap) {
@@ -423,6 +611,13 @@ double CollisionWorld::distance_to_scene(const Vector& q, double cap) {
   return least;
 }
 
+bool CollisionWorld::surely_free(const Vector& from, const Vector& to) {
+  constexpr double kFinest = 1.0 / 4096;
+  constexpr int kMostBlocks = 256;
+  return impl_->wide_ready(from) && impl_->moves_only(from, to) && impl_->wide->unclear_stretches(from, to, kFinest, kMostBlocks).empty();
+}
+
 std::uint64_t CollisionWorld::checks() const { return impl_->checks; }
+std::uint64_t CollisionWorld::exact_checks() const { return impl_->exact_checks; }
 
 }  // namespace handsel

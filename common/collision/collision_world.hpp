@@ -1,4 +1,6 @@
-// Exact collision and distance on the 3D models (FCL): robot against itself, scene, people. Not thread safe; one per thread.
+// Collision and distance on the 3D models: robot against itself, scene, people. Exact (FCL); where it is told which axes move, spheres
+// around the links clear most states many at a time first, and FCL judges the rest: the verdicts are the same. Not thread safe; one per
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -53,6 +55,10 @@ class CollisionWorld {
   /// (the exchange is engaged). The object may be up to kSupportSlack inside the top of boxes that support objects.
   void set_attachment(const Attachment&, const std::vector<std::string>& allowed_contacts);
 
+  /// From now on is_free and check_motion ask the wide check first. Only these axes should differ between the states asked; when another
+  /// one does, the robot is folded anew. Empty: exact only, as at the beginning. The first check makes the spheres of the links.
+  void set_moving_axes(const std::vector<int>& axes);
+
   CollisionVerdict check(const Vector& q);  ///< all axes
   bool is_free(const Vector& q);            ///< the same without the names
   /// Contact with people only, as set_people and the allowed contacts make them obstacles; cheap when they are far.
@@ -63,11 +69,17 @@ class CollisionWorld {
   CollisionVerdict check_motion(const Vector& from, const Vector& to, double step = 0.02);
   /// Least distance robot (with what it holds) to people [m]; closed forms against capsules around the robot's links; +inf if nobody.
   /// Negative when they overlap. All body parts count, whatever set_people and the allowed contacts say.
-  double distance_to_people(const Vector& q);
+  /// Writes the points nearest each other on robot and person, in the world, when given.
+  double distance_to_people(const Vector& q, Vector3* on_robot = nullptr, Vector3* on_person = nullptr);
   /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked: distances beyond `cap` return `cap`.
   double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity());
 
-  std::uint64_t checks() const;  ///< states judged so far, by whatever function
+  /// Whether the straight line is free of contact everywhere, not at steps only, as the wide check can show: true is sure, false is
+  /// unknown.
+  bool surely_free(const Vector& from, const Vector& to);
+
+  std::uint64_t checks() const;        ///< states judged so far, by whatever function
+  std::uint64_t exact_checks() const;  ///< those of them that FCL had to judge
 
  private:
   struct Impl;

@@ -1,0 +1,122 @@
+// Many states of a robot judged at once by spheres around its links: "clear" is true of the exact shapes, "unclear" is for the exact check
+// to decide. States lie side by side in the registers. Ours; the idea of several states of one motion at once is VAMP's (Thomason et al.).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/collision/sphere_cover.hpp"
+#include "common/collision/wide_kernel.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+/// What of a robot a solid is an obstacle for; bits.
+enum WideClass : std::uint8_t { kWideArm = 1, kWideHand = 2, kWideHeld = 4 };
+
+class WideWorld {
+ public:
+  static constexpr int kStates = detail::kWideStates;
+
+  /// A shape that moves with a link (or, held, with the tool link).
+  struct Body {
+    int link{};
+    std::shared_ptr<const SphereCover> cover;  ///< frame of the shape; may be null for a box, cylinder, capsule or sphere no axis moves
+    Shape shape;
+    Pose T_link_shape{Pose::Identity()};
+    std::uint8_t what{kWideArm};
+  };
+  /// A shape that stands still in the world; a mesh needs a cover.
+  struct Solid {
+    Shape shape;
+    std::shared_ptr<const SphereCover> cover;
+    Pose T_world_shape{Pose::Identity()};
+    std::uint8_t against{kWideArm | kWideHand | kWideHeld};
+  };
+
+  explicit WideWorld(const RobotModel& robot);
+
+  /// The robot for states in which only `axes` differ from q: what the others join is one rigid body. `pairs`: bodies tested against each
+  /// other; those whose relative pose no axis changes are left out, their verdict is the caller's.
+  void set_robot(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs, const std::vector<int>& axes,
+                 const Vector& q);
+  /// After set_robot.
+  void set_solids(const std::vector<Solid>& solids, const Pose& T_world_base);
+
+  /// Bits of those of the first `count` (<= kStates) states that are unclear. All axes; those not moving are not looked at.
+  std::uint32_t unclear(const Vector* states, int count);
+  /// The same for states from + at (to - from).
+  std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count);
+  /// Stretches [first, second] of the line, in parts of it, that could not be shown clear; all states between them are, without steps.
+  /// Looks at stretches down to `finest` parts of the line; gives up after `most_blocks` blocks of kStates stretches.
+  const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int most_blocks);
+
+  /// Poses of the links as the registers have them, for the state in a lane of the last call; for tests.
+  Pose link_pose(int link, int lane) const;
+  int spheres() const { return static_cast<int>(nodes_.size()); }
+  std::uint64_t blocks() const { return blocks_; }
+  /// Added to every radius for single precision [m].
+  double rounding() const { return rounding_; }
+  /// Another width than the widest, for tests and measurements.
+  void set_kernels(const detail::WideKernels& kernels) { kernels_ = &kernels; }
+
+ private:
+  struct Part {
+    int body{};
+    std::uint8_t what{};
+    std::vector<int> shapes;  // indices into bodies
+    int root{};
+  };
+  struct Free {
+    void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  using Floats = std::unique_ptr<float[], Free>;
+  static Floats floats(std::size_t count);
+
+  void fold_joints(const std::vector<int>& axes, const Vector& q);
+  void place_trees(const std::vector<Body>& bodies);
+  void make_pairs(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs);
+  void find_reach();
+  int add_tree(const SphereCover& cover, const Pose& T_body_shape, int body);
+  int add_root(const std::vector<int>& roots, int body);
+  bool add_solid(const Shape& shape, const Pose& T_root_shape);
+  void put_in_rows(detail::WideSearch& search);
+  void allocate();
+  std::uint32_t run(int count, bool swept);
+
+  const RobotModel& robot_;
+  const detail::WideKernels* kernels_;
+  std::vector<int> row_of_dof_;  // -1: does not move
+  std::vector<int> dof_of_row_;
+  std::vector<int> body_of_link_;
+  std::vector<Pose> T_body_link_;
+  std::vector<detail::WideJoint> joints_;
+  std::vector<Pose> T_parent_joint_;
+  std::vector<double> slide_;  // most a joint slides [m]
+  std::vector<Part> parts_;
+  std::vector<detail::WideNode> nodes_;
+  std::vector<detail::WideSolid> solids_;
+  std::vector<detail::WideSolids> solid_rows_;
+  std::vector<std::int32_t> node_list_, solid_list_;
+  std::vector<detail::WideSearch> searches_;
+  std::vector<detail::WidePair> pairs_;
+  std::vector<detail::WideNodePair> node_pairs_;
+  std::vector<float> reach_, pair_reach_;
+  // Of the robot alone; set_solids puts its own behind.
+  std::size_t own_nodes_{}, own_solids_{}, own_searches_{}, own_pairs_{}, own_node_list_{}, own_solid_list_{}, own_node_pairs_{};
+  double total_reach_{}, rounding_{};
+
+  Floats pose_, margin_, position_, q_, half_;
+  std::size_t position_room_{};
+  std::vector<std::uint32_t> stamp_;
+  std::vector<std::int32_t> lists_;
+  detail::WideTables tables_{};
+  detail::WideMemory memory_{};
+  std::vector<std::pair<double, double>> open_, next_, unclear_;
+  std::uint64_t blocks_{};
+};
+
+}  // namespace handsel
