@@ -30,9 +30,16 @@ bool RobotSide::command(const JointCommand& command, double now) {
   return true;
 }
 
-void RobotSide::user_stop() {
-  if (mode_ == DriveMode::enabled) begin_stop(DriveMode::user_stop);
-  mode_ = DriveMode::user_stop;
+void RobotSide::stop(DriveMode mode) {
+  if (mode_ == DriveMode::enabled) begin_stop(mode);
+  mode_ = mode;
+}
+
+void RobotSide::hold(const Vector& position, DriveMode mode) {
+  position_ = position;
+  velocity_.setZero();
+  acceleration_.setZero();
+  begin_stop(mode);
 }
 
 void RobotSide::enable() {

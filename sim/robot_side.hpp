@@ -1,4 +1,5 @@
-// The robot's own controller, emulated: drive modes, the watch over set-points, the soft stop. Pure.
+// The robot's side of the set-points: drive modes, the watch over set-points, the soft stop. In the simulator it is the robot's own
+// controller; in front of a real one (deploy/drivers) it stands between the wire and the maker's controller. Pure.
 #pragma once
 
 #include <vector>
@@ -24,7 +25,11 @@ class RobotSide {
 
   /// A set-point arrived. False when it is not followed: wrong dimension, not enabled, not continuing from the held posture.
   bool command(const JointCommand&, double now);
-  void user_stop();
+  void user_stop() { stop(DriveMode::user_stop); }
+  /// Softly, from whatever the reference does now; stays in `mode`.
+  void stop(DriveMode mode);
+  /// The reference is where the robot stands, at rest (brakes, stops of the maker's own); stays in `mode`.
+  void hold(const Vector& position, DriveMode mode);
   void enable();
   /// Advances the reference the servos follow to `now`.
   void step(double now, double dt, bool holding_object);

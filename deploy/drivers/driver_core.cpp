@@ -1,0 +1,159 @@
+#include "deploy/drivers/driver_core.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handsel::drivers {
+
+void scatter(const Vector& values, const std::vector<int>& axes, Vector& robot) {
+  for (std::size_t i = 0; i < axes.size(); ++i) robot[axes[i]] = values[static_cast<Eigen::Index>(i)];
+}
+
+Vector gather(const Vector& robot, const std::vector<int>& axes) {
+  Vector values(static_cast<Eigen::Index>(axes.size()));
+  for (std::size_t i = 0; i < axes.size(); ++i) values[static_cast<Eigen::Index>(i)] = robot[axes[i]];
+  return values;
+}
+
+int CycleCount::passed(bool came, std::uint64_t cycle) {
+  if (!came) {
+    at_ += known_ ? 1 : 0;
+    return 1;
+  }
+  const std::uint64_t since = known_ && cycle > at_ ? cycle - at_ : 1;
+  at_ = cycle;
+  known_ = true;
+  return static_cast<int>(std::min<std::uint64_t>(since, 20));
+}
+
+DriverCore::DriverCore(const RobotModel& model, std::vector<int> arm_axes, const DriverSettings& settings)
+    : model_(model),
+      arm_axes_(std::move(arm_axes)),
+      settings_(settings),
+      side_(model, Vector::Zero(model.dof()), settings.watch),
+      reference_(Vector::Zero(model.dof())),
+      set_point_(reference_),
+      fading_(arm_axes_.size()) {
+  measured_.position = measured_.velocity = measured_.effort = measured_.external_torque = reference_;
+}
+
+bool DriverCore::command(const JointCommand& command, double now) {
+  if (!side_known_ || waits_for_person_ || command.position.size() != reference_.size() || !command.position.allFinite()) return false;
+  const bool was_following = following();
+  if (was_following && last_command_ >= 0.0) {
+    const KinematicLimits& guard = model_.guard_limits();
+    for (int axis : arm_axes_) {
+      const double jump = command.position[axis] - set_point_[axis];
+      if (std::abs(jump) <= guard.velocity[axis] * (now - last_command_ + settings_.wire_jitter)) continue;
+      ++refused_;
+      why_ = "the set-point of axis " + model_.axes()[static_cast<std::size_t>(axis)].name + " jumped by " + std::to_string(jump) + " rad";
+      return false;
+    }
+  }
+  if (!side_.command(command, now)) return false;
+  has_followed_ = true;
+  last_command_ = now;
+  set_point_ = command.position;
+  return true;
+}
+
+void DriverCore::settle() noexcept {
+  for (SetpointFilter& f : fading_) f = {};
+  told_ = {side_.position(), side_.velocity(), side_.acceleration()};
+  last_command_ = -1.0;
+}
+
+void DriverCore::update(const Measured& measured, double now, double dt) {
+  measured_ = measured;
+  if (measured.mode != DriveMode::enabled) {
+    waits_for_person_ = waits_for_person_ || (measured.by_person && has_followed_);
+    why_ = measured.why;
+    side_.hold(measured.position, measured.mode);
+    settle();
+  } else if (!side_known_ || (side_.mode() != DriveMode::enabled && side_.mode() != DriveMode::protective_stop)) {
+    side_.hold(measured.position, DriveMode::protective_stop);
+    settle();
+  }
+  side_known_ = true;
+  const DriveMode before = side_.mode();
+  side_.step(now, dt, false);
+  if (before == DriveMode::enabled && side_.mode() == DriveMode::protective_stop) {
+    why_ = "no set-points for " + std::to_string(settings_.watch.max_gap) + " s";
+    last_command_ = -1.0;
+  }
+  follow_set_points(dt);
+}
+
+/// The wire's clock is not the maker's: a cycle may find one set-point more or less than the one before. What is told now beyond what was to
+/// be expected goes into the difference between reference and set-points, which fades; the reference itself never jumps.
+void DriverCore::follow_set_points(double dt) noexcept {
+  const KinematicLimits& guard = model_.guard_limits();
+  reference_ = side_.position();
+  for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
+    const int axis = arm_axes_[i];
+    const double expected = told_.position[axis] + dt * (told_.velocity[axis] + 0.5 * dt * told_.acceleration[axis]);
+    AxisState off = fading_[i].state();
+    off.position += expected - side_.position()[axis];
+    AxisLimits limits = limits_of(guard, axis);
+    limits.velocity *= settings_.fade_share;
+    limits.acceleration *= settings_.fade_share;
+    limits.jerk *= settings_.fade_share;
+    fading_[i] = SetpointFilter(off, limits);
+    reference_[axis] += fading_[i].toward({}, dt).position;
+  }
+  told_ = {side_.position(), side_.velocity(), side_.acceleration()};
+}
+
+void DriverCore::hold(const std::string& why) {
+  why_ = why;
+  side_.hold(measured_.position, DriveMode::protective_stop);
+  settle();
+  reference_ = side_.position();
+}
+
+void DriverCore::start_from(const Vector& position) noexcept {
+  for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
+    const int axis = arm_axes_[i];
+    fading_[i] = SetpointFilter({position[axis] - told_.position[axis], 0.0, 0.0}, limits_of(model_.guard_limits(), axis));
+  }
+}
+
+void DriverCore::stop(const std::string& why) {
+  why_ = why;
+  side_.stop(DriveMode::protective_stop);
+  last_command_ = -1.0;
+}
+
+void DriverCore::acknowledge() {
+  if (measured_.mode == DriveMode::enabled) waits_for_person_ = has_followed_ = false;
+}
+
+RobotState DriverCore::state(bool commanding) const {
+  RobotState s;
+  s.robot = model_.name();
+  s.sequence = ++sequence_;
+  s.T_world_base = settings_.T_world_base;
+  s.position = measured_.position;
+  s.velocity = measured_.velocity;
+  s.effort = measured_.effort;
+  s.external_torque = measured_.external_torque;
+  s.wrist_wrench = measured_.wrist_wrench;
+  s.payload = measured_.payload;
+  s.mode = side_.mode();
+  if (settings_.dry_run) {
+    s.position = reference_;
+    s.velocity = side_.velocity();
+  } else if (s.mode == DriveMode::enabled && !commanding) {
+    s.mode = DriveMode::protective_stop;
+  }
+  if (!side_known_) s.mode = DriveMode::off;
+  return s;
+}
+
+std::string DriverCore::trouble() const {
+  if (following()) return {};
+  if (waits_for_person_ && measured_.mode == DriveMode::enabled) return why_ + "; over, waits for a person's acknowledgement";
+  return why_;
+}
+
+}  // namespace handsel::drivers

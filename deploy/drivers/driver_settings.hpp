@@ -1,0 +1,24 @@
+// Settings of the two example drivers; values and meanings as in common/config/driver.proto.
+#pragma once
+
+#include <filesystem>
+
+#include "deploy/drivers/reflex_arm.hpp"
+
+namespace handsel::drivers {
+
+struct PositionSettings {
+  DriverSettings common;
+  double cycle{0.005};  ///< of the arm's controller [s]
+};
+
+struct Place {
+  int port{};             ///< UDP, where the arm's controller sends its states
+  std::vector<int> axes;  ///< robot axes in the order of the arm's controller
+};
+
+/// Reads <folder>/position_arm.txtpb or reflex_arm.txtpb. Throws ConfigError naming file and field.
+Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, PositionSettings& out);
+Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, ReflexSettings& out);
+
+}  // namespace handsel::drivers

@@ -1,0 +1,60 @@
+// Driver of a position-controlled arm whose controller sends its state every cycle and must be answered within it by a joint position
+// (the way of KUKA's fast research interface). Ours; the maker's library goes behind CyclicLink. Pure.
+#pragma once
+
+#include "deploy/drivers/driver_core.hpp"
+
+namespace handsel::drivers {
+
+/// Ordered: further down means more is possible.
+enum class Session : std::uint8_t { idle, monitoring, monitoring_ready, commanding_wait, commanding_active };
+enum class Safety : std::uint8_t { clear, user_stop, emergency_stop };
+
+/// What the arm's controller sends at the beginning of a cycle; arm axes only.
+struct CyclicState {
+  std::uint64_t cycle{};  ///< counts the arm's cycles: what did not come is seen in it
+  Session session{Session::idle};
+  Safety safety{Safety::clear};
+  bool drives_on{}, brakes_open{};
+  Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm]
+  Vector interpolated;                                 ///< where its own interpolator stands: what must be answered in commanding_wait
+};
+
+/// The maker's side. To be filled in for a real arm.
+class CyclicLink {
+ public:
+  virtual ~CyclicLink() = default;
+  /// The newest message of the arm's controller; false when this cycle's did not come.
+  virtual bool receive(CyclicState& out) = 0;
+  virtual void answer(const Vector& position) = 0;
+  virtual void request_commanding() = 0;
+  virtual void set_load(double mass) = 0;  ///< [kg]
+};
+
+class PositionArm : public Driver {
+ public:
+  /// `cycle` of the arm's controller [s]; `arm_axes`: robot axes in the order of the arm's controller.
+  PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle, CyclicLink& link, const DriverSettings& settings);
+
+  bool command(const JointCommand& command, double now) override { return core_.command(command, now); }
+  void cycle(double now) override;
+  void acknowledge() override { core_.acknowledge(); }
+  void set_load(double mass) override;
+  RobotState state() const override { return core_.state(session_ == Session::commanding_active); }
+  std::string trouble() const override;
+  const DriverCore& core() const override { return core_; }
+  std::uint64_t missed() const { return missed_; }  ///< cycles without a message
+
+ private:
+  double cycle_;
+  CyclicLink& link_;
+  DriverCore core_;
+  Session session_{Session::idle};
+  CyclicState last_;
+  CycleCount count_;
+  Measured measured_;
+  std::uint64_t missed_{};
+  int missed_in_a_row_{};
+};
+
+}  // namespace handsel::drivers

@@ -1,0 +1,90 @@
+// Driver of an arm at 1 kHz that reacts to contact and to violated limits by a reflex and must then be recovered, whose velocity limits
+// shrink toward the ends of its joints, and which carries a parallel gripper commanded by width and force (the way of Franka's arms).
+// Ours; the maker's library goes behind ReflexLink. Pure.
+#pragma once
+
+#include "deploy/drivers/driver_core.hpp"
+
+namespace handsel::drivers {
+
+enum class ArmMode : std::uint8_t { idle, moving, reflex, user_stopped, emergency_stopped };
+
+/// What the arm's controller says each cycle; arm axes only.
+struct ReflexState {
+  std::uint64_t cycle{};  ///< counts the arm's cycles: what did not come is seen in it
+  ArmMode mode{ArmMode::idle};
+  bool powered{true}, brakes_open{true};
+  Vector position, velocity, torque, external_torque;
+  Wrench wrist_wrench;     ///< on the hand with its load, tool frame
+  double gripper_width{};  ///< between the fingers [m]
+  double gripper_force{};  ///< with which they press [N]
+  std::string error;       ///< why the reflex
+};
+
+/// The maker's side. To be filled in for a real arm.
+class ReflexLink {
+ public:
+  virtual ~ReflexLink() = default;
+  /// The newest state; false when this cycle's did not come.
+  virtual bool read(ReflexState& out) = 0;
+  virtual void move_to(const Vector& position) = 0;  ///< for this cycle
+  virtual void recover() = 0;                        ///< from a reflex
+  virtual void set_load(double mass) = 0;            ///< [kg]
+  virtual void gripper_move(double width, double speed) = 0;
+  virtual void gripper_grasp(double width, double speed, double force) = 0;
+};
+
+/// Parallel gripper on one axis of the robot description.
+struct GripperSettings {
+  int axis{-1};                                ///< robot axis; -1: none
+  double open{}, closed{};                     ///< axis positions of the widths below
+  double open_width{0.08}, closed_width{0.0};  ///< [m]
+  double speed{0.1};                           ///< [m/s]
+  double stiffness{400.0};                     ///< force for a set-point beyond the measured position [N/m of width]
+  double least_force{5.0}, most_force{40.0};   ///< [N]
+};
+
+struct ReflexSettings {
+  DriverSettings common;
+  GripperSettings gripper;
+  double joint_deceleration{3.0};  ///< of the velocity limit toward a joint's end: v = sqrt(2 a (end - q)) [rad/s^2]
+  double limit_share{0.95};        ///< of the maker's velocity limit
+  int lost_cycles{20};             ///< so many without a state: the arm's controller is silent
+};
+
+/// Largest speed an arm of this kind allows at `position` toward `end` [rad/s].
+double velocity_toward_end(double position, double end, double most, double deceleration);
+
+class ReflexArm : public Driver {
+ public:
+  static constexpr double kCycle = 0.001;  ///< of the arm's controller [s]
+
+  ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link, const ReflexSettings& settings);
+
+  bool command(const JointCommand& command, double now) override;
+  void cycle(double now) override;
+  /// Recovers from a reflex too: never by itself.
+  void acknowledge() override;
+  void set_load(double mass) override;
+  RobotState state() const override { return core_.state(commanding_); }
+  std::string trouble() const override { return state_.position.size() == 0 ? "the arm's controller has not been heard yet" : core_.trouble(); }
+  const DriverCore& core() const override { return core_; }
+
+ private:
+  void judge();
+  void drive_gripper();
+  double width_of(double position) const;
+
+  ReflexLink& link_;
+  ReflexSettings settings_;
+  DriverCore core_;
+  Measured measured_;
+  ReflexState state_;
+  CycleCount count_;
+  bool commanding_{}, recovering_{};
+  int lost_{};
+  double told_width_{-1.0}, told_force_{};
+  int gripper_wait_{};
+};
+
+}  // namespace handsel::drivers

@@ -1,0 +1,17 @@
+// The cycles of a fake arm, as its datagrams come.
+#pragma once
+
+#include "deploy/drivers/driver_node.hpp"
+#include "deploy/drivers/maker_udp.hpp"
+
+namespace handsel::drivers {
+
+template <class Link>
+struct UdpSource : CycleSource {
+  explicit UdpSource(int number) : port(number), link(port) {}
+  bool wait(Duration at_most) override { return port.wait(at_most); }
+  UdpPort port;
+  Link link;
+};
+
+}  // namespace handsel::drivers
