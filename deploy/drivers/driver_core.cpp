@@ -15,11 +15,7 @@ Vector gather(const Vector& robot, const std::vector<int>& axes) {
   return values;
 }
 
-int CycleCount::passed(bool came, std::uint64_t cycle) {
-  if (!came) {
-    at_ += known_ ? 1 : 0;
-    return 1;
-  }
+int CycleCount::passed(std::uint64_t cycle) {
   const std::uint64_t since = known_ && cycle > at_ ? cycle - at_ : 1;
   at_ = cycle;
   known_ = true;
@@ -84,8 +80,8 @@ void DriverCore::update(const Measured& measured, double now, double dt) {
   follow_set_points(dt);
 }
 
-/// The wire's clock is not the maker's: a cycle may find one set-point more or less than the one before. What is told now beyond what was to
-/// be expected goes into the difference between reference and set-points, which fades; the reference itself never jumps.
+/// The wire's clock is not the maker's: a cycle may find one set-point more or less than the one before. What is told now beyond what was
+/// to be expected goes into the difference between reference and set-points, which fades; the reference itself never jumps.
 void DriverCore::follow_set_points(double dt) noexcept {
   const KinematicLimits& guard = model_.guard_limits();
   reference_ = side_.position();

@@ -14,9 +14,9 @@
 namespace handsel::drivers {
 
 struct DriverSettings {
-  bool dry_run{false};           ///< everything but the output: nothing is sent to the arm, the posture it would have is reported
-  double wire_jitter{0.005};     ///< a set-point may come this much earlier than its time [s]; a greater jump is refused
-  double fade_share{0.1};        ///< share of the guard limits with which a jump between set-points and reference fades
+  bool dry_run{false};                  ///< everything but the output: nothing is sent to the arm, the posture it would have is reported
+  double wire_jitter{0.005};            ///< a set-point may come this much earlier than its time [s]; a greater jump is refused
+  double fade_share{0.1};               ///< share of the guard limits with which a jump between set-points and reference fades
   Pose T_world_base{Pose::Identity()};  ///< where the robot stands
   sim::RobotSideSettings watch;
 };
@@ -84,8 +84,8 @@ class DriverCore {
 /// How many of the maker's cycles have passed, from the count in its messages.
 class CycleCount {
  public:
-  /// Since the call before, [1, 20]; one that did not come counts as one, and is taken back when the next one does.
-  int passed(bool came, std::uint64_t cycle);
+  /// Since the message before, [1, 20].
+  int passed(std::uint64_t cycle);
 
  private:
   std::uint64_t at_{};
@@ -97,11 +97,11 @@ class Driver {
  public:
   virtual ~Driver() = default;
   virtual bool command(const JointCommand& command, double now) = 0;
-  virtual void cycle(double now) = 0;          ///< once a maker's cycle, or once the time for one has passed without it
-  virtual void acknowledge() = 0;              ///< a person has looked
-  virtual void set_load(double mass) = 0;      ///< the hand holds this much now [kg]
+  virtual void cycle(double now) = 0;      ///< once a maker's cycle, or once the time for one has passed without it
+  virtual void acknowledge() = 0;          ///< a person has looked
+  virtual void set_load(double mass) = 0;  ///< the hand holds this much now [kg]
   virtual RobotState state() const = 0;
-  virtual std::string trouble() const = 0;     ///< why the robot does not follow, one sentence; empty while it does
+  virtual std::string trouble() const = 0;  ///< why the robot does not follow, one sentence; empty while it does
   virtual const DriverCore& core() const = 0;
 };
 

@@ -9,6 +9,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
+#include "common/messages/world.hpp"
 #include "deploy/drivers/driver_core.hpp"
 
 namespace handsel::drivers {
@@ -33,6 +34,7 @@ class DriverNode {
   void run_cycles(double cycle);
   void publish();
   void on(const ActiveTrajectory& active);
+  double mass_of(const std::string& object) const;  ///< of an object of the scene [kg]; 0: unknown
 
   Bus& bus_;
   NodeContext context_;
@@ -40,6 +42,7 @@ class DriverNode {
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<Publisher<RobotState>> state_out_;
   std::string told_trouble_{"-"}, held_object_;
+  Scene scene_;
   std::uint64_t acknowledged_{};  // epoch
   std::mutex mutex_;              // the driver: between its cycles and the bus
   std::atomic<bool> ends_{false};

@@ -7,8 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 #include <initializer_list>
 #include <type_traits>
@@ -142,8 +142,8 @@ sockaddr_in here(std::uint16_t port_in_network_order) {
 
 std::string encode(const CyclicState& s) {
   Writer out;
-  out << kCyclic << s.cycle << s.session << s.safety << s.drives_on << s.brakes_open << s.position << s.velocity << s.torque << s.external_torque
-      << s.interpolated;
+  out << kCyclic << s.cycle << s.session << s.safety << s.drives_on << s.brakes_open << s.position << s.velocity << s.torque
+      << s.external_torque << s.interpolated;
   return out.take();
 }
 
@@ -167,8 +167,8 @@ std::string encode(const ReflexState& s) {
 bool decode(std::string_view datagram, ReflexState& s) {
   Reader in(datagram);
   if (!is(in, kReflex)) return false;
-  in >> s.cycle >> s.mode >> s.powered >> s.brakes_open >> s.position >> s.velocity >> s.torque >> s.external_torque >> s.wrist_wrench.force >>
-      s.wrist_wrench.torque >> s.gripper_width >> s.gripper_force >> s.error;
+  in >> s.cycle >> s.mode >> s.powered >> s.brakes_open >> s.position >> s.velocity >> s.torque >> s.external_torque >>
+      s.wrist_wrench.force >> s.wrist_wrench.torque >> s.gripper_width >> s.gripper_force >> s.error;
   const auto n = s.position.size();
   return in.done() && s.velocity.size() == n && s.torque.size() == n && s.external_torque.size() == n;
 }

@@ -47,12 +47,8 @@ void PositionArm::cycle(double now) {
   }
   if (s.position.size() == 0) return;
   const bool lost = missed_in_a_row_ >= kLost;
-  const double dt = cycle_ * count_.passed(came, s.cycle);
-  if (!came && !lost) {
-    // Ridden out: the references go on, only nobody hears them.
-    core_.update(measured_, now, dt);
-    return;
-  }
+  if (!came && !lost) return;  // ridden out: the next one says how many cycles have passed
+  const double dt = came ? cycle_ * count_.passed(s.cycle) : cycle_;
   // The arm left commanding by itself: the references start again from where it stands.
   const bool dropped = session_ == Session::commanding_active && (lost || s.session < Session::commanding_active);
   const bool starts = !lost && session_ == Session::commanding_wait && s.session == Session::commanding_active;

@@ -63,8 +63,8 @@ void ReflexArm::judge() {
 
 void ReflexArm::cycle(double now) {
   lost_ = link_.read(state_) ? 0 : lost_ + 1;
-  if (state_.position.size() == 0) return;
-  const double dt = kCycle * count_.passed(lost_ == 0, state_.cycle);
+  if (state_.position.size() == 0 || (lost_ > 0 && lost_ < settings_.lost_cycles)) return;  // ridden out
+  const double dt = lost_ == 0 ? kCycle * count_.passed(state_.cycle) : kCycle;
   const std::vector<int>& axes = core_.arm_axes();
   measured_.position = core_.reference();
   measured_.wrist_wrench = state_.wrist_wrench;

@@ -67,7 +67,9 @@ class ReflexArm : public Driver {
   void acknowledge() override;
   void set_load(double mass) override;
   RobotState state() const override { return core_.state(commanding_); }
-  std::string trouble() const override { return state_.position.size() == 0 ? "the arm's controller has not been heard yet" : core_.trouble(); }
+  std::string trouble() const override {
+    return state_.position.size() == 0 ? "the arm's controller has not been heard yet" : core_.trouble();
+  }
   const DriverCore& core() const override { return core_; }
 
  private:

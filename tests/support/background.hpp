@@ -16,13 +16,15 @@ namespace handsel::test {
 class Background {
  public:
   explicit Background(std::vector<std::string> arguments) {
-    log_ = std::filesystem::temp_directory_path() / ("handsel-background-" + std::to_string(getpid()));
+    static int count = 0;
+    log_ = std::filesystem::temp_directory_path() / ("handsel-background-" + std::to_string(getpid()) + "-" + std::to_string(++count));
+    out_ = log_.string() + "-out";
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     pid_ = fork();
     if (pid_ == 0) {
-      if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen("/dev/null", "w", stdout)) _exit(127);
+      if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen(out_.c_str(), "w", stdout)) _exit(127);
       execv(argv[0], argv.data());
       _exit(127);
     }
@@ -30,6 +32,7 @@ class Background {
   ~Background() {
     if (pid_ > 0) interrupt();
     std::filesystem::remove(log_);
+    std::filesystem::remove(out_);
   }
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
@@ -43,11 +46,9 @@ class Background {
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
   /// What it has said on stderr so far.
-  std::string said() const {
-    std::ostringstream text;
-    text << std::ifstream(log_).rdbuf();
-    return text.str();
-  }
+  std::string said() const { return text_of(log_); }
+  /// And on stdout; also after its end.
+  std::string printed() const { return text_of(out_); }
   /// Waits until it has said `text`; false after 20 s or when it ended.
   bool wait_for(const std::string& text) const {
     for (int i = 0; i < 2000; ++i) {
@@ -59,8 +60,13 @@ class Background {
   }
 
  private:
+  static std::string text_of(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
   pid_t pid_{-1};
-  std::filesystem::path log_;
+  std::filesystem::path log_, out_;
 };
 
 }  // namespace handsel::test

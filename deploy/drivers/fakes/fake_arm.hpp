@@ -18,13 +18,13 @@ struct FakeEvents {
 };
 
 struct FakeAccount {
-  int commanded{};   ///< cycles in which a reference moved the arm
-  int violations{};  ///< references a real arm would not have taken
-  int sessions{};    ///< commanding sessions that began; recoveries for an arm with reflexes
+  int commanded{};        ///< cycles in which a reference moved the arm
+  int violations{};       ///< references a real arm would not have taken
+  int sessions{};         ///< commanding sessions that began; recoveries for an arm with reflexes
   int grasps{}, moves{};  ///< of the gripper
-  double load{};     ///< [kg] as told
-  double grasp_force{};  ///< of the last grasp [N]
-  double fastest{};  ///< of any axis [rad/s]
+  double load{};          ///< [kg] as told
+  double grasp_force{};   ///< of the last grasp [N]
+  double fastest{};       ///< of any axis [rad/s]
   std::string last_violation;
 };
 
@@ -103,7 +103,8 @@ class FakeCyclicArm : public FakeArm, public CyclicLink {
 /// cycles without a command while it moves: reflex.
 class FakeReflexArm : public FakeArm, public ReflexLink {
  public:
-  FakeReflexArm(const RobotModel& model, const std::vector<int>& axes, double deceleration) : FakeArm(model, axes), deceleration_(deceleration) {}
+  FakeReflexArm(const RobotModel& model, const std::vector<int>& axes, double deceleration)
+      : FakeArm(model, axes), deceleration_(deceleration) {}
 
   double period() const override { return ReflexArm::kCycle; }
   void cycle() override;

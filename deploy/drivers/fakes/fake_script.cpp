@@ -11,12 +11,13 @@ namespace handsel::drivers {
 
 namespace {
 
-constexpr double kMoving = 0.05;  // [rad/s]
-
 const std::map<std::string, bool FakeEvents::*> kSwitches{{"emergency_stop", &FakeEvents::emergency_stop},
                                                           {"user_stop", &FakeEvents::user_stop},
                                                           {"brake", &FakeEvents::brake},
                                                           {"power", &FakeEvents::power_off}};
+
+const std::map<std::string, FakeTrigger> kMoments{
+    {"after", FakeTrigger::after}, {"moving", FakeTrigger::moving}, {"standing", FakeTrigger::standing}};
 
 bool number(const std::string& text, double& out) {
   char* end = nullptr;
@@ -27,17 +28,13 @@ bool number(const std::string& text, double& out) {
 /// Why not; empty: it is a line.
 std::string read(const std::string& text, FakeLine& line) {
   std::istringstream in(text);
-  std::string when, seconds;
-  in >> when;
-  if (when == "moving") {
-    line.trigger = FakeTrigger::moving;
-  } else if (when == "after" || when == "standing") {
-    line.trigger = when == "after" ? FakeTrigger::after : FakeTrigger::standing;
-    if (!(in >> seconds) || !number(seconds, line.seconds) || line.seconds < 0.0) return "\"" + when + "\" wants a number of seconds";
-  } else {
-    return "\"" + when + "\" is no moment; a line begins with after, moving or standing";
-  }
-  in >> line.verb;
+  std::string when, amount;
+  in >> when >> amount >> line.verb;
+  const auto moment = kMoments.find(when);
+  if (moment == kMoments.end()) return "\"" + when + "\" is no moment; a line begins with after, moving or standing";
+  line.trigger = moment->second;
+  if (!number(amount, line.amount) || line.amount < 0.0)
+    return "\"" + when + "\" wants a number that is not below 0, not \"" + amount + "\"";
   std::getline(in >> std::ws, line.value);
   double value = 0.0;
   if (kSwitches.contains(line.verb)) {
@@ -73,9 +70,9 @@ std::string FakeScript::step(FakeArm& arm, double dt) {
   stood_ = arm.speed() > 0.0 ? 0.0 : stood_ + dt;
   if (next_ >= lines_.size()) return {};
   const FakeLine& line = lines_[next_];
-  const bool now = line.trigger == FakeTrigger::after    ? waited_ >= line.seconds
-                   : line.trigger == FakeTrigger::moving ? arm.speed() > kMoving
-                                                         : std::min(stood_, waited_) >= line.seconds;
+  const bool now = line.trigger == FakeTrigger::after    ? waited_ >= line.amount
+                   : line.trigger == FakeTrigger::moving ? arm.speed() > line.amount
+                                                         : std::min(stood_, waited_) >= line.amount;
   if (!now) return {};
   ++next_;
   waited_ = 0.0;

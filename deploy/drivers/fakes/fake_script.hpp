@@ -1,6 +1,6 @@
 // What happens to a fake arm, line by line: WHEN WHAT. A line waits for its moment after the line before has happened.
 //   after 0.5     user_stop on       so many seconds after the line before (the first: after the start)
-//   moving        emergency_stop on  as soon as an axis is faster than 0.05 rad/s
+//   moving 0.2    emergency_stop on  as soon as an axis is so fast [rad/s]
 //   standing 1    brake off          when no axis has moved for so many seconds
 // WHAT: emergency_stop, user_stop, brake, power on|off; drop N (states lost); delay MS (of each state from now on); push NM (on the first
 // axis); object M (width between the fingers); say TEXT (on standard output). # begins a comment.
@@ -18,7 +18,7 @@ enum class FakeTrigger : std::uint8_t { after, moving, standing };
 
 struct FakeLine {
   FakeTrigger trigger{};
-  double seconds{};
+  double amount{};  ///< [s], or [rad/s] of moving
   std::string verb, value;
 };
 

@@ -46,9 +46,11 @@ void play(FakeArm& arm, FakeScript& script, int driver_port) {
 }
 
 void report(const FakeAccount& a) {
-  std::printf("moved %d cycles, violations %d, sessions %d, grasps %d, gripper moves %d, load %.3f kg, grasp force %.1f N, fastest %.4f rad/s%s%s\n",
-              a.commanded, a.violations, a.sessions, a.grasps, a.moves, a.load, a.grasp_force, a.fastest,
-              a.last_violation.empty() ? "" : ", last violation: ", a.last_violation.c_str());
+  std::printf(
+      "moved %d cycles, violations %d, sessions %d, grasps %d, gripper moves %d, load %.3f kg, grasp force %.1f N, fastest %.4f "
+      "rad/s%s%s\n",
+      a.commanded, a.violations, a.sessions, a.grasps, a.moves, a.load, a.grasp_force, a.fastest,
+      a.last_violation.empty() ? "" : ", last violation: ", a.last_violation.c_str());
 }
 
 int run(int argc, char** argv) {

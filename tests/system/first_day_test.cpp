@@ -1,0 +1,164 @@
+// The first day on hardware, told to both example drivers as processes: dry run, walls, override, emergency stop, user stop, brake; and
+// what each kind has of its own. A fake of the maker's controller stands behind each, playing a script; the controller is the real one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/support/first_day.hpp"
+#include "tests/support/small_robot.hpp"
+
+namespace handsel {
+namespace {
+
+using test::FirstDay;
+using test::FirstDayPlan;
+using testing::HasSubstr;
+
+constexpr double kAway = -0.3;  // of the motions [rad]; the wall is on the other side
+
+FirstDayPlan position_arm() { return {HANDSEL_BINARIES, "position_arm", "jido", "", 0, HANDSEL_TEST_DOMAIN, false}; }
+FirstDayPlan reflex_arm() {
+  test::small_robot();
+  const std::string file =
+      (std::filesystem::temp_directory_path() / ("handsel_small_robot_" + std::to_string(::getpid())) / "small.txtpb").string();
+  return {
+      HANDSEL_BINARIES,
+      "reflex_arm",
+      file,
+      "gripper { axis: \"finger_a_joint\" open: 0 closed: 1.2 open_width: 0.08 closed_width: 0 speed: 0.1 stiffness: 400 least_force: 5 "
+      "most_force: 40 }\n",
+      0,
+      HANDSEL_TEST_DOMAIN,
+      false};
+}
+
+template <FirstDayPlan (*plan)()>
+struct Arm {
+  static FirstDayPlan make() { return plan(); }
+};
+
+template <class A>
+class FirstDayOf : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
+    day_ = std::make_unique<FirstDay>(A::make());
+  }
+  static void TearDownTestSuite() { day_.reset(); }
+
+  /// Stops in the middle of a motion by `event`; the robot stands, a new permission alone does not help, a person's word and a new
+  /// permission after it do.
+  void stopped_by(const std::string& event, DriveMode mode, const std::string& said) {
+    FirstDay& day = *day_;
+    day.play("moving 0.2 " + event + " on\nstanding 0.3 " + event + " off\n");
+    ASSERT_TRUE(day.ready()) << day.where();
+    day.move_to(kAway);
+    ASSERT_TRUE(day.wait([&] { return day.happened(event + " on"); })) << day.where();
+    const TimePoint at = day.now();
+    ASSERT_TRUE(day.wait([&] {
+      return day.robot_state().mode == mode && day.status().mode == Mode::stop && day.has(Cause::drive_not_enabled) &&
+             day.trouble().find(said) != std::string::npos;
+    })) << day.where();
+    EXPECT_LT(to_seconds(day.now() - at), 1.0) << "shown with its cause within a second";
+    EXPECT_THAT(day.status().reason, HasSubstr("drive_not_enabled"));
+    const double there = day.angle();
+    EXPECT_LT(there, -0.01) << "in the middle of a motion";
+    EXPECT_GT(there, kAway + 0.02);
+    const auto stands = [&] { return day.speed() == 0.0 && std::abs(day.angle() - there) < 1e-6 && day.status().mode >= Mode::hold; };
+
+    ASSERT_TRUE(day.wait([&] {
+      return stands() && day.happened(event + " off") && day.trouble().find("acknowledge") != std::string::npos;
+    })) << day.where();
+    EXPECT_EQ(day.robot_state().mode, DriveMode::protective_stop);
+    day.give_go(false);
+    EXPECT_TRUE(day.stays([&] { return stands() && day.robot_state().mode == DriveMode::protective_stop; }, 100)) << day.where();
+
+    day.give_go(true);
+    ASSERT_TRUE(day.wait([&] { return day.robot_state().mode == DriveMode::enabled && day.status().mode == Mode::hold; })) << day.where();
+    const auto waits = [&] { return std::abs(day.angle() - there) < 0.005 && day.status().mode == Mode::hold; };
+    EXPECT_TRUE(day.stays(waits, 100)) << "nobody has given a new permission: " << day.where();
+    day.give_go(false);
+    ASSERT_TRUE(day.wait([&] { return day.status().mode < Mode::hold; })) << day.where();
+    go_back();
+  }
+  /// To the rest posture; then the maker's side must have had nothing to complain about.
+  void go_back() {
+    FirstDay& day = *day_;
+    day.move_to(0.0);
+    ASSERT_TRUE(day.wait([&] { return day.arrived() && std::abs(day.angle()) < 0.005; })) << day.where();
+    EXPECT_THAT(day.account(), HasSubstr("violations 0")) << day.where();
+  }
+  static std::unique_ptr<FirstDay> day_;
+};
+template <class A>
+std::unique_ptr<FirstDay> FirstDayOf<A>::day_;
+
+struct Names {
+  template <class A>
+  static std::string GetName(int) {
+    return std::is_same_v<A, Arm<position_arm>> ? "position_arm" : "reflex_arm";
+  }
+};
+using Arms = testing::Types<Arm<position_arm>, Arm<reflex_arm>>;
+TYPED_TEST_SUITE(FirstDayOf, Arms, Names);
+
+TYPED_TEST(FirstDayOf, dry_run_is_everything_but_the_output) {
+  this->day_.reset();
+  FirstDayPlan plan = TypeParam::make();
+  plan.dry_run = true;
+  {
+    FirstDay day(plan);
+    day.play("");
+    ASSERT_TRUE(day.ready()) << day.where();
+    day.move_to(kAway);
+    EXPECT_TRUE(day.wait([&] { return day.arrived() && std::abs(day.angle() - kAway) < 0.005; })) << day.where();
+    EXPECT_GT(day.fastest, 0.1) << "the posture it would have is reported";
+    EXPECT_THAT(day.account(), HasSubstr("moved 0 cycles, violations 0, sessions 0")) << "but the arm was told nothing";
+  }
+  this->day_ = std::make_unique<FirstDay>(TypeParam::make());
+}
+
+TYPED_TEST(FirstDayOf, walls_are_not_passed) {
+  FirstDay& day = *this->day_;
+  day.play("");
+  ASSERT_TRUE(day.ready()) << day.where();
+  day.least_room = day.wall_room();
+  ASSERT_GT(day.least_room, 0.05);
+  day.move_to(FirstDay::kFar);
+  ASSERT_TRUE(day.wait([&] { return day.angle() > 0.05 && day.has(Cause::wall); })) << day.where();
+  EXPECT_EQ(day.status().mode, Mode::slow);
+  ASSERT_TRUE(day.wait([&] { return day.angle() > 0.1 && day.speed() < 2e-3; })) << day.where();
+  EXPECT_FALSE(day.arrived());
+  EXPECT_GE(day.least_room, 0.0);
+  day.cancel();
+  ASSERT_TRUE(day.wait([&] { return day.status().motion == MotionState::stopped && day.standing(); })) << day.where();
+  this->go_back();
+}
+
+TYPED_TEST(FirstDayOf, override_of_ten_percent_is_a_tenth_of_the_speed) {
+  FirstDay& day = *this->day_;
+  day.play("");
+  day.override_speed(0.1);
+  ASSERT_TRUE(day.ready()) << day.where();
+  day.fastest = 0.0;
+  const Trajectory plan = day.move_to(kAway);
+  double planned = 0.0;
+  for (double t = 0.0; t < plan.duration(); t += 0.001) planned = std::max(planned, plan.at(t).velocity.cwiseAbs().maxCoeff());
+  ASSERT_TRUE(day.wait([&] { return day.angle() < -0.03; })) << day.where();
+  EXPECT_TRUE(day.has(Cause::override_slow)) << day.where();
+  EXPECT_EQ(day.status().mode, Mode::slow);
+  EXPECT_LT(day.fastest, 0.1 * planned + 0.01) << "planned: " << planned;
+  EXPECT_GT(day.fastest, 0.02);
+  day.override_speed(1.0);
+  ASSERT_TRUE(day.wait([&] { return day.arrived(); })) << day.where();
+  EXPECT_GT(day.fastest, 0.3 * planned) << "back at full speed";
+  this->go_back();
+}
+
+TYPED_TEST(FirstDayOf, emergency_stop) { this->stopped_by("emergency_stop", DriveMode::emergency_stop, "emergency stop"); }
+TYPED_TEST(FirstDayOf, user_stop) { this->stopped_by("user_stop", DriveMode::user_stop, "user stop"); }
+TYPED_TEST(FirstDayOf, brake) { this->stopped_by("brake", DriveMode::braked, "brakes"); }
+
+}  // namespace
+}  // namespace handsel
