@@ -45,6 +45,14 @@ const Go& Permission::step(TimePoint now) {
   constexpr std::uint32_t kNoGo = 1U << static_cast<unsigned>(Cause::no_go);
   const bool waits = status_.mode >= Mode::hold || !go_.allowed;
   const bool fault = status_.mode == Mode::fault;
+  // A drive that was stopped by a person or by its own reflex waits for a person's word; the permission to move comes after it.
+  constexpr std::uint32_t kDrive = 1U << static_cast<unsigned>(Cause::drive_not_enabled);
+  if (acknowledge_ && status_.mode == Mode::stop && (status_.causes & kDrive) != 0) {
+    ++go_.epoch;
+    go_.acknowledge = true;
+    go_.reason = "a person lets the drives go on";
+    acknowledge_ = false;
+  }
   if (!fault) acknowledge_ = false;  // said before there was a fault: does not count for the next
   const bool now_clear = waits && (status_.causes & ~kNoGo) == 0 && (!fault || acknowledge_);
   if (now_clear && !clear_) clear_since_ = now;

@@ -15,7 +15,7 @@ HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, 
       stop_(stop),
       fingers_(axes_.size()),
       release_to_(Vector::Zero(static_cast<Eigen::Index>(axes_.size()))),
-      pull_(settings.pull) {}
+      release_(settings.pull) {}
 
 AxisLimits HandExecutor::limits(std::size_t i, const KinematicLimits& of, double share) const {
   AxisLimits l = limits_of(of, axes_[i]);
@@ -30,8 +30,8 @@ void HandExecutor::reset(const Vector& robot_position) noexcept {
     fingers_[i].mover.reset(fingers_[i].target);
   }
   phase_ = Phase::hold;
-  paused_ = by_pull_ = false;
-  pull_.disarm();
+  paused_ = false;
+  release_.disarm();
 }
 
 bool HandExecutor::at_rest() const {
@@ -52,8 +52,7 @@ void HandExecutor::follow(const Vector& robot_position) noexcept {
     if (std::abs(f.target - f.mover.target()) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0), limits(i, stop_, 1.0));
   }
   phase_ = Phase::hold;
-  by_pull_ = false;
-  pull_.disarm();
+  release_.disarm();
 }
 
 std::string HandExecutor::accept(const HandCommand& command) {
@@ -70,11 +69,10 @@ std::string HandExecutor::accept(const HandCommand& command) {
   if (command.action == HandAction::release_on_pull) {
     if (!(command.pull_force > 0) || command.pull_force > 100) return "pull_force must be above 0 and at most 100 N";
     release_to_ = command.position;
-    pull_.arm(command.pull_force);
+    release_.arm(command.pull_force);
     return {};
   }
-  pull_.disarm();
-  by_pull_ = false;
+  release_.disarm();
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
   start(command.action == HandAction::grasp ? Phase::closing : command.action == HandAction::release ? Phase::releasing : Phase::moving);
@@ -87,7 +85,7 @@ void HandExecutor::retarget(std::size_t i, double target) {
   const bool gently = phase_ == Phase::closing || phase_ == Phase::squeezing;
   if (paused_) return;
   AxisLimits l = limits(i, phase_ == Phase::regripping ? stop_ : comfort_, gently ? settings_.grasp_speed : 1.0);
-  if (by_pull_) l.velocity = std::min(l.velocity, settings_.release_speed);
+  if (phase_ == Phase::loosened) l.velocity = std::min(l.velocity, settings_.loosen_speed);
   if (gently) {
     l.velocity *= f.share;
     l.acceleration *= f.share;
@@ -141,6 +139,7 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
 
 void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
   const bool closing = phase_ == Phase::closing || phase_ == Phase::squeezing;
+  if (phase_ == Phase::loosened) return;
   if (phase_ == Phase::hold) {
     if (state_ != HandState::grasped) return;
     if (robot.payload > 2.0 * settings_.lost_payload) payload_felt_ = true;
@@ -160,11 +159,9 @@ void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
     state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
   } else if (phase_ == Phase::regripping) {
     state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
-    pull_.arm(pull_.threshold());
   } else {
     state_ = phase_ == Phase::releasing ? HandState::released : HandState::idle;
-    if (phase_ == Phase::releasing) pull_.disarm();
-    by_pull_ = false;
+    release_.disarm();
   }
   phase_ = Phase::hold;
 }
@@ -179,20 +176,28 @@ int HandExecutor::pressing(const RobotState& robot) const noexcept {
   return count;
 }
 
-/// While the hand opens on a pull and the fingers still press, the pull must go on: else the load would fall.
-void HandExecutor::watch_release(const RobotState& robot, double dt) noexcept {
-  if (pressing(robot) < settings_.least_contacts) {
-    by_pull_ = false;
-    pull_.disarm();
-    for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].final);
+void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
+  if (phase_ != Phase::hold && phase_ != Phase::loosened && phase_ != Phase::releasing) return;
+  const RobotState& robot = *in.robot;
+  const bool presses = pressing(robot) >= settings_.least_contacts;
+  const Grip before = release_.grip(),
+             wanted = release_.update({in.force, in.toward, in.person_distance <= settings_.person_range, presses}, now);
+  if (wanted == before) {
+    if (wanted == Grip::open && !presses) release_.disarm();  // nothing left to close on
     return;
   }
-  slack_for_ = pull_.lost() ? slack_for_ + dt : 0.0;
-  if (slack_for_ < settings_.regrip_time) return;
-  by_pull_ = false;
-  ++regrips_;
-  for (Finger& f : fingers_) f.final = f.held;
-  start(Phase::regripping);
+  if (wanted == Grip::loosen) {
+    phase_ = Phase::loosened;
+    for (std::size_t i = 0; i < fingers_.size(); ++i) {
+      const double touches = robot.position[axes_[i]];
+      if (fingers_[i].grip != 0.0) retarget(i, touches + settings_.loosen_share * (fingers_[i].mover.state().position - touches));
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < fingers_.size(); ++i)
+    fingers_[i].final =
+        wanted == Grip::hold ? fingers_[i].held : std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+  start(wanted == Grip::hold ? Phase::regripping : Phase::releasing);
 }
 
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
@@ -206,16 +211,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
   }
   if (!paused_) {
     if (phase_ == Phase::closing || phase_ == Phase::squeezing) watch_contacts(robot, dt);
-    const bool pulled = pull_.armed() && in.new_state && pull_.update(in.force, in.toward, now);
-    if (by_pull_) {
-      watch_release(robot, dt);
-    } else if (pulled && phase_ == Phase::hold && in.person_distance <= settings_.person_range) {
-      for (std::size_t i = 0; i < fingers_.size(); ++i)
-        fingers_[i].final = std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
-      by_pull_ = true;
-      slack_for_ = 0.0;
-      start(Phase::releasing);
-    }
+    if (release_.armed() && in.new_state) watch_release(in, now);
     judge(robot, dt);
   }
   advance(dt, out);

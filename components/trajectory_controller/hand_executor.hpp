@@ -1,5 +1,4 @@
-// What the hand does: move, grasp until contact holds, release, release when a person pulls and take hold again when the pull is lost
-// before the fingers have let go (ours). Pure; no heap in step().
+// What the hand does: move, grasp until contact holds, release, release as a person takes the load (ours). Pure; no heap in step().
 #pragma once
 
 #include <cstdint>
@@ -8,7 +7,7 @@
 #include "common/messages/execution.hpp"
 #include "common/messages/robot.hpp"
 #include "components/trajectory_controller/axis_mover.hpp"
-#include "components/trajectory_controller/pull_detector.hpp"
+#include "components/trajectory_controller/release_watch.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -27,8 +26,8 @@ struct HandSettings {
   double lost_payload{0.02};    ///< payload once felt, now below this: lost [kg]
   double lost_time{0.3};        ///< for this long [s]
   double person_range{0.45};    ///< a pull counts only with a person's hand this near [m]
-  double release_speed{0.3};    ///< of opening on a pull while the fingers still press: slow enough to take hold again [rad/s]
-  double regrip_time{0.02};     ///< pull lost for this long while the fingers still press: close again [s]
+  double loosen_speed{0.5};     ///< of the fingers while the grip loosens on a pull [rad/s]
+  double loosen_share{0.8};     ///< of the squeeze that is left then: it must still bear the load
   PullSettings pull;
 };
 
@@ -60,8 +59,8 @@ class HandExecutor {
   void advance(double dt, MotionState3& out) noexcept;
 
   HandState state() const { return state_; }
-  double pull() const { return pull_.armed() ? pull_.pull() : 0.0; }
-  std::uint64_t regrips() const { return regrips_; }  ///< times a pull was lost and the hand closed again
+  double pull() const { return release_.armed() ? release_.pull() : 0.0; }
+  std::uint64_t regrips() const { return release_.regrips(); }  ///< times the load came back and the hand closed again
   bool at_rest() const;
   /// The set-points before the last step were `from`: every axis stops from there as fast as it can.
   void stop_from(const MotionState3& from) noexcept;
@@ -69,7 +68,7 @@ class HandExecutor {
   void follow(const Vector& robot_position) noexcept;
 
  private:
-  enum class Phase { hold, moving, closing, squeezing, releasing, regripping };
+  enum class Phase { hold, moving, closing, squeezing, loosened, releasing, regripping };
   struct Finger {  // one axis of the hand
     AxisMover mover;
     double target{};       // wanted now
@@ -87,7 +86,7 @@ class HandExecutor {
   void watch_contacts(const RobotState& robot, double dt) noexcept;
   void judge(const RobotState& robot, double dt) noexcept;
   int pressing(const RobotState& robot) const noexcept;
-  void watch_release(const RobotState& robot, double dt) noexcept;
+  void watch_release(const HandInputs& in, TimePoint now) noexcept;
 
   HandSettings settings_;
   std::vector<int> axes_;
@@ -96,11 +95,10 @@ class HandExecutor {
   std::vector<Finger> fingers_;
   Phase phase_{Phase::hold};
   HandState state_{HandState::idle};
-  bool paused_{}, payload_felt_{}, by_pull_{};
-  double settled_for_{}, lost_for_{}, slack_for_{};
-  std::uint64_t regrips_{};
+  bool paused_{}, payload_felt_{};
+  double settled_for_{}, lost_for_{};
   Vector release_to_;
-  PullDetector pull_;
+  ReleaseWatch release_;
 };
 
 }  // namespace handsel::trajectory_controller

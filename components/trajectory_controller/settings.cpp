@@ -89,13 +89,19 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.grasp_lag = read(h.grasp_lag(), "grasp_lag", kTiny, 10);
   s.hand.lost_payload = read(h.lost_payload(), "lost_payload", 0, 100);
   s.hand.lost_time = read(h.lost_time(), "lost_time", 0, 10);
-  s.hand.release_speed = read(h.release_speed(), "release_speed", kTiny, 10);
-  s.hand.regrip_time = read(h.regrip_time(), "regrip_time", 0, 10);
+  s.hand.loosen_speed = read(h.loosen_speed(), "loosen_speed", kTiny, 10);
+  s.hand.loosen_share = read(h.loosen_share(), "loosen_share", 0, 1);
   s.hand.person_range = read(h.person_range(), "person_range", 0, 10);
   s.hand.pull.baseline_time = read(h.pull_baseline(), "pull_baseline", 0, 10);
   s.hand.pull.filter_time = read(h.pull_filter(), "pull_filter", 0, 10);
   s.hand.pull.quick_time = read(h.pull_quick(), "pull_quick", 0, 10);
   s.hand.pull.hold_time = read(h.pull_hold(), "pull_hold", 0, 10);
+  s.hand.pull.impulse = read(h.pull_impulse(), "pull_impulse", 0, 100);
+  s.hand.pull.commit_time = read(h.pull_commit(), "pull_commit", 0, 10);
+  s.hand.pull.slack_share = read(h.slack_share(), "slack_share", 0, 1);
+  s.hand.pull.slack_time = read(h.slack_time(), "slack_time", 0, 10);
+  s.hand.pull.lost_time = read(h.load_back(), "load_back", 0, 10);
+  s.hand.pull.patience = read(h.release_patience(), "release_patience", 0, 100);
   s.hand.pull.direction_cosine = read(h.pull_cosine(), "pull_cosine", -1, 1);
   s.hand.pull.away_cosine = read(h.pull_away_cosine(), "pull_away_cosine", -1, 1);
 

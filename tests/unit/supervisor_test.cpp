@@ -232,6 +232,28 @@ TEST(Permission, AfterAFaultOnlyAPersonResumes) {
   EXPECT_GT(rig.go.epoch, epoch);
 }
 
+TEST(Permission, APersonsWordReachesADriveThatWaitsForItAndPermissionComesAfter) {
+  Rig rig;
+  rig.run(0.5);
+  rig.execution.mode = Mode::stop;
+  rig.execution.causes = 1U << static_cast<unsigned>(Cause::drive_not_enabled);
+  const auto epoch = rig.go.epoch;
+  rig.run(1.0);
+  EXPECT_EQ(rig.go.epoch, epoch) << "not by itself";
+  TaskGoal acknowledge;
+  acknowledge.id = 9;
+  acknowledge.kind = TaskKind::acknowledge;
+  rig.supervisor.on(acknowledge, rig.now);
+  rig.run(0.02);
+  EXPECT_EQ(rig.go.epoch, epoch + 1);
+  EXPECT_TRUE(rig.go.acknowledge);
+  rig.execution.mode = Mode::hold;
+  rig.execution.causes = 1U << static_cast<unsigned>(Cause::no_go);
+  rig.run(0.3);
+  EXPECT_EQ(rig.go.epoch, epoch + 2);
+  EXPECT_FALSE(rig.go.acknowledge);
+}
+
 TEST(Permission, NoNewEpochWhileACauseStands) {
   Rig rig;
   rig.run(0.5);

@@ -36,6 +36,7 @@ std::string read(const std::string& text, FakeLine& line) {
   if (!number(amount, line.amount) || line.amount < 0.0)
     return "\"" + when + "\" wants a number that is not below 0, not \"" + amount + "\"";
   std::getline(in >> std::ws, line.value);
+  line.value.resize(line.value.find_last_not_of(" \t\r") + 1);
   double value = 0.0;
   if (kSwitches.contains(line.verb)) {
     if (line.value != "on" && line.value != "off") return line.verb + " is on or off, not \"" + line.value + "\"";

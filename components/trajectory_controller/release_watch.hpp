@@ -1,0 +1,71 @@
+// When the hand lets go at the exchange, from the force on it (ours). A confident pull loosens the grip, only so far that it still bears
+// the load; a pull that goes on, or a load that is gone because the person bears it, opens the hand; a load that comes back closes it
+// again. Noise, tremor, bumps and false starts do none of this. Pure.
+#pragma once
+
+#include <cstdint>
+
+#include "common/base/time.hpp"
+#include "common/geometry/pose.hpp"
+
+namespace handsel::trajectory_controller {
+
+struct PullSettings {
+  double baseline_time{0.25};    ///< the load's own force is averaged for this long after arming [s]
+  double filter_time{0.03};      ///< time constant of the force filter [s]
+  double quick_time{0.005};      ///< of the filter that notices the end of a pull or bump [s]
+  double hold_time{0.10};        ///< beyond the threshold for at least this long: confident [s]
+  double impulse{0.4};           ///< and until force times time is this much: a weak pull must last longer [N s]
+  double direction_cosine{0.7};  ///< of the force with its mean direction since the threshold was passed
+  double away_cosine{-0.2};      ///< a force pointing away from the person by more does not count
+  double commit_time{0.5};       ///< a pull that has lasted for this long opens the hand [s]
+  double slack_share{0.35};      ///< the person bears the load when the hand feels less than this share of it
+  double slack_time{0.15};       ///< and for this long: the hand opens [s]
+  double lost_time{0.02};        ///< the load back on the hand for this long: close again [s]
+  double patience{1.0};          ///< loosened for this long with neither: close again [s]
+};
+
+/// What the hand is to do. Ordered: further down is nearer to letting go.
+enum class Grip : std::uint8_t { hold, loosen, open };
+
+/// One sample of what is felt.
+struct Felt {
+  Vector3 force{Vector3::Zero()};   ///< on the hand and its load, gravity of the hand removed, world axes [N]
+  Vector3 toward{Vector3::Zero()};  ///< unit vector to the person, zero if unknown
+  bool person_near{};               ///< a person's hand is where it can carry the load
+  bool pressing{};                  ///< the fingers press on the load
+};
+
+class ReleaseWatch {
+ public:
+  explicit ReleaseWatch(const PullSettings& settings) : settings_(settings) {}
+
+  /// Starts over: the load's own force is measured from the samples that follow. threshold: least pull that counts [N].
+  void arm(double threshold) noexcept;
+  void disarm() noexcept { armed_ = false; }
+  bool armed() const { return armed_; }
+
+  Grip update(const Felt& felt, TimePoint now) noexcept;
+  Grip grip() const { return grip_; }
+
+  double pull() const { return pull_; }               ///< filtered force beyond the load's own [N]
+  double load_share() const { return share_; }        ///< of the load's own force that the hand still feels, 1: all
+  double threshold() const { return threshold_; }     ///< [N]
+  std::uint64_t regrips() const { return regrips_; }  ///< times the load came back
+
+ private:
+  void filter(const Vector3& force, double dt) noexcept;
+  bool strong(const Vector3& toward, TimePoint now) noexcept;
+  void close_again() noexcept;
+
+  PullSettings settings_;
+  bool armed_{}, started_{}, above_{};
+  Grip grip_{Grip::hold};
+  double threshold_{}, pull_{}, share_{1.0}, impulse_{}, slack_for_{}, lost_for_{}, loose_for_{};
+  int baseline_samples_{};
+  std::uint64_t regrips_{};
+  TimePoint first_{}, last_{}, above_since_{};
+  Vector3 baseline_{Vector3::Zero()}, filtered_{Vector3::Zero()}, quick_{Vector3::Zero()}, mean_{Vector3::Zero()};
+};
+
+}  // namespace handsel::trajectory_controller
