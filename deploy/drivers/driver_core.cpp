@@ -60,13 +60,14 @@ void DriverCore::settle() noexcept {
 }
 
 void DriverCore::update(const Measured& measured, double now, double dt) {
+  const bool was_stopped = !side_known_ || measured_.mode != DriveMode::enabled;
   measured_ = measured;
   if (measured.mode != DriveMode::enabled) {
     waits_for_person_ = waits_for_person_ || (measured.by_person && has_followed_);
     why_ = measured.why;
     side_.hold(measured.position, measured.mode);
     settle();
-  } else if (!side_known_ || (side_.mode() != DriveMode::enabled && side_.mode() != DriveMode::protective_stop)) {
+  } else if (was_stopped) {  // the arm may stand elsewhere by now
     side_.hold(measured.position, DriveMode::protective_stop);
     settle();
   }

@@ -244,7 +244,7 @@ TEST(Permission, APersonsWordReachesADriveThatWaitsForItAndPermissionComesAfter)
   acknowledge.id = 9;
   acknowledge.kind = TaskKind::acknowledge;
   rig.supervisor.on(acknowledge, rig.now);
-  rig.run(0.02);
+  rig.run(0.12);
   EXPECT_EQ(rig.go.epoch, epoch + 1);
   EXPECT_TRUE(rig.go.acknowledge);
   rig.execution.mode = Mode::hold;
