@@ -297,15 +297,8 @@ void bring_inside(AxisState& s, const AxisLimits& l, AxisProfile& out, double sl
   }
   for (int pass = 0; pass < 2; ++pass) {
     const double a = s.acceleration, rest = s.velocity + a * std::abs(a) / (2 * J), bound = V * (1 + slack);
-    double side = 0;
-    if (a < 0 && rest < -bound)
-      side = -1;
-    else if (a > 0 && rest > bound)
-      side = 1;
-    else if (s.velocity > bound)
-      side = 1;
-    else if (s.velocity < -bound)
-      side = -1;
+    const bool below = a < 0 && rest<-bound, above = a> 0 && rest > bound;
+    const double side = below ? -1 : above ? 1 : s.velocity > bound ? 1 : s.velocity < -bound ? -1 : 0;
     if (side == 0) return;
     brake_velocity(s, l, side, out);
   }

@@ -59,7 +59,7 @@ std::string one_by_one(const MotionState3& from, const MotionState3& to, const K
 }  // namespace
 
 SynchronisedBatch::SynchronisedBatch(int axes, int problems) : axes_(axes) {
-  const auto lanes = static_cast<std::size_t>(axes * problems);
+  const std::size_t lanes = static_cast<std::size_t>(axes) * static_cast<std::size_t>(problems);
   const std::size_t blocks = (lanes + detail::kLanes - 1) / detail::kLanes;
   problems_.resize(static_cast<std::size_t>(problems));
   blocks_.resize(blocks);
@@ -124,7 +124,7 @@ int SynchronisedBatch::solve(const detail::LaneInput& in, int count) noexcept {
     for (int b = 0; b < blocks; ++b) {
       const auto k = static_cast<std::size_t>(b);
       std::uint32_t blocked = 0, failed = 0;
-      failed = kernels.finish(blocks_[k], durations_.data() + b * kLanes, odd_[k], &blocked);
+      failed = kernels.finish(blocks_[k], durations_.data() + k * kLanes, odd_[k], &blocked);
       for (std::uint32_t left = failed | blocked; left != 0; left &= left - 1) {
         take_over(in, b * kLanes + std::countr_zero(left));
         again = true;

@@ -35,8 +35,8 @@ class SynchronisedBatch {
   AxisOutcome outcome(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].outcome; }
   int axis(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].axis; }
   double duration(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].duration; }
-  double minimum(int problem, int axis) const noexcept { return minima_[static_cast<std::size_t>(problem * axes_ + axis)]; }
-  const AxisProfile& profile(int problem, int axis) const noexcept { return profiles_[static_cast<std::size_t>(problem * axes_ + axis)]; }
+  double minimum(int problem, int axis) const noexcept { return minima_[entry(problem, axis)]; }
+  const AxisProfile& profile(int problem, int axis) const noexcept { return profiles_[entry(problem, axis)]; }
 
  private:
   struct Problem {
@@ -45,6 +45,9 @@ class SynchronisedBatch {
     int axis{};
     bool open{};
   };
+  std::size_t entry(int problem, int axis) const noexcept {
+    return static_cast<std::size_t>(problem) * static_cast<std::size_t>(axes_) + static_cast<std::size_t>(axis);
+  }
   void take_over(const detail::LaneInput& in, int lane) noexcept;
   void find_durations(int count) noexcept;
   void write_profiles(int lanes) noexcept;

@@ -74,10 +74,12 @@ bool TrajectorySwitch::best_place(const MotionState3& now, const SegmentTable& n
   };
   for (int k = 0; k < tries; ++k) look(k + 1 == tries ? last : first + k * spacing);
   if (best == kNever) return false;
-  for (double reach = spacing / 2; reach > 1e-3; reach /= 2) {
+  double reach = spacing / 2;
+  while (reach > 1e-3) {
     const double centre = join_;
     look(std::max(first, centre - reach));
     look(std::min(last, centre + reach));
+    reach /= 2;
   }
   connect_ = meeting(now, next, limits, join_, 0);
   return true;

@@ -10,7 +10,7 @@ namespace {
 using nlohmann::json;
 using namespace command;
 
-CLI::App* batch(CLI::App* group, const char* name, const char* what, int& exit_code, std::function<json(const json&)> answer) {
+CLI::App* batch(CLI::App* group, const char* name, const char* what, int& exit_code, const std::function<json(const json&)>& answer) {
   CLI::App* command = group->add_subcommand(name, what);
   command->add_flag("--json")->description("JSON Lines (always so)");
   command->callback([&exit_code, answer] { exit_code = for_each_line(std::cin, std::cout, answer); });
