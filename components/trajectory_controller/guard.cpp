@@ -11,7 +11,8 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr int kGrid = 16;
-constexpr double kStill = 1e-4;  // [m/s] closing more slowly counts as not closing
+constexpr double kSideways = 0.05;  // share of a link's speed
+constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not closing
 
 /// Stop of the axes that move along the path, for factors on a grid of [0, 1].
 struct StopTable {
@@ -135,16 +136,19 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
                                 reaction + part.age, margin);
       }
       if (distance >= matters) continue;
-      double& best = closing > 0 ? forward : backward;
       if (part.excepted) {
         verdict.exchange_clear = false;
+        double& best = closing > 0 ? forward : backward;
         if (std::abs(closing) > settings.exchange_speed) best = std::min(best, settings.exchange_speed / std::abs(closing));
         continue;
       }
-      if (std::abs(closing) < kStill) continue;
+      if (quickest < kStill) continue;
       const double v_h = directed_speed(part, -toward, settings);
       const double left = distance - v_h * part.age;  // the person may have come that much nearer since
-      best = allowed(left, v_h, std::abs(closing), margin, best);
+      // Nearly sideways counts as closing both ways: until they meet the direction between them may turn.
+      const double sideways = std::max(kStill, kSideways * quickest), speed = std::max(std::abs(closing), sideways);
+      if (closing > -sideways) forward = allowed(left, v_h, speed, margin, forward);
+      if (closing < sideways) backward = allowed(left, v_h, speed, margin, backward);
       high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kGrid - 1e-9)));
       const bool closes_now = closing * factor > 0.05;
       if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > left) verdict.too_near = true;

@@ -93,8 +93,9 @@ TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) 
       const Separation s = watch.separation_now();
       if (s.distance > 0.0) continue;
       ++met;
-      worst = std::max(worst, watch.speed_toward(s));
-      EXPECT_LE(watch.speed_toward(s), kRounding) << "trial " << trial << ", person at " << speed << " m/s, data " << b.human_age << " s old";
+      const double toward = watch.speed_toward(s);
+      worst = std::max(worst, toward);
+      EXPECT_LE(toward, kRounding) << "trial " << trial << ", person at " << speed << " m/s, data " << b.human_age << " s old";
       break;
     }
     was_moving += moved ? 1 : 0;

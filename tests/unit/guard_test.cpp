@@ -243,6 +243,8 @@ TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) 
   Person p = standing(0.4);
   const GuardVerdict inside = judge(p);
   EXPECT_LT(inside.distance, 0.0);
+  dq_[0] = 0.0;
+  EXPECT_EQ(judge(p).forward, 1.0) << "what does not move is not slowed";
   robot_->forward(q_, links_);
   const Vector3 there = links_[static_cast<std::size_t>(upper)] * Vector3(0.4, 0, 0);
   Crowd point;
