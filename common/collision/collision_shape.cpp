@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <mutex>
+#include <utility>
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/capsule.h>
@@ -71,8 +74,37 @@ struct CollisionShape::Exact {
 CollisionShape::CollisionShape() = default;
 CollisionShape::~CollisionShape() = default;
 
+namespace {
+
+bool same(const Shape& a, const Shape& b) {
+  if (a.index() != b.index()) return false;
+  if (const auto* sphere = std::get_if<Sphere>(&a)) return sphere->radius == std::get<Sphere>(b).radius;
+  if (const auto* box = std::get_if<Box>(&a)) return box->size == std::get<Box>(b).size;
+  if (const auto* round = std::get_if<Cylinder>(&a))
+    return round->radius == std::get<Cylinder>(b).radius && round->length == std::get<Cylinder>(b).length;
+  if (const auto* capsule = std::get_if<Capsule>(&a))
+    return capsule->radius == std::get<Capsule>(b).radius && capsule->length == std::get<Capsule>(b).length;
+  const TriangleMesh &x = *std::get<MeshPtr>(a), &y = *std::get<MeshPtr>(b);
+  return x.triangles == y.triangles && x.vertices == y.vertices;
+}
+
+/// Covers are made once for equal shapes: many worlds of one process hold the same robot.
+std::shared_ptr<const SphereCover> remembered_cover(const Shape& shape) {
+  constexpr std::size_t kMost = 200;
+  static std::mutex mutex;
+  static std::deque<std::pair<Shape, std::shared_ptr<const SphereCover>>> made;
+  const std::lock_guard lock(mutex);
+  for (const auto& [known, cover] : made)
+    if (same(known, shape)) return cover;
+  made.emplace_back(shape, std::make_shared<const SphereCover>(cover_shape(shape)));
+  if (made.size() > kMost) made.pop_front();
+  return made.back().second;
+}
+
+}  // namespace
+
 const std::shared_ptr<const SphereCover>& CollisionShape::cover() const {
-  if (!cover_) cover_ = std::make_shared<const SphereCover>(cover_shape(shape_));
+  if (!cover_) cover_ = remembered_cover(shape_);
   return cover_;
 }
 

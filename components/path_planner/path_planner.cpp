@@ -254,6 +254,7 @@ Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cos
   Result result;
   result.reason = contradiction(robot, problem);
   if (!result.reason.empty()) return result;
+  world.set_moving_axes(problem.axes);
   SearchSpace space(robot, world, cost, problem, settings, hooks);
   result = Planning(space, problem, settings).run();
   result.checks = space.checks();
