@@ -148,19 +148,28 @@ void RobotBody::lump(const RobotModel& model) {
     b.inertia -= b.mass * (b.com.squaredNorm() * Eigen::Matrix3d::Identity() - b.com * b.com.transpose());
     b.mass = std::max(b.mass, kLeastMass);
   }
+  find_fingers();
+}
+
+void RobotBody::find_fingers() {
+  const int palm = model_.tool_link() < 0 ? -1 : body_of_link_[model_.tool_link()];
+  if (palm < 0) return;
+  int fingers = 0;
+  for (Body& b : bodies_) {
+    if (b.parent < 0 || (b.parent != palm && bodies_[b.parent].finger < 0)) continue;
+    b.finger = b.parent == palm ? fingers++ : bodies_[b.parent].finger;
+    b.inertia += settings_.rotor_inertia * Eigen::Matrix3d::Identity();
+  }
 }
 
 // Stiffness in proportion to what a joint moves, as high as the torque limits and the fastest motion of the finger allow; Rayleigh damping.
 void RobotBody::soften_fingers() {
-  const int palm = model_.tool_link() < 0 ? -1 : body_of_link_[model_.tool_link()];
-  if (palm < 0) return;
   std::vector<std::vector<int>> fingers;
   for (int i = 0; i < bodies(); ++i) {
-    Body& b = bodies_[i];
-    if (b.parent < 0 || (b.parent != palm && bodies_[b.parent].finger < 0)) continue;
-    b.finger = b.parent == palm ? static_cast<int>(fingers.size()) : bodies_[b.parent].finger;
-    if (b.parent == palm) fingers.emplace_back();
-    fingers[b.finger].push_back(i);
+    const int finger = bodies_[i].finger;
+    if (finger < 0) continue;
+    fingers.resize(std::max(fingers.size(), static_cast<std::size_t>(finger) + 1));
+    fingers[finger].push_back(i);
   }
   const double fastest = settings_.finger_bandwidth;
   for (const std::vector<int>& finger : fingers) {
@@ -202,7 +211,7 @@ Eigen::MatrixXd RobotBody::mass_matrix(const std::vector<int>& of) {
   return (M + M.transpose()) / 2 + 1e-9 * Eigen::MatrixXd::Identity(n, n);
 }
 
-void RobotBody::drive(const Vector& position, const Vector& velocity, const Vector& acceleration) {
+void RobotBody::drive(const Vector& position, const Vector& velocity, const Vector& acceleration, const Vector& effort) {
   const double w = settings_.bandwidth;
   for (int i = 0; i < bodies(); ++i) {
     const Body& b = bodies_[i];
@@ -222,7 +231,7 @@ void RobotBody::drive(const Vector& position, const Vector& velocity, const Vect
       b.torque += b.stiffness * (b.factor * position[b.dof] + b.offset - multibody_->getJointPos(i)) +
                   b.damping * (b.factor * velocity[b.dof] - multibody_->getJointVel(i));
     }
-    b.torque = std::clamp(b.torque, -b.limit, b.limit);
+    b.torque = std::clamp(b.torque + b.factor * effort[b.dof], -b.limit, b.limit);
     multibody_->addJointTorque(i, b.torque);
   }
   for (int i = 0; i < bodies(); ++i) {

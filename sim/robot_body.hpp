@@ -19,7 +19,8 @@ namespace handsel::sim {
 struct ServoSettings {
   double bandwidth{60.0};        ///< of the computed-torque loop [rad/s]
   double finger_bandwidth{600};  ///< of the fastest motion of a free finger [rad/s]; below the physics rate
-  double finger_travel{0.5};     ///< a finger presses with its whole torque at this distance [rad] (a hundredth of it in m)
+  double finger_travel{0.1};     ///< a finger presses with its whole torque at this distance [rad] (a hundredth of it in m)
+  double rotor_inertia{1e-4};    ///< of a finger joint's motor, seen through its gear [kg m^2]
   double default_effort{50.0};   ///< where the model gives none [Nm]
 };
 
@@ -37,8 +38,8 @@ class RobotBody {
             btMultiBodyDynamicsWorld&, ShapeStore&, int collision_group, int collision_mask);
   ~RobotBody();
 
-  /// Set-points of all axes for the coming step. Coupled joints follow their axis.
-  void drive(const Vector& position, const Vector& velocity, const Vector& acceleration);
+  /// Set-points of all axes for the coming step; efforts are added to what the servos give. Coupled joints follow their axis.
+  void drive(const Vector& position, const Vector& velocity, const Vector& acceleration, const Vector& effort);
   /// Wrench on the body at a world point, for the coming step.
   void push(int body, const Vector3& point, const Wrench&);
   /// Reads the state after a step.
@@ -83,6 +84,7 @@ class RobotBody {
 
   static bool follows(const Body& b) { return b.leader >= 0 && b.finger >= 0; }
   void lump(const RobotModel&);
+  void find_fingers();
   void forward();
   void soften_fingers();
   Eigen::MatrixXd mass_matrix(const std::vector<int>& bodies);

@@ -7,13 +7,14 @@ namespace handsel::sim {
 
 RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSideSettings& settings)
     : settings_(settings), limits_(model.stop_limits()), position_(start) {
-  velocity_ = acceleration_ = Vector::Zero(start.size());
+  velocity_ = acceleration_ = effort_ = Vector::Zero(start.size());
   stops_.resize(start.size());
   if (const Group* hand = model.group("hand")) hand_axes_ = hand->axes;
 }
 
 bool RobotSide::command(const JointCommand& command, double now) {
   const auto n = position_.size();
+  if (command.effort.size() != 0 && command.effort.size() != n) return false;
   if (command.position.size() != n || command.velocity.size() != n || command.acceleration.size() != n) return false;
   if (mode_ == DriveMode::protective_stop && at_rest_) {
     const bool continues = (command.position - position_).cwiseAbs().maxCoeff() < settings_.resume_tolerance &&
@@ -27,6 +28,7 @@ bool RobotSide::command(const JointCommand& command, double now) {
   position_ = command.position;
   velocity_ = command.velocity;
   acceleration_ = command.acceleration;
+  effort_ = command.effort.size() == n ? command.effort : Vector(Vector::Zero(n));
   return true;
 }
 
@@ -85,9 +87,10 @@ void RobotSide::step(double now, double dt, bool holding_object) {
     hand_rest_ = hand_moves() ? 0 : hand_rest_ + dt;
     clenched_ = hand_rest_ > 0.5;
     closed_ = position_;
+    squeeze_ = effort_;
   }
   if (clenched_) {
-    for (int axis : hand_axes_) position_[axis] = closed_[axis], velocity_[axis] = acceleration_[axis] = 0;
+    for (int axis : hand_axes_) position_[axis] = closed_[axis], effort_[axis] = squeeze_[axis], velocity_[axis] = acceleration_[axis] = 0;
   }
 }
 

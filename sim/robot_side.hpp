@@ -37,6 +37,7 @@ class RobotSide {
   const Vector& position() const { return position_; }
   const Vector& velocity() const { return velocity_; }
   const Vector& acceleration() const { return acceleration_; }
+  const Vector& effort() const { return effort_; }  ///< kept through a stop: what is held stays held
   DriveMode mode() const { return mode_; }
   bool hand_moves() const;  ///< its reference does
   bool stopped() const { return stopping_ && at_rest_; }
@@ -48,8 +49,8 @@ class RobotSide {
   KinematicLimits limits_;
   std::vector<int> hand_axes_;
   DriveMode mode_{DriveMode::enabled};
-  Vector position_, velocity_, acceleration_;
-  Vector closed_;  // hand posture kept by the mutant
+  Vector position_, velocity_, acceleration_, effort_;
+  Vector closed_, squeeze_;  // hand posture and effort kept by the mutant
   std::vector<SoftStop> stops_;
   bool stopping_{false}, at_rest_{false}, seen_{false}, fresh_{false}, clenched_{false};
   double last_{0}, hand_rest_{0};

@@ -42,6 +42,11 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.ssm.reaction = positive(read.reaction(), "reaction");
   s.constraint = std::getenv("HANDSEL_NO_WELD") == nullptr;
   s.setpoint_period = read.setpoint_period();
+  s.pad.friction = positive(read.pad_friction(), "pad_friction");
+  s.pad.patch = positive(read.pad_patch(), "pad_patch");
+  s.pad.stiffness = positive(read.pad_stiffness(), "pad_stiffness");
+  s.servo.finger_travel = positive(read.finger_travel(), "finger_travel");
+  s.servo.rotor_inertia = positive(read.rotor_inertia(), "rotor_inertia");
   s.data_root = data_root();
   return s;
 }

@@ -504,7 +504,7 @@ struct SimWorld::Impl {
       control(setup.disturbances[next_disturbance++].control);
     }
     side.step(now(), settings.step, gripped >= 0);
-    robot->drive(side.position(), side.velocity(), side.acceleration());
+    robot->drive(side.position(), side.velocity(), side.acceleration(), side.effort());
     move_people();
     hold_with_robot();
     dynamics.stepSimulation(settings.step, 0);
@@ -703,6 +703,8 @@ void SimWorld::truth(GroundTruth& out) const {
 const std::string& SimWorld::last_limit_violation() const { return impl_->limits.last_violation(); }
 const std::string& SimWorld::last_collision() const { return impl_->last_collision; }
 DriveMode SimWorld::mode() const { return impl_->side.mode(); }
+const std::vector<Touch>& SimWorld::touches() const { return impl_->touches; }
+const std::string& SimWorld::robot_body(int body) const { return impl_->robot->name_of(body); }
 bool SimWorld::robot_grips() const { return impl_->gripped >= 0; }
 double SimWorld::robot_pressure() const { return impl_->watched < 0 ? 0 : impl_->grasp->pressure(impl_->touches, impl_->watched); }
 double SimWorld::constraint_share() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }

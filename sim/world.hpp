@@ -8,6 +8,7 @@
 #include "common/messages/perception.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
+#include "sim/contacts.hpp"
 #include "sim/scene_setup.hpp"
 #include "sim/settings.hpp"
 
@@ -41,6 +42,8 @@ class SimWorld {
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
   DriveMode mode() const;
   bool robot_grips() const;
+  const std::vector<Touch>& touches() const;                ///< of the last step; robot bodies by number
+  const std::string& robot_body(int body) const;            ///< name of its link
   double robot_pressure() const;                            ///< normal force of the hand on the watched object [N]
   double constraint_share() const;                          ///< of the time the robot held something, that in which the constraint did
   const Pose& T_world_object(const std::string& id) const;  ///< throws std::out_of_range

@@ -39,7 +39,7 @@ struct TopicRow {
 // clang-format off
 #define HANDSEL_TOPICS(X) \
   X(RobotState, "robot_state", sensor, 500, 0.02, 2048, "sim", "trajectory_controller spark") \
-  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 1024, "trajectory_controller", "sim") \
+  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 1280, "trajectory_controller", "sim") \
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 81920, "sim", "spark") \
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 16384, "sim", "spark") \
   X(Scene, "scene", state, 10, 0.3, 32768, "spark", \
@@ -56,7 +56,7 @@ struct TopicRow {
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", "supervisor attention trajectory_controller") \
   X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller") \
   X(TrajectoryCommand, "trajectory", command, 0, 0, 2621440, "manipulation_planner", "trajectory_controller") \
-  X(HandCommand, "hand_command", command, 0, 0, 512, "manipulation_planner", "trajectory_controller") \
+  X(HandCommand, "hand_command", command, 0, 0, 704, "manipulation_planner", "trajectory_controller") \
   X(ExecutionStatus, "execution_status", state, 50, 0.06, 704, "trajectory_controller", "manipulation_planner supervisor") \
   X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 2621440, "trajectory_controller", \
     "collision_checker attention manipulation_planner") \

@@ -51,6 +51,7 @@ struct HandCommand {
   std::string robot;
   HandAction action{HandAction::move};
   Vector position;         ///< actuated hand axes, in the order of the group "hand" [rad]
+  Vector effort;           ///< likewise, of a grasp: what they squeeze with [Nm]; empty: as before while holding, else the settings' own
   double pull_force{4.0};  ///< [N] beyond the load's weight, for release_on_pull
 };
 

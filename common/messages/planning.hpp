@@ -97,8 +97,10 @@ struct Grasp {
   Pose T_object_hand{Pose::Identity()};  ///< hand frame = tool link of the robot
   Vector hand_joints;                    ///< actuated hand axes at contact [rad]
   Vector pregrasp_joints;                ///< opened before the approach [rad]
+  Vector hand_effort;                    ///< of the actuated hand axes that squeezes inside the friction cones [Nm]; 0: the axis only holds
   std::vector<Contact> contacts;
   double epsilon{};        ///< Ferrari-Canny, L1
+  double margin{};         ///< least force left inside the contacts' cones under that squeeze, whichever way the load pulls [N]
   double quality{};        ///< weighted sum of the four parts, [0, 1]
   Vector arm_joints;       ///< arm axes reaching the grasp; empty until a robot was considered
   Vector approach_joints;  ///< arm axes at the stand-off before it

@@ -32,6 +32,7 @@ struct JointCommand {
   std::string robot;
   std::uint64_t sequence{};
   Vector position, velocity, acceleration;  ///< per axis, all axes of the robot
+  Vector effort;                            ///< likewise, what the motors give besides following [Nm]; empty: nothing
 };
 
 }  // namespace handsel

@@ -44,6 +44,7 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
   io.integer("epoch", m.epoch, w.epoch);
   io.choice("action", m.action, w.action, kHandActions);
   io.vector("position", m.position, w.position, kCoordinate);
+  io.vector("effort", m.effort, w.effort, kCoordinate);
   io.number("pull_force", m.pull_force, w.pull_force, {0, 1e5});
 }
 

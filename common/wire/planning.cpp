@@ -22,12 +22,16 @@ void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
   io.pose("T_object_hand", m.T_object_hand, w.T_object_hand);
   io.vector("hand_joints", m.hand_joints, w.hand_joints, kCoordinate);
   io.vector("pregrasp_joints", m.pregrasp_joints, w.pregrasp_joints, kCoordinate);
+  io.vector("hand_effort", m.hand_effort, w.hand_effort, kCoordinate);
   io.list("contacts", m.contacts, w.contacts, 16);
   io.number("epsilon", m.epsilon, w.epsilon, {-1e3, 1e3});
+  io.number("margin", m.margin, w.margin, {-1e3, 1e3});
   io.number("quality", m.quality, w.quality, {-1e3, 1e3});
   io.vector("arm_joints", m.arm_joints, w.arm_joints, kCoordinate);
   io.vector("approach_joints", m.approach_joints, w.approach_joints, kCoordinate);
   io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0, "pregrasp_joints",
+           "has not as many values as hand_joints");
+  io.check(m.hand_effort.size() == m.hand_joints.size() || m.hand_effort.size() == 0, "hand_effort",
            "has not as many values as hand_joints");
 }
 

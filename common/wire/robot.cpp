@@ -32,10 +32,12 @@ void describe(WireIo& io, JointCommand& m, handsel_JointCommand& w) {
   io.vector("position", m.position, w.position, kCoordinate);
   io.vector("velocity", m.velocity, w.velocity, kCoordinate);
   io.vector("acceleration", m.acceleration, w.acceleration, kAcceleration);
+  io.vector("effort", m.effort, w.effort, kCoordinate);
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
   io.check(m.acceleration.size() == n, "acceleration", "has not as many values as position");
+  io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has neither as many values as position nor none");
 }
 
 HANDSEL_WIRE_KEYED(RobotState, robot)

@@ -71,15 +71,14 @@ Vector3 FingerChain::tip(const Vector& q) const {
   return tip(T);
 }
 
-Eigen::Matrix3Xd FingerChain::jacobian(const std::vector<Pose>& T) const {
+Eigen::Matrix3Xd FingerChain::jacobian(const std::vector<Pose>& T, const Vector3& p_hand) const {
   Eigen::Matrix3Xd J = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(axes_.size()));
-  const Vector3 p = tip(T);
   for (const int s : tip_path_) {
     const Step& step = steps_[static_cast<std::size_t>(s)];
     const auto column = std::find(axes_.begin(), axes_.end(), step.dof) - axes_.begin();
     const Pose& frame = T[static_cast<std::size_t>(s)];
     const Vector3 axis = frame.linear() * step.axis;
-    J.col(column) += step.factor * (step.prismatic ? axis : axis.cross(p - frame.translation()));
+    J.col(column) += step.factor * (step.prismatic ? axis : axis.cross(p_hand - frame.translation()));
   }
   return J;
 }

@@ -27,7 +27,9 @@ class FingerChain {
   Vector3 tip(const Vector& q) const;  ///< centre of the fingertip sphere, hand frame [m]
   Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * p_step_tip_; }
   /// 3 x axes().size(): velocity of the tip's centre for each of the finger's axes.
-  Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const;
+  Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const { return jacobian(T, tip(T)); }
+  /// Likewise of the point of the outermost link that is at `p_hand` now.
+  Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T, const Vector3& p_hand) const;
   /// From the last joint to the tip's centre, hand frame, unit.
   Vector3 tip_direction(const std::vector<Pose>& T) const;
   /// Where the tip goes when the finger's outermost axis closes (moves from the rest posture into its range), hand frame, unit: the way its

@@ -242,7 +242,7 @@ struct GraspChooser::Search {
     const double fingers = static_cast<double>(self.kit_->chains.size());
     double sum = settings().rank_quality * listed.grasp.quality +
                  settings().rank_contacts * static_cast<double>(listed.grasp.contacts.size()) / fingers;
-    sum += settings().rank_sturdy * std::min(1.0, listed.grasp.epsilon / settings().sturdy_epsilon);
+    sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
     if (request.for_human.empty()) return sum;
     return sum + settings().rank_room * listed.room;
   }

@@ -23,8 +23,8 @@ struct ChoiceSettings {
   double rank_contacts{0.2};         ///< share of the fingers in contact
   double rank_room{0.3};             ///< surface left free; when a person is to take the object
   double rank_exchange{0.3};         ///< the arm can hold the object out upright, the hand behind it, seen from the person; then too
-  double rank_sturdy{0.3};           ///< epsilon up to `sturdy_epsilon`: what only just holds comes last
-  double sturdy_epsilon{0.04};
+  double rank_sturdy{1.0};           ///< the squeeze's margin / `sturdy_margin`, -2 to 1: what only just holds comes last
+  double sturdy_margin{2.0};         ///< [N]
 };
 
 /// Why a listed grasp does not serve now.

@@ -266,7 +266,23 @@ struct GraspLister::Impl {
       const SurfacePoint& p = object->points()[contact->point];
       g.contacts.push_back({static_cast<std::uint32_t>(f), p.position, p.normal, p.triangle, p.barycentric, friction(), p.curvature});
     }
+    squeeze(c, g);
     return g;
+  }
+
+  void squeeze(const Combination& c, Grasp& g) const {
+    const GripForces grip = grip_forces(point_contacts(c), object->com(), object->mass(), settings.grip);
+    g.margin = grip.margin;
+    g.hand_effort = Vector::Zero(g.hand_joints.size());
+    const Pose T_hand_object = g.T_object_hand.inverse();
+    for (std::size_t k = 0; k < grip.forces.size(); ++k) {
+      const std::size_t f = g.contacts[k].finger;
+      const FingerChain& chain = kit->chains[f];
+      const Eigen::Matrix3Xd J =
+          chain.jacobian(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step, T_hand_object * g.contacts[k].position);
+      const Eigen::VectorXd effort = J.transpose() * (T_hand_object.linear() * grip.forces[k]);
+      for (std::size_t a = 0; a < chain.axes().size(); ++a) g.hand_effort[chain.axes()[a]] = effort[static_cast<Eigen::Index>(a)];
+    }
   }
 
   std::shared_ptr<const HandKit> kit;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/grasp/grip_force.hpp"
 #include "common/messages/planning.hpp"
 #include "components/grasp_planner/graspable.hpp"
 #include "components/grasp_planner/hand_kit.hpp"
@@ -34,6 +35,7 @@ struct GraspListSettings {
   double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
   double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
   double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
+  GripForceSettings grip;                ///< how hard it is held, and what it must bear
   double free_distance{0.03};            ///< surface this far from the hand counts as room for another hand [m]
   std::uint64_t seed{1};
 };

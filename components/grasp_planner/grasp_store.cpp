@@ -12,7 +12,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;  // of the form on disk and of the method: raise it when either changes
+constexpr std::uint32_t kVersion = 2;  // of the form on disk and of the method: raise it when either changes
 
 /// FNV-1a, 64 bit.
 class Hash {
@@ -76,7 +76,9 @@ Vector3 vector3(const google::protobuf::RepeatedField<double>& v) { return {v[0]
 Vector vector(const google::protobuf::RepeatedField<double>& v) { return Eigen::Map<const Vector>(v.data(), v.size()); }
 
 std::optional<ListedGrasp> grasp_from(const config::StoredGrasp& in) {
-  if (in.pose_size() != 12 || in.scores_size() != 4 || in.hand_joints_size() != in.pregrasp_joints_size()) return std::nullopt;
+  if (in.pose_size() != 12 || in.scores_size() != 4 || in.hand_joints_size() != in.pregrasp_joints_size() ||
+      in.hand_joints_size() != in.hand_effort_size())
+    return std::nullopt;
   ListedGrasp out;
   Grasp& g = out.grasp;
   g.id = in.id();
@@ -85,6 +87,7 @@ std::optional<ListedGrasp> grasp_from(const config::StoredGrasp& in) {
   }
   g.hand_joints = vector(in.hand_joints());
   g.pregrasp_joints = vector(in.pregrasp_joints());
+  g.hand_effort = vector(in.hand_effort());
   for (const auto& c : in.contacts()) {
     if (c.position_size() != 3 || c.normal_size() != 3 || c.barycentric_size() != 3) return std::nullopt;
     g.contacts.push_back(
@@ -92,6 +95,7 @@ std::optional<ListedGrasp> grasp_from(const config::StoredGrasp& in) {
   }
   g.epsilon = in.epsilon();
   g.quality = in.quality();
+  g.margin = in.margin();
   out.scores = {in.scores(0), in.scores(1), in.scores(2), in.scores(3)};
   out.room = in.room();
   return out;
@@ -105,6 +109,7 @@ void put_grasp(const ListedGrasp& in, config::StoredGrasp* out) {
   }
   put(g.hand_joints, out->mutable_hand_joints());
   put(g.pregrasp_joints, out->mutable_pregrasp_joints());
+  put(g.hand_effort, out->mutable_hand_effort());
   for (const Contact& c : g.contacts) {
     auto* s = out->add_contacts();
     s->set_finger(c.finger);
@@ -117,6 +122,7 @@ void put_grasp(const ListedGrasp& in, config::StoredGrasp* out) {
   }
   out->set_epsilon(g.epsilon);
   out->set_quality(g.quality);
+  out->set_margin(g.margin);
   for (const double s : {in.scores.stability, in.scores.centre, in.scores.force, in.scores.curvature}) out->add_scores(s);
   out->set_room(in.room);
 }
@@ -147,10 +153,27 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
   for (const PlacedShape& p : object.parts) h.add(p);
   h.add(object.com);
   h.add(object.friction);
-  for (const double v : {static_cast<double>(s.positions), static_cast<double>(s.orientations), s.step_share, s.friction,
-                         static_cast<double>(s.cone_edges), s.full_epsilon, s.weights.stability, s.weights.centre, s.weights.force,
-                         s.weights.curvature, static_cast<double>(s.contacts_per_finger), static_cast<double>(s.tries_per_finger), s.depth,
-                         s.opening, s.open_clearance, s.free_distance}) {
+  h.add(object.mass);
+  for (const double v : {static_cast<double>(s.positions),
+                         static_cast<double>(s.orientations),
+                         s.step_share,
+                         s.friction,
+                         static_cast<double>(s.cone_edges),
+                         s.full_epsilon,
+                         s.weights.stability,
+                         s.weights.centre,
+                         s.weights.force,
+                         s.weights.curvature,
+                         static_cast<double>(s.contacts_per_finger),
+                         static_cast<double>(s.tries_per_finger),
+                         s.depth,
+                         s.opening,
+                         s.open_clearance,
+                         s.free_distance,
+                         s.grip.max_normal,
+                         s.grip.friction_share,
+                         s.grip.acceleration,
+                         static_cast<double>(s.grip.edges)}) {
     h.add(v);
   }
   h.add(s.seed);

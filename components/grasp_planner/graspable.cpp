@@ -25,7 +25,7 @@ double depth(const Shape& shape, const Vector3& p) {
 }  // namespace
 
 Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_share, std::uint64_t seed)
-    : name_(object.name), com_(object.com), friction_(object.friction) {
+    : name_(object.name), com_(object.com), friction_(object.friction), mass_(object.mass) {
   auto mesh = std::make_shared<TriangleMesh>(object.mesh);
   if (mesh->triangles.empty()) throw ConfigError("object " + name_ + ": its mesh has no triangles; it needs a surface");
   findings_ = orient(*mesh);
@@ -42,9 +42,9 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_s
   settings.curvature_radius = tip_radius;
   settings.seed = seed;
   points_ = sample_surface(*mesh, settings);
-  std::erase_if(points_, [&object](const SurfacePoint& p) {
-    return std::any_of(object.parts.begin(), object.parts.end(), [&p](const PlacedShape& part) {
-      return depth(part.shape, part.T_parent_shape.inverse() * p.position) > kDeepInPart;
+  std::erase_if(points_, [&](const SurfacePoint& p) {
+    return std::any_of(object.parts.begin(), object.parts.end(), [&p, tip_radius](const PlacedShape& part) {
+      return depth(part.shape, part.T_parent_shape.inverse() * (p.position + tip_radius * p.normal)) + tip_radius > kDeepInPart;
     });
   });
   if (points_.empty())

@@ -33,6 +33,7 @@ class Graspable {
   const Vector3& com() const { return com_; }
   double radius() const { return radius_; }  ///< largest distance of the surface from the mass centre [m]
   double friction() const { return friction_; }
+  double mass() const { return mass_; }  ///< [kg]
 
  private:
   std::string name_;
@@ -44,7 +45,7 @@ class Graspable {
   TriangleTree triangles_;
   CollisionShapePtr shape_;
   Vector3 com_{Vector3::Zero()};
-  double radius_{}, friction_{};
+  double radius_{}, friction_{}, mass_{};
 };
 
 }  // namespace handsel::grasp_planner

@@ -56,6 +56,10 @@ GraspListSettings list_settings(const config::GraspPlannerSettings& t, std::uint
   s.opening = positive("opening", t.opening());
   s.open_clearance = positive("open_clearance", t.open_clearance());
   s.free_distance = positive("free_distance", t.free_distance());
+  s.grip.max_normal = positive("grip_force", t.grip_force());
+  s.grip.friction_share = positive("grip_friction", t.grip_friction());
+  if (s.grip.friction_share > 1) throw ConfigError("grasp_planner.txtpb: grip_friction must be at most 1");
+  s.grip.acceleration = positive("grip_acceleration", t.grip_acceleration());
   s.seed = seed;
   return s;
 }
@@ -73,7 +77,7 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_room = t.rank_room();
   s.rank_exchange = t.rank_exchange();
   s.rank_sturdy = t.rank_sturdy();
-  s.sturdy_epsilon = positive("sturdy_epsilon", t.sturdy_epsilon());
+  s.sturdy_margin = positive("sturdy_margin", t.sturdy_margin());
   return s;
 }
 

@@ -104,7 +104,7 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   if (!moved.good) co_return moved;
 
   status_.phase = "grasp";
-  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout());
+  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout(), &grasp.hand_effort);
   if (!closed.outcome.good || closed.state != HandState::grasped) {
     HandResult reopened = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
     Motion back = reach_object;

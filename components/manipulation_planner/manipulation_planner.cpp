@@ -344,12 +344,14 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
   co_return Outcome::failure("no straight way leads off " + touched);
 }
 
-Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout) {
+Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout,
+                                                                   const Vector* effort) {
   HandCommand command;
   command.id = ++commands_;
   command.robot = robot_->name();
   command.action = action;
   command.position = position;
+  if (effort != nullptr) command.effort = *effort;
   command.pull_force = settings_.pull_force();
   HandResult result;
   const std::uint64_t id = command.id;

@@ -95,7 +95,7 @@ class ManipulationPlanner {
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
   Routine<Outcome> move(const Motion& motion);
   Routine<Outcome> execute(const std::vector<Vector>& nodes, const Motion& motion);
-  Routine<HandResult> hand(HandAction action, const Vector& position, double timeout);
+  Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr);
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);

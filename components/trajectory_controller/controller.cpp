@@ -71,6 +71,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   if (const Group* head = robot_->group("head")) head_axes_ = head->axes;
   head_target_.assign(head_axes_.size(), 0.0);
   set_point_ = rest_state(Vector::Zero(n));
+  effort_ = Vector::Zero(n);
   next_ = set_point_;
   full_velocity_ = full_acceleration_ = posture_ = yield_from_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
@@ -380,6 +381,7 @@ void Controller::step_hand(TimePoint now) noexcept {
   }
   new_state_ = false;
   hand_.step(in, settings_.period, now, next_);
+  for (int i = 0; i < hand_.size(); ++i) effort_[hand_.axes()[static_cast<std::size_t>(i)]] = hand_.effort(i);
 }
 
 void Controller::step_head() noexcept {

@@ -79,6 +79,7 @@ class Controller {
   bool step(TimePoint now, bool late) noexcept;
 
   const MotionState3& set_point() const { return set_point_; }  ///< all axes
+  const Vector& effort() const { return effort_; }              ///< likewise, what the motors give besides following it [Nm]
   Mode mode() const { return verdict_.mode; }
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
@@ -168,6 +169,7 @@ class Controller {
   // What is sent.
   bool ready_{};
   MotionState3 set_point_, next_;
+  Vector effort_;
   LimitShares shares_;
 
   // Arm.

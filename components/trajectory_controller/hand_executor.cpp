@@ -5,6 +5,10 @@
 
 namespace handsel::trajectory_controller {
 
+namespace {
+constexpr double kMinor = 0.2;  // of the largest effort: axes with less only hold
+}
+
 HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
                            const KinematicLimits& comfort, const KinematicLimits& stop)
     : settings_(settings),
@@ -31,6 +35,7 @@ void HandExecutor::reset(const Vector& robot_position) noexcept {
   }
   phase_ = Phase::hold;
   paused_ = false;
+  level_ = 0.0;
   release_.disarm();
 }
 
@@ -59,13 +64,16 @@ std::string HandExecutor::accept(const HandCommand& command) {
   if (command.position.size() != static_cast<Eigen::Index>(fingers_.size()))
     return "hand command has " + std::to_string(command.position.size()) + " positions, the hand has " + std::to_string(fingers_.size()) +
            " axes";
-  constexpr double kBeyond = 0.02;
+  constexpr double kBeyond = 0.02, kMostEffort = 20;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const double p = command.position[static_cast<Eigen::Index>(i)];
     if (!(p >= lower_[i] - kBeyond && p <= upper_[i] + kBeyond))
       return "hand axis " + std::to_string(i) + " wanted at " + std::to_string(p) + ", outside [" + std::to_string(lower_[i]) + ", " +
              std::to_string(upper_[i]) + "] rad";
   }
+  if (command.effort.size() != 0 &&
+      (command.effort.size() != command.position.size() || !(command.effort.cwiseAbs().maxCoeff() <= kMostEffort)))
+    return "hand command must give as many efforts as positions or none, each at most " + std::to_string(kMostEffort) + " Nm";
   if (command.action == HandAction::release_on_pull) {
     if (!(command.pull_force > 0) || command.pull_force > 100) return "pull_force must be above 0 and at most 100 N";
     release_to_ = command.position;
@@ -75,18 +83,26 @@ std::string HandExecutor::accept(const HandCommand& command) {
   release_.disarm();
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
+  const bool holds = state_ == HandState::grasped;
   start(command.action == HandAction::grasp ? Phase::closing : command.action == HandAction::release ? Phase::releasing : Phase::moving);
+  if (command.action != HandAction::grasp || (holds && command.effort.size() == 0)) return {};
+  if (!holds) level_ = 0.0;
+  most_effort_ = 0.0;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    Finger& f = fingers_[i];
+    f.effort = command.effort.size() > 0 ? command.effort[static_cast<Eigen::Index>(i)] : f.direction * f.share * settings_.squeeze_effort;
+    most_effort_ = std::max(most_effort_, std::abs(f.effort));
+  }
   return {};
 }
 
 void HandExecutor::retarget(std::size_t i, double target) {
   Finger& f = fingers_[i];
   f.target = std::clamp(target, lower_[i], upper_[i]);
-  const bool gently = phase_ == Phase::closing || phase_ == Phase::squeezing;
+  const bool gently = phase_ == Phase::closing || phase_ == Phase::seeking;
   if (paused_) return;
   AxisLimits l = limits(i, phase_ == Phase::regripping ? stop_ : comfort_, gently ? settings_.grasp_speed : 1.0);
-  if (phase_ == Phase::loosened) l.velocity = std::min(l.velocity, settings_.loosen_speed);
-  if (gently) {
+  if (phase_ == Phase::closing) {
     l.velocity *= f.share;
     l.acceleration *= f.share;
     l.jerk *= f.share;
@@ -106,39 +122,68 @@ void HandExecutor::start(Phase phase) {
     const double way = f.final - f.mover.state().position;
     f.share = longest > 0.0 ? std::max(0.05, std::abs(way) / longest) : 1.0;
     f.direction = phase == Phase::closing && std::abs(way) >= settings_.closing_least ? std::copysign(1.0, way) : 0.0;
-    f.contact = f.beyond = false;
+    f.contact = false;
     f.pressed_for = 0.0;
     retarget(i, f.final);
   }
 }
 
+/// What an axis gives to the world [Nm].
+double HandExecutor::pressed(const RobotState& robot, std::size_t i) const noexcept {
+  const int axis = axes_[i];
+  if (axis < robot.external_torque.size()) return -robot.external_torque[axis];
+  return axis < robot.effort.size() ? robot.effort[axis] : 0.0;
+}
+
+/// An axis that meets something on its way stops there.
 void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
-  // The axes look for contact beyond the command together: a finger that were first would only push the object away.
-  const bool together =
-      std::all_of(fingers_.begin(), fingers_.end(), [](const Finger& f) { return f.contact || f.beyond || f.mover.at_rest(); });
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     if (f.direction == 0.0 || f.contact) continue;
-    const int axis = axes_[i];
-    const double lag = f.direction * (f.mover.state().position - robot.position[axis]);
-    const double effort = axis < robot.effort.size() ? std::abs(robot.effort[axis]) : 0.0;
-    const double speed = axis < robot.velocity.size() ? std::abs(robot.velocity[axis]) : 0.0;
-    const bool pressed =
-        lag > settings_.contact_lag || (effort > settings_.contact_effort && lag > settings_.grasp_lag && speed < settings_.contact_speed);
-    f.pressed_for = pressed ? f.pressed_for + dt : 0.0;
-    if (f.pressed_for >= settings_.contact_time) {
-      f.contact = true;
-      retarget(i, robot.position[axis] + f.direction * f.share * settings_.squeeze);
-    } else if (together && !f.beyond) {
-      f.beyond = true;
-      phase_ = Phase::squeezing;
-      retarget(i, f.final + f.direction * f.share * settings_.squeeze_travel);
-    }
+    f.pressed_for = f.direction * pressed(robot, i) > settings_.touch_effort ? f.pressed_for + dt : 0.0;
+    if (f.pressed_for < settings_.touch_time) continue;
+    f.contact = true;
+    retarget(i, robot.position[axes_[i]]);
   }
+  if (!at_rest()) return;
+  phase_ = Phase::seeking;
+  for (Finger& f : fingers_) f.target = f.mover.state().position;
+}
+
+/// Axes that press on nothing yet go on the way they will push; then all press.
+void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
+  bool done = true;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    Finger& f = fingers_[i];
+    if (f.contact || std::abs(f.effort) < kMinor * most_effort_) continue;
+    const double way = std::copysign(1.0, f.effort);
+    f.pressed_for = way * pressed(robot, i) > settings_.touch_effort ? f.pressed_for + dt : 0.0;
+    f.contact =
+        f.pressed_for >= settings_.touch_time || std::abs(f.target - f.final) >= settings_.seek_travel * std::abs(f.effort) / most_effort_;
+    if (f.contact) continue;
+    done = false;
+    retarget(i, f.target + dt * settings_.seek_speed * f.effort / most_effort_);
+    if (f.target <= lower_[i] || f.target >= upper_[i]) f.contact = true;
+  }
+  if (!done) return;
+  phase_ = Phase::squeezing;
+  settled_for_ = 0.0;
+}
+
+void HandExecutor::squeeze(const RobotState& robot, double dt) noexcept {
+  level_ = std::min(1.0, level_ + dt / settings_.squeeze_time);
+  settled_for_ = level_ >= 1.0 ? settled_for_ + dt : 0.0;
+  if (settled_for_ < settings_.settle_time) return;
+  for (Finger& f : fingers_) {
+    f.held = f.target;
+    f.grip = std::abs(f.effort) < kMinor * most_effort_ ? 0.0 : std::copysign(1.0, f.effort);
+  }
+  state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
+  phase_ = Phase::hold;
 }
 
 void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
-  const bool closing = phase_ == Phase::closing || phase_ == Phase::squeezing;
+  if (phase_ == Phase::closing || phase_ == Phase::seeking || phase_ == Phase::squeezing) return;
   if (phase_ == Phase::loosened) return;
   if (phase_ == Phase::hold) {
     if (state_ != HandState::grasped) return;
@@ -147,17 +192,9 @@ void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
     if (lost_for_ >= settings_.lost_time) state_ = HandState::empty;
     return;
   }
-  bool settled = at_rest();
-  for (const Finger& f : fingers_) settled = settled && (f.direction == 0.0 || f.contact || f.beyond);
-  settled_for_ = settled ? settled_for_ + dt : 0.0;
-  if (!settled || (closing && settled_for_ < settings_.settle_time)) return;
-  if (closing) {
-    for (Finger& f : fingers_) {
-      f.held = f.mover.state().position;
-      f.grip = f.direction;
-    }
-    state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
-  } else if (phase_ == Phase::regripping) {
+  settled_for_ = at_rest() ? settled_for_ + dt : 0.0;
+  if (!at_rest() || (phase_ == Phase::regripping && level_ < 1.0)) return;
+  if (phase_ == Phase::regripping) {
     state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
   } else {
     state_ = phase_ == Phase::releasing ? HandState::released : HandState::idle;
@@ -171,7 +208,7 @@ int HandExecutor::pressing(const RobotState& robot) const noexcept {
   int count = 0;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const Finger& f = fingers_[i];
-    if (f.grip != 0.0 && f.grip * (f.mover.state().position - robot.position[axes_[i]]) > settings_.grasp_lag) ++count;
+    if (f.grip != 0.0 && f.grip * pressed(robot, i) > settings_.touch_effort) ++count;
   }
   return count;
 }
@@ -188,16 +225,20 @@ void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
   }
   if (wanted == Grip::loosen) {
     phase_ = Phase::loosened;
-    for (std::size_t i = 0; i < fingers_.size(); ++i) {
-      const double touches = robot.position[axes_[i]];
-      if (fingers_[i].grip != 0.0) retarget(i, touches + settings_.loosen_share * (fingers_[i].mover.state().position - touches));
-    }
     return;
   }
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final =
         wanted == Grip::hold ? fingers_[i].held : std::clamp(release_to_[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
   start(wanted == Grip::hold ? Phase::regripping : Phase::releasing);
+}
+
+/// The efforts of the squeeze follow what the hand does.
+void HandExecutor::change_level(double dt) noexcept {
+  const double change = dt / settings_.squeeze_time;
+  if (phase_ == Phase::regripping) level_ = std::min(1.0, level_ + change);
+  if (phase_ == Phase::loosened) level_ = std::max(std::min(level_, settings_.loosen_share), level_ - change);
+  if (phase_ == Phase::releasing || phase_ == Phase::moving) level_ = std::max(0.0, level_ - change);
 }
 
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
@@ -210,7 +251,10 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
     for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);
   }
   if (!paused_) {
-    if (phase_ == Phase::closing || phase_ == Phase::squeezing) watch_contacts(robot, dt);
+    if (phase_ == Phase::closing) watch_contacts(robot, dt);
+    if (phase_ == Phase::seeking) seek(robot, dt);
+    if (phase_ == Phase::squeezing) squeeze(robot, dt);
+    change_level(dt);
     if (release_.armed() && in.new_state) watch_release(in, now);
     judge(robot, dt);
   }

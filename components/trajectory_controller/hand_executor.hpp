@@ -12,22 +12,20 @@
 namespace handsel::trajectory_controller {
 
 struct HandSettings {
-  double grasp_speed{0.5};      ///< share of the comfort velocity while closing onto an object
-  double closing_least{0.05};   ///< an axis closes when its way is at least this [rad]
-  double contact_lag{0.10};     ///< set-point ahead of the measured position: contact [rad]
-  double contact_effort{0.5};   ///< or effort beyond this while it hardly moves [Nm]
-  double contact_speed{0.05};   ///< "hardly moves" [rad/s]
-  double contact_time{0.02};    ///< for this long [s]
-  double squeeze{0.15};         ///< set-point beyond the measured position once in contact, axis with the longest way [rad]
-  double squeeze_travel{0.35};  ///< how far beyond the commanded position contact is sought, axis with the longest way [rad]
-  double settle_time{0.15};     ///< at rest for this long before the outcome is told [s]
-  int least_contacts{2};        ///< axes in contact that make a grasp
-  double grasp_lag{0.03};       ///< an axis this far from its set-point presses on something [rad]
-  double lost_payload{0.02};    ///< payload once felt, now below this: lost [kg]
-  double lost_time{0.3};        ///< for this long [s]
-  double person_range{0.45};    ///< a pull counts only with a person's hand this near [m]
-  double loosen_speed{0.5};     ///< of the fingers while the grip loosens on a pull [rad/s]
-  double loosen_share{0.8};     ///< of the squeeze that is left then: it must still bear the load
+  double grasp_speed{0.5};     ///< share of the comfort velocity while closing onto an object
+  double closing_least{0.05};  ///< an axis closes when its way is at least this [rad]
+  double touch_effort{0.08};   ///< an axis that gives this much to the world touches it [Nm]
+  double touch_time{0.02};     ///< for this long, while it closes [s]
+  double seek_speed{0.2};      ///< of the search for contact beyond the commanded position, axis with the largest effort [rad/s]
+  double seek_travel{0.25};    ///< how far it goes [rad]
+  double squeeze_effort{0.5};  ///< of a command that names none, axis with the longest way [Nm]
+  double squeeze_time{0.4};    ///< of the squeeze's growth, and of its decay when the hand opens [s]
+  double settle_time{0.15};    ///< at rest for this long before the outcome is told [s]
+  int least_contacts{2};       ///< axes in contact that make a grasp
+  double lost_payload{0.02};   ///< payload once felt, now below this: lost [kg]
+  double lost_time{0.3};       ///< for this long [s]
+  double person_range{0.45};   ///< a pull counts only with a person's hand this near [m]
+  double loosen_share{0.8};    ///< of the squeeze's efforts that is left then: it must still bear the load
   PullSettings pull;
 };
 
@@ -58,6 +56,9 @@ class HandExecutor {
   /// Only moves on along what is under way.
   void advance(double dt, MotionState3& out) noexcept;
 
+  /// What hand axis `i` gives besides following its set-point [Nm].
+  double effort(int i) const { return level_ * fingers_[static_cast<std::size_t>(i)].effort; }
+  const std::vector<int>& axes() const { return axes_; }
   HandState state() const { return state_; }
   double pull() const { return release_.armed() ? release_.pull() : 0.0; }
   std::uint64_t regrips() const { return release_.regrips(); }  ///< times the load came back and the hand closed again
@@ -68,22 +69,27 @@ class HandExecutor {
   void follow(const Vector& robot_position) noexcept;
 
  private:
-  enum class Phase { hold, moving, closing, squeezing, loosened, releasing, regripping };
+  enum class Phase { hold, moving, closing, seeking, squeezing, loosened, releasing, regripping };
   struct Finger {  // one axis of the hand
     AxisMover mover;
     double target{};       // wanted now
     double final{};        // of the command, clamped to the bounds
     double direction{};    // of closing: -1, 0, +1
+    double effort{};       // of the squeeze [Nm]
     double held{};         // set-point that holds the object
     double grip{};         // direction it presses in while the object is held
-    double share{1.0};     // of the longest way of all axes: speed and squeeze go with it, so that a finger keeps its way, (0, 1]
+    double share{1.0};     // of the longest way of all axes: speed goes with it, so that a finger keeps its way, (0, 1]
     double pressed_for{};  // [s]
-    bool contact{}, beyond{};
+    bool contact{};
   };
   AxisLimits limits(std::size_t i, const KinematicLimits& of, double share) const;
   void start(Phase phase);
   void retarget(std::size_t i, double target);
+  double pressed(const RobotState& robot, std::size_t i) const noexcept;
   void watch_contacts(const RobotState& robot, double dt) noexcept;
+  void seek(const RobotState& robot, double dt) noexcept;
+  void squeeze(const RobotState& robot, double dt) noexcept;
+  void change_level(double dt) noexcept;
   void judge(const RobotState& robot, double dt) noexcept;
   int pressing(const RobotState& robot) const noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;
@@ -97,6 +103,7 @@ class HandExecutor {
   HandState state_{HandState::idle};
   bool paused_{}, payload_felt_{};
   double settled_for_{}, lost_for_{};
+  double level_{}, most_effort_{};  // share of the squeeze in force; its largest effort
   Vector release_to_;
   ReleaseWatch release_;
 };

@@ -33,6 +33,7 @@ void Node::tick(TimePoint now) {
     command_.position = core_.set_point().position;
     command_.velocity = core_.set_point().velocity;
     command_.acceleration = core_.set_point().acceleration;
+    command_.effort = core_.effort();
     command_out_->publish(command_);
   }
   late_before_ = late;

@@ -24,10 +24,16 @@ inline constexpr double kDt = 0.001;
 inline constexpr double kShake = 0.02;  // to either side [m]
 inline const Vector3 kTable(0.85, -0.62, 0.36), kTableSize(0.7, 0.7, 0.72);
 
+/// Models read so far; one that is not among the project's own is put in by its name.
+inline std::map<std::string, ObjectModel>& models() {
+  static std::map<std::string, ObjectModel> read;
+  return read;
+}
+
 inline const ObjectModel* library(const std::string& name) {
-  static std::map<std::string, ObjectModel> models;
-  if (models.find(name) == models.end()) models[name] = ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb"));
-  return &models[name];
+  const auto [at, fresh] = models().try_emplace(name);
+  if (fresh) at->second = ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb"));
+  return &at->second;
 }
 
 struct Outcome {
@@ -38,6 +44,7 @@ struct Outcome {
   double turn{};        ///< likewise [rad]
   double pressure{};    ///< normal force of the hand after closing [N]
   double constraint{};  ///< share of the time in which the constraint held
+  std::string hold;     ///< what held it after the lift, as the ground truth says: "contact" or "constraint"
   double real_time{};   ///< simulated seconds per second of the processor, object in hand
   bool held() const { return lost.empty(); }
 };
@@ -56,7 +63,7 @@ class Execution {
         world_(robot, library_, scenario(model, x, y, yaw), settings, 1) {
     command_.robot = robot.name();
     command_.position = opened(grasp.approach_joints);
-    command_.velocity = command_.acceleration = Vector::Zero(robot.dof());
+    command_.velocity = command_.acceleration = command_.effort = Vector::Zero(robot.dof());
   }
 
   Outcome run(Handling handling = Handling::lift) {
@@ -83,6 +90,9 @@ class Execution {
     }
     wait(1.0);
     out_.lifted = (world_.T_world_object("it").translation() - start.translation()).z();
+    GroundTruth truth;
+    world_.truth(truth);
+    out_.hold = truth.hold;
     if (handling == Handling::lift_tilt_shake && out_.held()) {
       stage_ = "tilt";
       if (!tilt(T)) out_.lost = "no way to tilt";
@@ -136,9 +146,10 @@ class Execution {
       in.new_state = in.may_move = true;
       in.person_distance = std::numeric_limits<double>::infinity();
       fingers_->step(in, kDt, TimePoint{} + from_seconds(world_.time()), fingers_out_);
-      for (const int a : hand_.axes) {
+      for (const int& a : hand_.axes) {
         command_.position[a] = fingers_out_.position[a];
         command_.velocity[a] = fingers_out_.velocity[a];
+        command_.effort[a] = fingers_->effort(static_cast<int>(&a - hand_.axes.data()));
       }
     }
     ++command_.sequence;
@@ -254,6 +265,7 @@ class Execution {
     HandCommand closing;
     closing.action = HandAction::grasp;
     closing.position = grasp_.hand_joints;
+    closing.effort = grasp_.hand_effort;
     ASSERT_EQ(fingers_->accept(closing), "");
     for (int k = 0; k < 3000 && (k < 50 || fingers_->state() == HandState::moving); ++k) tick();
   }

@@ -42,6 +42,28 @@ double depth(const Shape& shape, const Vector3& p) {
   return 0;
 }
 
+// Virtual work by the hand's kinematics: what the axes do when they move a little is what the forces do at the fingers' contact points.
+void expect_efforts_do_the_work_of_the_squeeze(const ObjectModel& o, const std::vector<PointContact>& contacts, const Grasp& g) {
+  const GripForces grip = grip_forces(contacts, o.com, o.mass);
+  EXPECT_NEAR(grip.margin, g.margin, 1e-9);
+  ASSERT_EQ(g.hand_effort.size(), g.hand_joints.size());
+  const HandModel& hand = sah()->hand;
+  const auto contact_at = [&](std::size_t k, const Vector& q) {
+    const int tip = hand.model().link_index(hand.fingers()[g.contacts[k].finger].tip_link);
+    const Pose T_tip_object = (g.T_object_hand * hand.model().link_pose(g.hand_joints, tip)).inverse();
+    return Vector3(g.T_object_hand * hand.model().link_pose(q, tip) * T_tip_object * g.contacts[k].position);
+  };
+  for (Eigen::Index a = 0; a < g.hand_joints.size(); ++a) {
+    constexpr double kStep = 1e-6;
+    const Vector ahead = g.hand_joints + kStep * Vector::Unit(g.hand_joints.size(), a);
+    double work = 0;
+    for (std::size_t k = 0; k < g.contacts.size(); ++k) {
+      work += grip.forces[k].dot(contact_at(k, ahead) - contact_at(k, g.hand_joints)) / kStep;
+    }
+    EXPECT_NEAR(work, g.hand_effort[a], 1e-4) << "axis " << a;
+  }
+}
+
 class ListedGrasps : public testing::TestWithParam<const char*> {};
 
 TEST_P(ListedGrasps, keep_their_promises) {
@@ -88,6 +110,7 @@ TEST_P(ListedGrasps, keep_their_promises) {
     for (const Vector3& v : o.mesh.vertices) radius = std::max(radius, (v - o.com).norm());
     EXPECT_NEAR(epsilon(contact_wrenches(contacts, 8, o.com, 1 / radius)), g.grasp.epsilon, 1e-9);
     EXPECT_GT(g.grasp.epsilon, 0);
+    expect_efforts_do_the_work_of_the_squeeze(o, contacts, g.grasp);
     double deepest = -1, deepest_open = -1;
     for (std::size_t l = 0; l < model.links().size(); ++l) {
       for (const PlacedShape& shape : model.links()[l].collision) {
@@ -118,6 +141,8 @@ TEST(GraspList, is_the_same_every_time_and_longer_lists_contain_shorter_ones) {
         std::find_if(longer.grasps.begin(), longer.grasps.end(), [&](const auto& g) { return g.grasp.id == a.grasps[i].grasp.id; });
     ASSERT_NE(same, longer.grasps.end());
     EXPECT_EQ(same->grasp.hand_joints, a.grasps[i].grasp.hand_joints);
+    EXPECT_EQ(same->grasp.hand_effort, a.grasps[i].grasp.hand_effort);
+    EXPECT_EQ(same->grasp.margin, a.grasps[i].grasp.margin);
   }
   EXPECT_GT(longer.grasps.size(), a.grasps.size());
 }

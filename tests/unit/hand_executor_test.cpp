@@ -11,12 +11,13 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kDt = 0.001;
+constexpr double kStiffness = 40.0;  // [Nm/rad]
 
 KinematicLimits limits(int n, double v, double a, double j) {
   return {Eigen::VectorXd::Constant(n, v), Eigen::VectorXd::Constant(n, a), Eigen::VectorXd::Constant(n, j)};
 }
 
-/// A hand of four axes whose servos follow the set-point until something blocks them.
+/// A hand of four axes whose servos follow the set-point as springs, pushed by the effort given besides, until something blocks them.
 class HandTest : public testing::Test {
  protected:
   HandTest()
@@ -38,9 +39,9 @@ class HandTest : public testing::Test {
     for (int k = 0; k < static_cast<int>(seconds / kDt); ++k) {
       for (int i = 0; i < 4; ++i) {
         const double before = robot_.position[i];
-        robot_.position[i] = std::min(out_.position[i], block_[static_cast<std::size_t>(i)]);
+        robot_.position[i] = std::min(out_.position[i] + hand_.effort(i) / kStiffness, block_[static_cast<std::size_t>(i)]);
         robot_.velocity[i] = (robot_.position[i] - before) / kDt;
-        robot_.effort[i] = 5.0 * (out_.position[i] - robot_.position[i]);
+        robot_.effort[i] = kStiffness * (out_.position[i] - robot_.position[i]) + hand_.effort(i);
       }
       HandInputs in;
       in.robot = &robot_;
@@ -82,7 +83,10 @@ TEST_F(HandTest, grasps_what_is_in_the_way_and_keeps_squeezing) {
   command(HandAction::grasp, 0.7);
   run(3.0);
   EXPECT_EQ(hand_.state(), HandState::grasped);
-  for (int i : {0, 1, 2}) EXPECT_NEAR(out_.position[i] - robot_.position[i], HandSettings{}.squeeze, 0.02) << i;
+  for (int i : {0, 1, 2}) {
+    EXPECT_NEAR(out_.position[i], robot_.position[i], 0.01) << i;
+    EXPECT_NEAR(robot_.effort[i], HandSettings{}.squeeze_effort, 0.15) << i;
+  }
 }
 
 TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
@@ -103,8 +107,46 @@ TEST_F(HandTest, fingers_arrive_together_and_squeeze_along_the_way_they_came) {
     for (int i = 0; i < 4; ++i) together = together && std::abs(out_.position[i] / c.position[i] - out_.position[3] / c.position[3]) < 0.02;
   }
   EXPECT_TRUE(together) << "an axis ran ahead of the others";
-  EXPECT_NEAR(out_.position[3], 0.6 + HandSettings{}.squeeze_travel, 1e-6);
-  EXPECT_NEAR(out_.position[0], 0.2 + HandSettings{}.squeeze_travel / 3, 1e-6);
+  run(1.0);
+  EXPECT_NEAR(out_.position[3], 0.6 + HandSettings{}.seek_travel, 1e-3);
+  EXPECT_NEAR(out_.position[0], 0.2 + HandSettings{}.seek_travel / 3, 1e-3);
+}
+
+TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_the_hand_opens) {
+  block_ = {0.5, 0.5, 10.0, 0.5};
+  HandCommand c;
+  c.action = HandAction::grasp;
+  c.position = Vector::Constant(4, 0.5);
+  c.effort = Eigen::Vector4d(0.8, 1.2, 0.0, 0.3);
+  ASSERT_EQ(hand_.accept(c), "");
+  double before = 0, steepest = 0;
+  for (int k = 0; k < 2500; ++k) {
+    run(kDt);
+    steepest = std::max(steepest, std::abs(hand_.effort(1) - before));
+    before = hand_.effort(1);
+  }
+  EXPECT_EQ(hand_.state(), HandState::grasped);
+  EXPECT_LE(steepest, 1.2 * kDt / HandSettings{}.squeeze_time + 1e-9);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_DOUBLE_EQ(hand_.effort(i), c.effort[i]) << i;
+    if (i != 2) EXPECT_NEAR(robot_.effort[i], c.effort[i], 0.2) << i;
+  }
+  HandCommand again;
+  again.action = HandAction::grasp;
+  again.position = out_.position;
+  ASSERT_EQ(hand_.accept(again), "");
+  run(1.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped) << "told to keep what it holds";
+  EXPECT_DOUBLE_EQ(hand_.effort(1), 1.2);
+  may_move_ = false;
+  run(0.5);
+  EXPECT_DOUBLE_EQ(hand_.effort(1), 1.2) << "a pause drops nothing";
+  may_move_ = true;
+  command(HandAction::release, 0.0);
+  run(HandSettings{}.squeeze_time + 0.01);
+  EXPECT_DOUBLE_EQ(hand_.effort(1), 0.0);
+  run(1.5);
+  EXPECT_EQ(hand_.state(), HandState::released);
 }
 
 TEST_F(HandTest, closing_on_nothing_is_empty) {
@@ -201,6 +243,13 @@ TEST_F(HandTest, refuses_what_it_cannot_do) {
   c.position = Vector::Constant(4, std::numeric_limits<double>::quiet_NaN());
   EXPECT_NE(hand_.accept(c), "");
   c.position = Vector::Zero(4);
+  for (const double effort : {100.0, std::numeric_limits<double>::quiet_NaN()}) {
+    c.effort = Vector::Constant(4, effort);
+    EXPECT_NE(hand_.accept(c), "");
+  }
+  c.effort = Vector::Zero(2);
+  EXPECT_NE(hand_.accept(c), "");
+  c.effort = Vector();
   c.action = HandAction::release_on_pull;
   c.pull_force = 0.0;
   EXPECT_NE(hand_.accept(c), "");

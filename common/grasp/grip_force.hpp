@@ -1,0 +1,33 @@
+// The squeeze of a grasp: forces of the fingers that cancel out and leave the most room inside the friction cones for the object's load
+// (ours).
+#pragma once
+
+#include <vector>
+
+#include "common/grasp/force_closure.hpp"
+
+namespace handsel {
+
+struct GripForceSettings {
+  double max_normal{15.0};     ///< a finger presses with no more than this [N]
+  double friction_share{0.8};  ///< of the cone's friction is used: the rest is for normals that are not where they were planned
+  double acceleration{13.0};   ///< of the load, gravity included, in the worst direction [m/s^2]
+  int edges{12};               ///< of a cone, linearised from outside
+};
+
+/// What the fingers do at their contacts, frame of the contacts.
+struct GripForces {
+  std::vector<Vector3> forces;  ///< on the object, one a contact; they sum to no force and no torque [N]
+  /// Of the friction share of any contact's cone, what stays unused when the load pulls in its worst direction [N]. Not positive: held by
+  /// luck only.
+  double margin{};
+};
+
+/// Maximises the margin by linear programming. The load of `mass` [kg] acts at `com` and is borne by all contacts as equal springs.
+/// Without three contacts, or with all on one line, nothing can be borne: no forces, margin 0.
+GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass, const GripForceSettings& settings = {});
+
+/// Maximises c.x subject to A x <= b with b >= 0, x free; x = 0 is where it starts. Unbounded directions are not followed further.
+Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+
+}  // namespace handsel

@@ -1,0 +1,156 @@
+// The squeeze of random grasps against oracles that share no code with it: balance, cones, caps, the margin by sampled loads, and that no
+// other squeeze is better.
+#include "common/grasp/grip_force.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include <Eigen/Dense>
+
+namespace handsel {
+namespace {
+
+using Random = std::mt19937_64;
+
+Vector3 random_unit(Random& random) {
+  std::normal_distribution<double> n;
+  return Vector3(n(random), n(random), n(random)).normalized();
+}
+
+/// Contacts on a ball of 4 cm, normals up to 20 degrees off it.
+std::vector<PointContact> random_contacts(Random& random, int count) {
+  std::vector<PointContact> contacts;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 out = random_unit(random);
+    contacts.push_back({0.04 * out, -(out + 0.35 * random_unit(random)).normalized(), 0.6});
+  }
+  return contacts;
+}
+
+Eigen::MatrixXd grasp_matrix(const std::vector<PointContact>& contacts, const Vector3& com) {
+  Eigen::MatrixXd G(6, 3 * static_cast<Eigen::Index>(contacts.size()));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto column = static_cast<Eigen::Index>(3 * i) + k;
+      G.col(column).head<3>() = Vector3::Unit(k);
+      G.col(column).tail<3>() = (contacts[i].position - com).cross(Vector3::Unit(k)) / 0.04;
+    }
+  }
+  return G;
+}
+
+/// What of the friction share is left at the worst contact under the worst of the sampled loads [N].
+double sampled_margin(const std::vector<PointContact>& contacts, const Vector3& com, const Eigen::VectorXd& squeeze, double load,
+                      double share, const std::vector<Vector3>& ways) {
+  const Eigen::MatrixXd bear = -grasp_matrix(contacts, com).completeOrthogonalDecomposition().pseudoInverse().leftCols(3);
+  double least = 1e9;
+  for (const Vector3& way : ways) {
+    const Eigen::VectorXd f = squeeze + load * bear * way;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Vector3 force = f.segment<3>(static_cast<Eigen::Index>(3 * i));
+      const double normal = force.dot(contacts[i].inward_normal);
+      const double sideways = (force - normal * contacts[i].inward_normal).norm();
+      least = std::min(least, share * contacts[i].friction * normal - sideways);
+    }
+  }
+  return least;
+}
+
+class GripForce : public testing::TestWithParam<int> {
+ protected:
+  Random random_{static_cast<std::uint64_t>(GetParam())};
+};
+
+TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
+  const GripForceSettings settings;
+  const double mass = 0.3, load = mass * settings.acceleration, polygon = 1 / std::cos(M_PI / settings.edges);
+  std::vector<Vector3> ways;
+  for (int k = 0; k < 400; ++k) ways.push_back(random_unit(random_));
+  int held = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const auto contacts = random_contacts(random_, 3 + trial % 3);
+    const Vector3 com = 0.01 * random_unit(random_);
+    const GripForces grip = grip_forces(contacts, com, mass, settings);
+    ASSERT_EQ(grip.forces.size(), contacts.size());
+    Eigen::VectorXd f(3 * static_cast<Eigen::Index>(contacts.size()));
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      f.segment<3>(static_cast<Eigen::Index>(3 * i)) = grip.forces[i];
+      EXPECT_LE(grip.forces[i].dot(contacts[i].inward_normal), settings.max_normal + 1e-6);
+    }
+    const Eigen::MatrixXd G = grasp_matrix(contacts, com);
+    EXPECT_LT((G * f).norm(), 1e-6 * std::max(1.0, f.norm())) << "seed " << GetParam() << " trial " << trial;
+    // The cone is linearised from outside: the true margin is at most the force by which the polygon is larger away from it.
+    const double true_margin = sampled_margin(contacts, com, f, load, settings.friction_share, ways);
+    const double rough = (polygon - 1) * settings.friction_share * 0.6 * settings.max_normal + 0.05 * load;
+    EXPECT_GT(true_margin, grip.margin - rough - 0.05 * std::abs(grip.margin)) << "seed " << GetParam() << " trial " << trial;
+    EXPECT_LT(grip.margin, true_margin + rough + 0.05 * std::abs(grip.margin));
+    held += grip.margin > 0;
+    // Another squeeze: the margin is concave, so a better one would show near this one.
+    const Eigen::MatrixXd free = Eigen::FullPivLU<Eigen::MatrixXd>(G).kernel();
+    for (int k = 0; k < 200; ++k) {
+      const Eigen::VectorXd step =
+          free * Eigen::VectorXd::NullaryExpr(free.cols(), [&] { return std::normal_distribution<double>()(random_); });
+      const Eigen::VectorXd other = f + (0.02 + 0.2 * (k % 5)) * step / step.norm();
+      bool allowed = true;
+      for (std::size_t i = 0; i < contacts.size(); ++i)
+        allowed = allowed && other.segment<3>(static_cast<Eigen::Index>(3 * i)).dot(contacts[i].inward_normal) <= settings.max_normal;
+      if (allowed) EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_share, ways), grip.margin + rough);
+    }
+  }
+  std::printf("seed %d: %d of 60 random grasps bear %.1f N in any direction\n", GetParam(), held, load);
+}
+
+TEST_P(GripForce, without_load_there_is_a_squeeze_exactly_when_the_grasp_is_force_closed) {
+  const GripForceSettings settings;
+  int closed = 0, open = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    auto contacts = random_contacts(random_, 3 + trial % 3);
+    const bool squeezes = grip_forces(contacts, Vector3::Zero(), 0.0, settings).margin > 1e-6;
+    for (PointContact& c : contacts) c.friction *= 0.98 * settings.friction_share;
+    const bool inside = force_closure(contact_wrenches(contacts, settings.edges, Vector3::Zero(), 25));
+    for (PointContact& c : contacts) c.friction /= 0.98 * std::cos(M_PI / settings.edges);
+    const bool outside = force_closure(contact_wrenches(contacts, 2 * settings.edges, Vector3::Zero(), 25));
+    if (inside) EXPECT_TRUE(squeezes) << "seed " << GetParam() << " trial " << trial;
+    if (!outside) EXPECT_FALSE(squeezes) << "seed " << GetParam() << " trial " << trial;
+    (squeezes ? closed : open)++;
+  }
+  EXPECT_GT(closed, 5);
+  EXPECT_GT(open, 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, GripForce, testing::Values(1, 2, 3));
+
+TEST(GripForces, opposed_pads_press_with_all_they_may_and_what_cannot_be_held_says_so) {
+  const auto at = [](double angle) {
+    const Vector3 out(std::cos(angle), std::sin(angle), 0);
+    return PointContact{0.04 * out, -out, 0.6};
+  };
+  GripForceSettings settings;
+  const GripForces grip = grip_forces({at(0), at(2 * M_PI / 3), at(4 * M_PI / 3)}, Vector3::Zero(), 0.1, settings);
+  ASSERT_EQ(grip.forces.size(), 3U);
+  for (const Vector3& f : grip.forces) EXPECT_NEAR(f.norm(), settings.max_normal, 0.02) << "three equal pads share the load equally";
+  // Straight down each pad bears a third; sideways the equal springs of opposed pads leave no more than that.
+  EXPECT_GT(grip.margin, 0.8 * 0.6 * settings.max_normal - 0.1 * settings.acceleration);
+  EXPECT_LT(grip.margin, 0.8 * 0.6 * settings.max_normal);
+  EXPECT_LT(grip_forces({at(0), at(0.3), at(-0.3)}, Vector3::Zero(), 0.1, settings).margin, 0.0) << "all from one side";
+  EXPECT_TRUE(grip_forces({at(0), at(M_PI)}, Vector3::Zero(), 0.1, settings).forces.empty()) << "two points";
+}
+
+TEST(Maximise, corners_of_small_problems) {
+  Eigen::MatrixXd A(3, 2);
+  A << 1, 1, 1, 0, 0, 1;
+  const Eigen::Vector3d b(4, 3, 2);
+  const Eigen::VectorXd x = maximise(Eigen::Vector2d(1, 2), A, b);
+  EXPECT_NEAR(x[0], 2, 1e-12);
+  EXPECT_NEAR(x[1], 2, 1e-12);
+  A << -1, 0, 1, 1, 0, -1;
+  const Eigen::VectorXd low = maximise(Eigen::Vector2d(-1, -2), A, Eigen::Vector3d(5, 1, 7));
+  EXPECT_NEAR(low[0], -5, 1e-12);
+  EXPECT_NEAR(low[1], -7, 1e-12);
+}
+
+}  // namespace
+}  // namespace handsel
