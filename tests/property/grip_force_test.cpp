@@ -97,7 +97,9 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
       bool allowed = true;
       for (std::size_t i = 0; i < contacts.size(); ++i)
         allowed = allowed && other.segment<3>(static_cast<Eigen::Index>(3 * i)).dot(contacts[i].inward_normal) <= settings.max_normal;
-      if (allowed) EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_share, ways), grip.margin + rough);
+      if (allowed) {
+        EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_share, ways), grip.margin + rough);
+      }
     }
   }
   std::printf("seed %d: %d of 60 random grasps bear %.1f N in any direction\n", GetParam(), held, load);
@@ -113,8 +115,12 @@ TEST_P(GripForce, without_load_there_is_a_squeeze_exactly_when_the_grasp_is_forc
     const bool inside = force_closure(contact_wrenches(contacts, settings.edges, Vector3::Zero(), 25));
     for (PointContact& c : contacts) c.friction /= 0.98 * std::cos(M_PI / settings.edges);
     const bool outside = force_closure(contact_wrenches(contacts, 2 * settings.edges, Vector3::Zero(), 25));
-    if (inside) EXPECT_TRUE(squeezes) << "seed " << GetParam() << " trial " << trial;
-    if (!outside) EXPECT_FALSE(squeezes) << "seed " << GetParam() << " trial " << trial;
+    if (inside) {
+      EXPECT_TRUE(squeezes) << "seed " << GetParam() << " trial " << trial;
+    }
+    if (!outside) {
+      EXPECT_FALSE(squeezes) << "seed " << GetParam() << " trial " << trial;
+    }
     (squeezes ? closed : open)++;
   }
   EXPECT_GT(closed, 5);
