@@ -99,7 +99,7 @@ TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
 TEST_F(HandTest, fingers_arrive_together_and_squeeze_along_the_way_they_came) {
   HandCommand c;
   c.action = HandAction::grasp;
-  c.position = Eigen::Vector4d(0.2, 0.4, 0.1, 0.6);
+  c.position = Eigen::Vector4d(0.2, 0.4, 0.15, 0.6);
   ASSERT_EQ(hand_.accept(c), "");
   bool together = true;
   for (int k = 0; k < 2500; ++k) {
@@ -129,7 +129,8 @@ TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_
   EXPECT_LE(steepest, 1.2 * kDt / HandSettings{}.squeeze_time + 1e-9);
   for (int i = 0; i < 4; ++i) {
     EXPECT_DOUBLE_EQ(hand_.effort(i), c.effort[i]) << i;
-    EXPECT_NEAR(robot_.effort[i], i == 2 ? 0.0 : c.effort[i], 0.2) << i;
+    EXPECT_GE(robot_.effort[i], (i == 2 ? 0.0 : c.effort[i]) - 1e-6) << i;
+    EXPECT_LE(robot_.effort[i], (i == 2 ? 0.0 : c.effort[i]) + 0.6) << i << ": and what the search for contact left";
   }
   HandCommand again;
   again.action = HandAction::grasp;
