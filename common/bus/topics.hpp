@@ -41,14 +41,14 @@ struct TopicRow {
   X(RobotState, "robot_state", sensor, 500, 0.02, 2048, "sim", "trajectory_controller spark") \
   X(JointCommand, "joint_command", setpoint, 1000, 0.02, 1280, "trajectory_controller", "sim") \
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 81920, "sim", "spark") \
-  X(ObjectObservation, "object_observation", sensor, 30, 0.2, 16384, "sim", "spark") \
-  X(Scene, "scene", state, 10, 0.3, 32768, "spark", \
+  X(ObjectObservation, "object_observation", sensor, 30, 0.2, 40960, "sim", "spark") \
+  X(Scene, "scene", state, 10, 0.3, 81920, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention") \
   X(HumanState, "human_state", state, 30, 0.1, 131072, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller") \
-  X(Facts, "facts", state, 10, 0.3, 65536, "spark", "supervisor attention") \
+  X(Facts, "facts", state, 20, 0.3, 98304, "spark", "supervisor attention") \
   X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", "bridge") \
   X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor") \
   X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel") \

@@ -92,9 +92,18 @@ void HumanCost::set_people(const HumanState& people) {
   for (const Person& person : people_.people) bodies_.push_back(simplified_body(person));
 }
 
-double HumanCost::weighted(const CostParts& parts) const {
-  const double sum = settings_.w_safety + settings_.w_visibility + settings_.w_comfort;
-  return (settings_.w_safety * parts.safety + settings_.w_visibility * parts.visibility + settings_.w_comfort * parts.comfort) / sum;
+double weighted_cost(const CostParts& parts, const CostSettings& settings) {
+  const double sum = settings.w_safety + settings.w_visibility + settings.w_comfort;
+  return (settings.w_safety * parts.safety + settings.w_visibility * parts.visibility + settings.w_comfort * parts.comfort) / sum;
+}
+
+CostParts point_cost(const Person& person, const Vector3& p, const CostSettings& settings) {
+  CostParts parts;
+  parts.distance = simplified_distance(simplified_body(person), p, p, 0.0);
+  parts.safety = safety_cost(parts.distance, settings.safety_radius);
+  parts.visibility = visibility_cost(person, p, settings.visibility_cutoff);
+  parts.comfort = arm_comfort_cost(person, p);
+  return parts;
 }
 
 /// Bounds from the capsules' middles first, then exactly those that can be nearest.
@@ -139,14 +148,14 @@ CostParts HumanCost::parts(const Vector& q) const {
     now.safety = safety_cost(least, settings_.safety_radius);
     if (settings_.w_visibility > 0) now.visibility = visibility_cost(people_.people[i], p_tool, settings_.visibility_cutoff);
     if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(people_.people[i], p_tool);
-    if (weighted(now) > most) {
-      most = weighted(now);
+    if (weighted_cost(now, settings_) > most) {
+      most = weighted_cost(now, settings_);
       worst = now;
     }
   }
   return worst;
 }
 
-double HumanCost::operator()(const Vector& q) const { return people_.people.empty() ? 0.0 : weighted(parts(q)); }
+double HumanCost::operator()(const Vector& q) const { return people_.people.empty() ? 0.0 : weighted_cost(parts(q), settings_); }
 
 }  // namespace handsel

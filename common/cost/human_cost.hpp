@@ -45,6 +45,11 @@ struct CostParts {
   double distance{};  ///< robot to the simplified body [m]; +inf if nobody
 };
 
+/// The weighted sum, in [0, 1].
+double weighted_cost(const CostParts&, const CostSettings&);
+/// The costs of a hand or object at p, as a point, for one person.
+CostParts point_cost(const Person&, const Vector3& p, const CostSettings&);
+
 /// Cost of a robot configuration for everyone in the scene, in [0, 1]; the largest over people. Safety looks at the links that axes move
 /// (a platform that stands still would hide what the arm does), visibility and comfort at the tool frame.
 class HumanCost {
@@ -61,7 +66,6 @@ class HumanCost {
     Vector3 a, b;
     double radius{};
   };
-  double weighted(const CostParts&) const;
   double distance_to(const SimplifiedBody&) const;
   const RobotModel* robot_;
   CostSettings settings_;

@@ -20,6 +20,7 @@ static_assert(ends_with(kTaskKindNames, TaskKind::speed));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
 static_assert(ends_with(kActionKindNames, ActionKind::go_to));
 static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));
+static_assert(ends_with(kFactNames, FactKind::released));
 static_assert(ends_with(kHolderNames, Holder::human));
 static_assert(ends_with(kHealthStateNames, HealthState::stopping));
 static_assert(ends_with(kSimActionNames, SimAction::restore));
@@ -32,6 +33,7 @@ const char* name(Mode value) { return look_up(kModeNames, value); }
 const char* name(TaskKind value) { return look_up(kTaskKindNames, value); }
 const char* name(TaskState value) { return look_up(kTaskStateNames, value); }
 const char* name(ActionKind value) { return look_up(kActionKindNames, value); }
+const char* name(FactKind value) { return look_up(kFactNames, value); }
 const char* name(Holder value) { return look_up(kHolderNames, value); }
 const char* name(HealthState value) { return look_up(kHealthStateNames, value); }
 

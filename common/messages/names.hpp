@@ -39,6 +39,11 @@ inline constexpr const char* kTaskKindNames[] = {"give", "receive", "pick",  "pl
 inline constexpr const char* kTaskStateNames[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
 inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to"};
 inline constexpr const char* kDriveModeNames[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
+inline constexpr const char* kFactNames[] = {
+    "in_contact_zone",  "in_danger_zone", "in_interaction_zone", "in_social_zone", "approaching",        "attentive",          "reaching",
+    "hand_near_object", "on_surface",     "held_by_robot",       "held_by_human",  "reachable_by_robot", "reachable_by_human", "inside",
+    "next_to",          "visible_to",     "looking_at",          "moving",         "offering",           "waiting_to_receive", "withdrawn",
+    "released"};
 inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "human"};
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
 inline constexpr const char* kSimActionNames[] = {

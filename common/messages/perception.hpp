@@ -38,11 +38,18 @@ struct HumanObservation {
   std::vector<ObservedPerson> people;
 };
 
+/// What a force sensor in an object feels where a hand grips it.
+struct ObservedGrip {
+  Vector3 position{Vector3::Zero()};  ///< of the sensor, world [m]
+  double force{};                     ///< [N]
+};
+
 struct ObservedObject {
   std::string id;     ///< persistent name of this object, e.g. "mug"
   std::string model;  ///< object description it was recognised as
   Pose T_world_object{Pose::Identity()};
   double confidence{};
+  std::vector<ObservedGrip> grips{};  ///< of an object with force sensors; else empty
 };
 
 /// Topic ObjectObservation, profile sensor, keyed by source.

@@ -13,13 +13,21 @@ namespace handsel {
 
 enum class Holder : std::uint8_t { nobody, surface, robot, human };
 
+/// A grip an object's own sensor feels, and whose hand is there.
+struct ObjectGrip {
+  std::string person;  ///< whose hand is nearest, "robot", or empty: nobody's
+  double force{};      ///< [N]
+};
+
 struct SceneObject {
   std::string id;
   std::string model;  ///< name in deploy/objects
   Pose T_world_object{Pose::Identity()};
   Holder holder{Holder::nobody};
-  std::string holder_id;  ///< surface or person; empty for nobody and robot
-  double age{};           ///< since last seen [s]
+  std::string holder_id;              ///< surface or person; empty for nobody and robot
+  double age{};                       ///< since last seen [s]
+  Vector3 velocity{Vector3::Zero()};  ///< of the object frame's origin, world [m/s]
+  std::vector<ObjectGrip> grips{};      ///< felt by the object's own sensors; empty where it has none
 };
 
 /// A fixed box: furniture, wall. Support surfaces are the top faces of boxes with supports = true.
@@ -80,17 +88,31 @@ enum class FactKind : std::uint8_t {
   held_by_human,
   reachable_by_robot,
   reachable_by_human,  ///< subject = object; object = surface/person
+  inside,
+  next_to,             ///< subject = object; object = object
+  visible_to,          ///< subject = object; object = person
+  looking_at,          ///< subject = person; object = object, person or "robot"
+  moving,              ///< subject = person or object
+  offering,            ///< subject = person; object = what they hold
+  waiting_to_receive,  ///< subject = person; object = what another holds
+  withdrawn,           ///< subject = person; object = what they reached for or offered a moment ago
+  released,            ///< subject = object; object = person or "robot" who let go of it into another's hand a moment ago
 };
+const char* name(FactKind);
+
+/// The robot, where a fact names who or what.
+inline constexpr const char* kRobotName = "robot";
 
 struct Fact {
   FactKind kind{};
   std::string subject;
   std::string object;
-  double value{};  ///< kind-specific: distance [m], speed [m/s]; 1 for plain facts
-  double since{};  ///< how long it has held [s]
+  double value{};        ///< kind-specific: distance [m], speed [m/s]; 1 for plain facts
+  double since{};        ///< how long it has held [s]
+  std::string evidence{};  ///< one line for people: what was measured
 };
 
-/// Topic Facts, profile state, 10 Hz: the facts that hold now.
+/// Topic Facts, profile state, 20 Hz: the facts that hold now.
 struct Facts {
   Stamp stamp{};
   std::vector<Fact> facts;

@@ -130,6 +130,21 @@ std::vector<BodyJoint> standing_body(const Vector3& feet, double yaw, double sta
   return joints;
 }
 
+std::vector<BodyJoint> sitting_body(const Vector3& seat, double yaw, double stature) {
+  constexpr double kSeat = 0.26;
+  std::vector<BodyJoint> joints = standing_body(seat, yaw, stature);
+  const Vector3 forward = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Vector3::UnitX();
+  for (BodyJoint& joint : joints) joint.position.z() -= (kHip - kSeat) * stature;
+  for (const int leg : {0, r_hip - l_hip}) {
+    Vector3& knee = joints[static_cast<std::size_t>(l_knee + leg)].position;
+    Vector3& ankle = joints[static_cast<std::size_t>(l_ankle + leg)].position;
+    const Vector3& hip = joints[static_cast<std::size_t>(l_hip + leg)].position;
+    knee = hip + (kHip - kKnee) * stature * forward;
+    ankle = Vector3(knee.x(), knee.y(), seat.z() + kAnkle * stature);
+  }
+  return joints;
+}
+
 Vector3 comfortable_reach(const Person& person, Side side) {
   Points p;
   if (!points_of(person, p)) return Vector3::Zero();

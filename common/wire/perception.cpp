@@ -25,11 +25,17 @@ void describe(WireIo& io, Coverage& m, handsel_Coverage& w) {
   io.check((m.low.array() <= m.high.array()).all(), "high", "lies below low");
 }
 
+void describe(WireIo& io, ObservedGrip& m, handsel_ObservedGrip& w) {
+  io.point("position", m.position, w.position);
+  io.number("force", m.force, w.force, kPush);
+}
+
 void describe(WireIo& io, ObservedObject& m, handsel_ObservedObject& w) {
   io.text("id", m.id, w.id, Text::name);
   io.text("model", m.model, w.model, Text::maybe_empty);
   io.pose("T_world_object", m.T_world_object, w.T_world_object);
   io.number("confidence", m.confidence, w.confidence, kShare);
+  io.list("grips", m.grips, w.grips, 8);
 }
 
 void describe(WireIo& io, HumanObservation& m, handsel_HumanObservation& w) {

@@ -25,6 +25,7 @@ struct Range {
 inline constexpr Range kCoordinate{-1e4, 1e4};    // [m], [rad], and their first derivatives
 inline constexpr Range kAcceleration{-1e6, 1e6};  // [rad/s^2]
 inline constexpr Range kForce{-1e5, 1e5};         // [N], [Nm]
+inline constexpr Range kPush{0, 1e5};             // [N]
 inline constexpr Range kShare{0, 1};
 inline constexpr Range kSigned{-1, 1};
 inline constexpr Range kTime{0, 1e9};    // [s]

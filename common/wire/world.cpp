@@ -5,10 +5,13 @@
 
 namespace handsel {
 namespace {
-constexpr const char* kFacts[] = {"in_contact_zone", "in_danger_zone",     "in_interaction_zone", "in_social_zone", "approaching",
-                                  "attentive",       "reaching",           "hand_near_object",    "on_surface",     "held_by_robot",
-                                  "held_by_human",   "reachable_by_robot", "reachable_by_human"};
+static_assert(handsel_FACT_RELEASED == static_cast<int>(FactKind::released));
 }  // namespace
+
+void describe(WireIo& io, ObjectGrip& m, handsel_ObjectGrip& w) {
+  io.text("person", m.person, w.person, Text::maybe_empty);
+  io.number("force", m.force, w.force, kPush);
+}
 
 void describe(WireIo& io, SceneObject& m, handsel_SceneObject& w) {
   io.text("id", m.id, w.id, Text::name);
@@ -17,6 +20,8 @@ void describe(WireIo& io, SceneObject& m, handsel_SceneObject& w) {
   io.choice("holder", m.holder, w.holder, kHolderNames);
   io.text("holder_id", m.holder_id, w.holder_id, Text::maybe_empty);
   io.number("age", m.age, w.age, kTime);
+  io.point("velocity", m.velocity, w.velocity);
+  io.list("grips", m.grips, w.grips, 8);
 }
 
 void describe(WireIo& io, SceneBox& m, handsel_SceneBox& w) {
@@ -38,11 +43,12 @@ void describe(WireIo& io, Person& m, handsel_Person& w) {
 }
 
 void describe(WireIo& io, Fact& m, handsel_Fact& w) {
-  io.choice("kind", m.kind, w.kind, kFacts);
+  io.choice("kind", m.kind, w.kind, kFactNames);
   io.text("subject", m.subject, w.subject, Text::name);
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.number("value", m.value, w.value, {-1e9, 1e9});
   io.number("since", m.since, w.since, kTime);
+  io.text("evidence", m.evidence, w.evidence, Text::sentence);
 }
 
 void describe(WireIo& io, Scene& m, handsel_Scene& w) {

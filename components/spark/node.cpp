@@ -54,7 +54,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       eyes_(eyes_of(place)),
       tracker_(settings_, eyes_),
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
-      facts_(settings_, context.robot),
+      facts_(settings_, context.robot, context.objects),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()) {
@@ -69,8 +69,7 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
   bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt&) { wanted_period_ = advice.human_period; });
   bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())), [this](TimePoint now) {
     if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period()) publish_people(now);
-    const double period = std::clamp(wanted_period_, 0.02, settings_.publish_period());
-    if (to_seconds(now - world_published_) >= 0.99 * (wanted_period_ > 0 ? period : settings_.publish_period())) publish_world(now);
+    publish_world(now);
   });
 }
 
@@ -82,10 +81,12 @@ void Node::publish_people(TimePoint now) {
 void Node::publish_world(TimePoint now) {
   const HumanState people = tracker_.state(now, scene_.reach());
   const Scene scene = scene_.scene(now, people);
-  scene_out_->publish(scene);
   facts_out_->publish(facts_.find(scene, people, now));
   bus_.set_degraded(tracker_.trouble(now));
-  world_published_ = now;
+  const double wanted = wanted_period_ > 0 ? std::clamp(wanted_period_, 0.02, settings_.publish_period()) : settings_.publish_period();
+  if (to_seconds(now - scene_published_) < 0.99 * wanted) return;
+  scene_out_->publish(scene);
+  scene_published_ = now;
 }
 
 }  // namespace handsel::spark

@@ -20,7 +20,7 @@ class Node {
  private:
   Node(Bus& bus, const NodeContext& context, const config::Scenario& place);
   void publish_people(TimePoint now);
-  void publish_world(TimePoint now);
+  void publish_world(TimePoint now);  // facts always, the scene at its period
 
   Bus& bus_;
   config::SparkSettings settings_;
@@ -32,7 +32,7 @@ class Node {
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<Facts>> facts_out_;
   TimePoint people_published_{};
-  TimePoint world_published_{};
+  TimePoint scene_published_{};
   double wanted_period_{0};
 };
 

@@ -41,10 +41,16 @@ class SceneModel {
     Pose T_tool_object{Pose::Identity()};
     TimePoint seen{};
     int looks{};  ///< that make up the estimate
+    Vector3 last_seen_at{Vector3::Zero()};
+    std::vector<ObservedGrip> grips;
   };
   void locate_tool();
+  void follow(Known& known, const ObservedObject& observed, TimePoint seen) const;
+  void attribute_grips(Known& known, const HumanState& people) const;
   void assign_holder(Known& known, const HumanState& people) const;
-  const SceneBox* support_under(const SceneObject& object) const;
+  bool keep_gripped(SceneObject& object) const;
+  /// The box it stands on, its bottom no more than `gap` [m] from the top.
+  const SceneBox* support_under(const SceneObject& object, double gap) const;
 
   config::SparkSettings settings_;
   std::shared_ptr<const RobotModel> robot_;

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   handsel::add_trajectory_commands(app, exit_code);
   handsel::add_model_commands(app, exit_code);
   handsel::add_distance_command(app, exit_code);
+  handsel::add_cost_command(app, exit_code);
   handsel::add_plan_command(app, exit_code);
   handsel::add_grasp_commands(app, exit_code);
   try {

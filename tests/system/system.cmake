@@ -32,3 +32,8 @@ handsel_test(rough_sensors SOURCES ${CMAKE_CURRENT_LIST_DIR}/rough_sensors_test.
 set_tests_properties(rough_sensors PROPERTIES TIMEOUT 300 ENVIRONMENT GTEST_FILTER=RoughSensors.*)
 add_test(NAME rough_sensors_ten COMMAND test_rough_sensors)
 set_tests_properties(rough_sensors_ten PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT GTEST_FILTER=RoughSensorsTen.*)
+
+handsel_test(facts_truth SOURCES ${CMAKE_CURRENT_LIST_DIR}/facts_truth_test.cpp LINK handsel_lockstep LABEL system)
+set_tests_properties(facts_truth PROPERTIES TIMEOUT 300)
+add_test(NAME facts_truth_twenty COMMAND test_facts_truth)
+set_tests_properties(facts_truth_twenty PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=20)
