@@ -70,7 +70,7 @@ class Chain {
 
   Pose forward(const Axes& q, Jacobian* J) const {
     Pose T = Pose::Identity();
-    Vector3 origins[2 * kMaxAxes], axes[2 * kMaxAxes];
+    Vector3 origins[std::size_t{2} * kMaxAxes], axes[2 * kMaxAxes];
     for (std::size_t i = 0; i < elements_.size(); ++i) {
       const Element& e = elements_[i];
       T = T * e.T_before;

@@ -33,7 +33,7 @@ int show(const StatusOptions& options) {
                 json ? "\n" : "");
     std::fflush(stdout);
     if (options.watch) session.listen(from_seconds(0.5));
-  } while (options.watch && !interrupted());
+  } while (options.watch && !interrupted() && !nobody_reads());
   for (const ProcessLine& line : status.processes) {
     if (line.state == "missing" || line.state == "silent") return 1;
   }

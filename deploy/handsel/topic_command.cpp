@@ -54,12 +54,13 @@ int echo(const TopicOptions& options) {
   const MessageType& type = require_type(options.topic);
   Session session(options.domain);
   std::uint64_t seen = 0;
-  const auto done = [&] { return options.count > 0 && seen >= options.count; };
+  bool unread = false;
+  const auto done = [&] { return unread || (options.count > 0 && seen >= options.count); };
   session.bus().subscribe_any(type,
                               [&](const void* message, const Receipt&) {
                                 if (done()) return;
                                 std::printf("%s\n", type.to_json(message).c_str());
-                                std::fflush(stdout);
+                                unread = nobody_reads();
                                 ++seen;
                               },
                               {});
