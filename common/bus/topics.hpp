@@ -38,13 +38,13 @@ struct TopicRow {
 // type, topic, profile, rate [Hz], deadline [s], largest [bytes], writers, readers
 // clang-format off
 #define HANDSEL_TOPICS(X) \
-  X(RobotState, "robot_state", sensor, 500, 0.02, 2048, "sim", "trajectory_controller spark") \
-  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 1280, "trajectory_controller", "sim") \
+  X(RobotState, "robot_state", sensor, 500, 0.02, 2048, "sim driver", "trajectory_controller spark") \
+  X(JointCommand, "joint_command", setpoint, 1000, 0.02, 1280, "trajectory_controller", "sim driver") \
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 81920, "sim", "spark") \
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 40960, "sim", "spark") \
   X(Scene, "scene", state, 10, 0.3, 81920, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
-    "manipulation_planner attention") \
+    "manipulation_planner attention driver") \
   X(HumanState, "human_state", state, 30, 0.1, 131072, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller") \
@@ -54,12 +54,12 @@ struct TopicRow {
   X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel") \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner") \
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", "supervisor attention trajectory_controller") \
-  X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller") \
+  X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller driver") \
   X(TrajectoryCommand, "trajectory", command, 0, 0, 2621440, "manipulation_planner", "trajectory_controller") \
   X(HandCommand, "hand_command", command, 0, 0, 704, "manipulation_planner", "trajectory_controller") \
   X(ExecutionStatus, "execution_status", state, 50, 0.06, 704, "trajectory_controller", "manipulation_planner supervisor") \
   X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 2621440, "trajectory_controller", \
-    "collision_checker attention manipulation_planner") \
+    "collision_checker attention manipulation_planner driver") \
   X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.06, 512, "collision_checker", "trajectory_controller attention") \
   X(AttentionState, "attention_state", state, 10, 0.3, 1280, "attention", "bridge") \
   X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 512, "attention", "spark trajectory_controller") \
@@ -74,7 +74,7 @@ struct TopicRow {
   X(StateVerdict, "state_verdict", reply, 0, 0, 6144, "collision_checker", "handsel") \
   X(ComponentHealth, "component_health", health, 10, 0.3, 32768,\
     "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner " \
-    "manipulation_planner attention trajectory_controller bridge sim", \
+    "manipulation_planner attention trajectory_controller bridge sim driver", \
     "supervisor handsel") \
   X(SimControl, "sim_control", goal, 0, 0, 160, "handsel", "sim") \
   X(GroundTruth, "ground_truth", state, 50, 0.06, 8192, "sim", "handsel")
