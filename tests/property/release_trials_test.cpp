@@ -85,7 +85,7 @@ class Exchange {
   static constexpr double kSqueeze = 0.15, kOpen = -0.5;     // of the finger's set-point beyond the surface [rad]
   static constexpr double kPad = 0.02;                       // [m]
   static constexpr AxisLimits kComfort{2.85, 14.2, 107.0};   // of the hand's axes
-  static constexpr AxisLimits kLoosening{0.5, 14.2, 107.0};  // loosen_speed
+  static constexpr AxisLimits kLoosening{0.5, 14.2, 107.0};  // as slowly as the efforts fade
   static constexpr AxisLimits kStop{3.14, 15.7, 118.0};
 
   void act(const Vector3& felt, double squeeze, bool carrying) {
@@ -93,12 +93,12 @@ class Exchange {
     if (grip == before) return;
     if (grip == Grip::loosen) {
       loosened_ = true;
-      finger_.go_to(0.8 * kSqueeze, kLoosening);
+      finger_.go_to(0.8 * kSqueeze, kLoosening, kStop);
     } else if (grip == Grip::open) {
       opened_to_nobody_ = opened_to_nobody_ || (with_robot_ && !carrying);
-      finger_.go_to(kOpen, kComfort);
+      finger_.go_to(kOpen, kComfort, kStop);
     } else {
-      finger_.go_to(kSqueeze, kStop);
+      finger_.go_to(kSqueeze, kStop, kStop);
     }
   }
 

@@ -127,7 +127,8 @@ TEST_F(GraspChoice, an_object_out_of_reach_gives_a_reason) {
 
 TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
   ChoiceSettings s;
-  s.rank_room = 3;
+  s.rank_room = 10;       // so that what else counts for a person
+  s.rank_exchange = 0.0;  // does not decide
   const GraspChooser chooser(robot, kit, library, s);
   const Scene scene = scene_with_mug(0.68, -0.42);
   HumanState people;

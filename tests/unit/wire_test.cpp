@@ -264,6 +264,7 @@ TEST(Topics, TableNamesWhatExistsOnce) {
                                          "trajectory_controller",
                                          "bridge",
                                          "sim",
+                                         "driver",
                                          "handsel"};
   std::set<std::string> seen;
   for (const TopicRow& row : topics()) {
