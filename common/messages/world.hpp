@@ -27,7 +27,7 @@ struct SceneObject {
   std::string holder_id;              ///< surface or person; empty for nobody and robot
   double age{};                       ///< since last seen [s]
   Vector3 velocity{Vector3::Zero()};  ///< of the object frame's origin, world [m/s]
-  std::vector<ObjectGrip> grips{};      ///< felt by the object's own sensors; empty where it has none
+  std::vector<ObjectGrip> grips{};    ///< felt by the object's own sensors; empty where it has none
 };
 
 /// A fixed box: furniture, wall. Support surfaces are the top faces of boxes with supports = true.
@@ -107,8 +107,8 @@ struct Fact {
   FactKind kind{};
   std::string subject;
   std::string object;
-  double value{};        ///< kind-specific: distance [m], speed [m/s]; 1 for plain facts
-  double since{};        ///< how long it has held [s]
+  double value{};          ///< kind-specific: distance [m], speed [m/s]; 1 for plain facts
+  double since{};          ///< how long it has held [s]
   std::string evidence{};  ///< one line for people: what was measured
 };
 

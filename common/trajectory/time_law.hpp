@@ -100,7 +100,7 @@ class TimeLaw {
   struct Before {
     Now now;
     double lowest{}, target{}, offset{}, joined_at{}, left_at{};
-  } before_;  // the last switch
+  } before_;                           // the last switch
   std::vector<detail::Lane8> limits_;  // of acceleration, then of jerk; as table_ lays out its axes
   double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{};
   Now now_, tick_;
