@@ -4,23 +4,17 @@
 
 #include "common/collision/collision_world.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/standing_person.hpp"
 
 namespace handsel {
 namespace {
+
+using test::person_at;
 
 Scene scene_with(const std::string& id, const Vector3& center, const Vector3& size) {
   Scene scene;
   scene.boxes.push_back({id, make_pose(center), size, false});
   return scene;
-}
-
-HumanState person_at(const Vector3& feet) {
-  HumanState state;
-  Person person;
-  person.id = "anna";
-  person.joints = standing_body(feet, M_PI, 1.75);
-  state.people.push_back(person);
-  return state;
 }
 
 class World : public ::testing::Test {

@@ -12,9 +12,12 @@
 #include "common/model/robot_capsules.hpp"
 #include "tests/support/panda_problems.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/standing_person.hpp"
 
 namespace handsel {
 namespace {
+
+using test::person_at;
 
 constexpr unsigned kSeed = 75001;
 
@@ -52,15 +55,6 @@ Vector random_state(const RobotModel& robot, const std::vector<int>& axes, Vecto
     q[i] = std::uniform_real_distribution<double>(std::max(axis.lower, -3.1), std::min(axis.upper, 3.1))(random);
   }
   return q;
-}
-
-HumanState person_at(const Vector3& feet) {
-  HumanState state;
-  Person person;
-  person.id = "anna";
-  person.joints = standing_body(feet, M_PI, 1.75);
-  state.people.push_back(person);
-  return state;
 }
 
 TEST(SphereCover, every_point_of_a_solid_is_inside_a_leaf_and_all_spheres_above_it) {

@@ -1,0 +1,20 @@
+// Somebody who stands there.
+#pragma once
+
+#include <numbers>
+
+#include "common/model/human_body.hpp"
+
+namespace handsel::test {
+
+/// Anna, 1.75 m, facing -x, her feet at `feet` (world, m); nobody else.
+inline HumanState person_at(const Vector3& feet) {
+  HumanState state;
+  Person person;
+  person.id = "anna";
+  person.joints = standing_body(feet, std::numbers::pi, 1.75);
+  state.people.push_back(person);
+  return state;
+}
+
+}  // namespace handsel::test
