@@ -24,7 +24,7 @@ struct Go {
   std::string reason;
 };
 
-/// Soft motion for some axes; starts when accepted. Topic Trajectory, profile command.
+/// Soft motion for some axes; starts when accepted, or joins the queue of what runs. Topic Trajectory, profile command.
 struct TrajectoryCommand {
   Stamp stamp{};
   std::uint64_t id{};     ///< unique, grows
@@ -32,6 +32,7 @@ struct TrajectoryCommand {
   std::string robot;
   std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
   Trajectory trajectory;
+  double switch_at{};     ///< on the own time of the command accepted before: when that is left for this one; 0 or past: now [s]
   Attachment attachment;  ///< what the hand holds while it runs
   std::vector<std::string> allowed_contacts;
 };
@@ -53,6 +54,7 @@ struct HandCommand {
   Vector position;         ///< actuated hand axes, in the order of the group "hand" [rad]
   Vector effort;           ///< likewise, of a grasp: what they squeeze with [Nm]; empty: as before while holding, else the settings' own
   double pull_force{4.0};  ///< [N] beyond the load's weight, for release_on_pull
+  double payload{};        ///< mass of what is grasped, 0: unknown [kg]
 };
 
 /// Ordered: further down takes precedence (architecture: mode machine).
@@ -78,6 +80,7 @@ enum class Cause : std::uint8_t {
   override_slow,       ///< Slow
   wall,                ///< Slow: a virtual wall or the end of the workspace is ahead
   contact,             ///< Stop: the arm feels a contact
+  cost_ahead,          ///< Slow: the human-aware cost on the way ahead is high
 };
 const char* name(Cause);
 const char* name(Mode);

@@ -14,9 +14,9 @@ constexpr bool ends_with(const char* const (&)[n], Enum last) {
   return n == static_cast<std::size_t>(last) + 1;
 }
 static_assert(ends_with(kBehaviourNames, Behaviour::receive));
-static_assert(ends_with(kCauseNames, Cause::contact));
+static_assert(ends_with(kCauseNames, Cause::cost_ahead));
 static_assert(ends_with(kModeNames, Mode::fault));
-static_assert(ends_with(kTaskKindNames, TaskKind::speed));
+static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
 static_assert(ends_with(kActionKindNames, ActionKind::go_to));
 static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));

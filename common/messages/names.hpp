@@ -32,10 +32,11 @@ inline constexpr const char* kCauseNames[] = {"none",
                                               "cycle_late",
                                               "override_slow",
                                               "wall",
-                                              "contact"};
+                                              "contact",
+                                              "cost_ahead"};
 inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
-inline constexpr const char* kTaskKindNames[] = {"give", "receive", "pick",  "place",  "clear",  "tidy",        "regrasp",
-                                                 "lift", "go_to",   "pause", "resume", "cancel", "acknowledge", "speed"};
+inline constexpr const char* kTaskKindNames[] = {"give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
+                                                 "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
 inline constexpr const char* kTaskStateNames[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
 inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to"};
 inline constexpr const char* kDriveModeNames[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
@@ -45,6 +46,7 @@ inline constexpr const char* kFactNames[] = {
     "next_to",          "visible_to",     "looking_at",          "moving",         "offering",           "waiting_to_receive", "withdrawn",
     "released"};
 inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "human"};
+inline constexpr const char* kPrimitiveNames[] = {"none", "box", "cylinder", "sphere"};
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
 inline constexpr const char* kSimActionNames[] = {
     "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",

@@ -1,6 +1,7 @@
 // What sensors say: external perception connects here. All poses and points in frame "world".
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -44,12 +45,21 @@ struct ObservedGrip {
   double force{};                     ///< [N]
 };
 
+enum class PrimitiveKind : std::uint8_t { none, box, cylinder, sphere };
+
+/// Shape of a thing nobody has described, centred in its own frame; cylinders along z.
+struct Primitive {
+  PrimitiveKind kind{PrimitiveKind::none};
+  Vector3 size{Vector3::Zero()};  ///< full extents along the axes of its frame [m]
+};
+
 struct ObservedObject {
   std::string id;     ///< persistent name of this object, e.g. "mug"
-  std::string model;  ///< object description it was recognised as
+  std::string model;  ///< object description it was recognised as; empty: unknown, its primitive is what is known
   Pose T_world_object{Pose::Identity()};
   double confidence{};
   std::vector<ObservedGrip> grips{};  ///< of an object with force sensors; else empty
+  Primitive primitive{};              ///< of an unknown object; else none
 };
 
 /// Topic ObjectObservation, profile sensor, keyed by source.

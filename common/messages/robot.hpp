@@ -33,6 +33,7 @@ struct JointCommand {
   std::uint64_t sequence{};
   Vector position, velocity, acceleration;  ///< per axis, all axes of the robot
   Vector effort;                            ///< likewise, what the motors give besides following [Nm]; empty: nothing
+  double payload{};                         ///< mass the hand holds, for the robot side's own model; 0: nothing or unknown [kg]
 };
 
 }  // namespace handsel

@@ -25,7 +25,8 @@ enum class TaskKind : std::uint8_t {
   resume,
   cancel,
   acknowledge,
-  speed,  // about the running one, or the system
+  speed,         // about the running one, or the system
+  clear_person,  // an operator says that a person who was lost is gone
 };
 const char* name(TaskKind);
 

@@ -21,13 +21,15 @@ struct ObjectGrip {
 
 struct SceneObject {
   std::string id;
-  std::string model;  ///< name in deploy/objects
+  std::string model;  ///< name in deploy/objects; empty: unknown, its primitive is what is known
   Pose T_world_object{Pose::Identity()};
   Holder holder{Holder::nobody};
   std::string holder_id;              ///< surface or person; empty for nobody and robot
   double age{};                       ///< since last seen [s]
   Vector3 velocity{Vector3::Zero()};  ///< of the object frame's origin, world [m/s]
   std::vector<ObjectGrip> grips{};    ///< felt by the object's own sensors; empty where it has none
+  Primitive primitive{};              ///< of an unknown object; else none
+  double uncertainty{};               ///< it may be this far from T_world_object; grows while it is out of sight [m]
 };
 
 /// A fixed box: furniture, wall. Support surfaces are the top faces of boxes with supports = true.
@@ -57,6 +59,18 @@ struct BodyJoint {
   Vector3 velocity{Vector3::Zero()};  ///< world [m/s]
 };
 
+/// Where a hand is expected.
+struct HandAhead {
+  double time{};                      ///< from the stamp of the message on [s]
+  Vector3 position{Vector3::Zero()};  ///< of the palm, world [m]
+  double uncertainty{};               ///< radius of the ball it is in [m]
+};
+
+struct HandPrediction {
+  std::string joint;             ///< REP-155 name of the hand: l_hand or r_hand
+  std::vector<HandAhead> ahead;  ///< in order of time
+};
+
 struct Person {
   std::string id;                 ///< persistent
   std::vector<BodyJoint> joints;  ///< complete fitted body
@@ -65,6 +79,7 @@ struct Person {
   Vector3 gaze_origin{Vector3::Zero()}, gaze_direction{Vector3::UnitX()};  ///< world, unit
   double age{};                                                            ///< since last seen [s]
   double inflation{};                                                      ///< all body volumes grow by this: v_h * age while lost [m]
+  std::vector<HandPrediction> hands{};                                     ///< the next half second; empty while lost
 };
 
 /// Topic HumanState, profile state. Published at its rate even when nobody is there.
@@ -118,15 +133,20 @@ struct Facts {
   std::vector<Fact> facts;
 };
 
-/// Arm comfort of one person over a regular grid. Topic Costmap, profile advice.
-/// value(i,j,k) at origin + resolution*(i,j,k) in world; 255 = out of reach, else comfort cost*254.
+/// Names of our own layers of the cost map; any other is an outside layer, which planners add to theirs.
+inline constexpr const char* kOwnLayers[] = {"safety", "visibility", "arm_comfort", "total"};
+
+/// One layer of cost over a regular grid. Topic Costmap, profile advice, keyed by layer.
+/// value(i,j,k) at origin + resolution*(i,j,k) in world; 255 = forbidden or out of reach, else cost*254.
 struct Costmap {
   Stamp stamp{};
-  std::string person;
+  std::string layer;   ///< one of kOwnLayers, or an outside one
+  std::string person;  ///< whom it is about; empty: an outside layer about nobody
   std::uint64_t revision{};
   Vector3 origin{Vector3::Zero()};  ///< world [m]
   double resolution{};              ///< [m]
   std::uint32_t nx{}, ny{}, nz{};
+  double weight{1};                  ///< factor on an outside layer's cost where planners add it; ours: 1
   std::vector<std::uint8_t> values;  ///< index (k*ny + j)*nx + i
 };
 

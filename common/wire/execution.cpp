@@ -11,7 +11,8 @@ constexpr const char* kHandActions[] = {"move", "grasp", "release_on_pull", "rel
 constexpr const char* kMotions[] = {"idle", "running", "finished", "refused", "stopped"};
 constexpr const char* kHands[] = {"idle", "moving", "grasped", "empty", "released", "refused"};
 constexpr Range kLimitShare{0, 1e9};
-static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) && handsel_CAUSE_CONTACT == static_cast<int>(Cause::contact),
+static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) &&
+                  handsel_CAUSE_COST_AHEAD == static_cast<int>(Cause::cost_ahead),
               "the bits of ExecutionStatus.causes are the enumerators of Cause in IDL and domain");
 
 }  // namespace
@@ -32,6 +33,7 @@ void describe(WireIo& io, TrajectoryCommand& m, handsel_TrajectoryCommand& w) {
   io.integer("epoch", m.epoch, w.epoch);
   io.indices("axes", m.axes, w.axes, kMaxAxes, kMaxAxes - 1);
   io.part("trajectory", m.trajectory, w.trajectory);
+  io.number("switch_at", m.switch_at, w.switch_at, {0, 1e6});
   io.part("attachment", m.attachment, w.attachment);
   describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
   io.check(m.axes.size() == m.trajectory.axes.size(), "axes", "are not as many as trajectory.axes");
@@ -46,6 +48,7 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
   io.vector("position", m.position, w.position, kCoordinate);
   io.vector("effort", m.effort, w.effort, kCoordinate);
   io.number("pull_force", m.pull_force, w.pull_force, {0, 1e5});
+  io.number("payload", m.payload, w.payload, {0, 1e3});
 }
 
 void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {

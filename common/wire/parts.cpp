@@ -1,5 +1,7 @@
 #include "common/wire/parts.hpp"
 
+#include "common/messages/names.hpp"
+
 namespace handsel {
 
 void describe(WireIo& io, Refusal& m, handsel_Refusal& w) {
@@ -34,6 +36,11 @@ void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w) {
 void describe(WireIo& io, Attachment& m, handsel_Attachment& w) {
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.pose("T_tool_object", m.T_tool_object, w.T_tool_object);
+}
+
+void describe(WireIo& io, Primitive& m, handsel_Primitive& w) {
+  io.choice("kind", m.kind, w.kind, kPrimitiveNames);
+  io.point("size", m.size, w.size, {0, 1e4});
 }
 
 void describe(WireIo& io, RequestId& m, handsel_RequestId& w) {

@@ -21,6 +21,7 @@ void describe(WireIo& io, AxisTrajectory& m, handsel_AxisTrajectory& w);
 void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w);
 void describe(WireIo& io, Attachment& m, handsel_Attachment& w);
 void describe(WireIo& io, RequestId& m, handsel_RequestId& w);
+void describe(WireIo& io, Primitive& m, handsel_Primitive& w);
 void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);
 
 inline void describe_contacts(WireIo& io, std::vector<std::string>& m, dds_sequence_string64& w) { io.texts("allowed_contacts", m, w, 32); }

@@ -36,6 +36,7 @@ void describe(WireIo& io, ObservedObject& m, handsel_ObservedObject& w) {
   io.pose("T_world_object", m.T_world_object, w.T_world_object);
   io.number("confidence", m.confidence, w.confidence, kShare);
   io.list("grips", m.grips, w.grips, 8);
+  io.part("primitive", m.primitive, w.primitive);
 }
 
 void describe(WireIo& io, HumanObservation& m, handsel_HumanObservation& w) {

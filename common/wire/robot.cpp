@@ -33,6 +33,7 @@ void describe(WireIo& io, JointCommand& m, handsel_JointCommand& w) {
   io.vector("velocity", m.velocity, w.velocity, kCoordinate);
   io.vector("acceleration", m.acceleration, w.acceleration, kAcceleration);
   io.vector("effort", m.effort, w.effort, kCoordinate);
+  io.number("payload", m.payload, w.payload, {0, 1e3});
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");

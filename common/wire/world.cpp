@@ -22,6 +22,8 @@ void describe(WireIo& io, SceneObject& m, handsel_SceneObject& w) {
   io.number("age", m.age, w.age, kTime);
   io.point("velocity", m.velocity, w.velocity);
   io.list("grips", m.grips, w.grips, 8);
+  io.part("primitive", m.primitive, w.primitive);
+  io.number("uncertainty", m.uncertainty, w.uncertainty, {0, 1e4});
 }
 
 void describe(WireIo& io, SceneBox& m, handsel_SceneBox& w) {
@@ -29,6 +31,17 @@ void describe(WireIo& io, SceneBox& m, handsel_SceneBox& w) {
   io.pose("T_world_box", m.T_world_box, w.T_world_box);
   io.point("size", m.size, w.size, {0, 1e4});
   io.flag("supports", m.supports, w.supports);
+}
+
+void describe(WireIo& io, HandAhead& m, handsel_HandAhead& w) {
+  io.number("time", m.time, w.time, {0, 10});
+  io.point("position", m.position, w.position);
+  io.number("uncertainty", m.uncertainty, w.uncertainty, {0, 1e4});
+}
+
+void describe(WireIo& io, HandPrediction& m, handsel_HandPrediction& w) {
+  io.text("joint", m.joint, w.joint, Text::name);
+  io.list("ahead", m.ahead, w.ahead, 16);
 }
 
 void describe(WireIo& io, Person& m, handsel_Person& w) {
@@ -40,6 +53,7 @@ void describe(WireIo& io, Person& m, handsel_Person& w) {
   io.direction("gaze_direction", m.gaze_direction, w.gaze_direction, m.gaze_known);
   io.number("age", m.age, w.age, kTime);
   io.number("inflation", m.inflation, w.inflation, {0, 1e4});
+  io.list("hands", m.hands, w.hands, 2);
 }
 
 void describe(WireIo& io, Fact& m, handsel_Fact& w) {
@@ -74,7 +88,8 @@ void describe(WireIo& io, Facts& m, handsel_Facts& w) {
 }
 
 void describe(WireIo& io, Costmap& m, handsel_Costmap& w) {
-  io.text("person", m.person, w.person, Text::name);
+  io.text("layer", m.layer, w.layer, Text::name);
+  io.text("person", m.person, w.person, Text::maybe_empty);
   io.stamp(m.stamp, w.stamp);
   io.integer("revision", m.revision, w.revision);
   io.point("origin", m.origin, w.origin);
@@ -82,6 +97,7 @@ void describe(WireIo& io, Costmap& m, handsel_Costmap& w) {
   io.integer("nx", m.nx, w.nx, 0, 1024);
   io.integer("ny", m.ny, w.ny, 0, 1024);
   io.integer("nz", m.nz, w.nz, 0, 1024);
+  io.number("weight", m.weight, w.weight, {0, 1e3});
   io.bytes("values", m.values, w.values, 1048576);
   io.check(std::size_t{m.nx} * m.ny * m.nz == m.values.size(), "values", "are not nx*ny*nz");
 }
@@ -89,6 +105,6 @@ void describe(WireIo& io, Costmap& m, handsel_Costmap& w) {
 HANDSEL_WIRE(Scene)
 HANDSEL_WIRE(HumanState)
 HANDSEL_WIRE(Facts)
-HANDSEL_WIRE_KEYED(Costmap, person)
+HANDSEL_WIRE_KEYED(Costmap, layer)
 
 }  // namespace handsel

@@ -58,6 +58,7 @@ struct Obstacle {
 
 Costmap MapMaker::make(const Person& person, const std::vector<SceneBox>& boxes) {
   Costmap map;
+  map.layer = "arm_comfort";
   map.person = person.id;
   map.resolution = settings_.resolution;
   const int half_cells = static_cast<int>(std::ceil(settings_.reach / settings_.resolution));

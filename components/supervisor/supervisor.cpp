@@ -97,7 +97,7 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
     case TaskKind::speed:
       permission_.set_override(std::clamp(goal.value, 0.0, 1.0));
       break;
-    default:
+    default:  // clear_person: SPARK heard it too
       break;
   }
   out.task_statuses.push_back(done);

@@ -202,7 +202,7 @@ TEST(Wire, SaysWhatIsWrongInOneSentence) {
   EXPECT_EQ(refusal_of(command), "TrajectoryCommand.trajectory.axes[0].segments[0].jerk is nan, must be a number from -1e+09 to 1e+09");
   TaskGoal goal;
   goal.kind = static_cast<TaskKind>(99);
-  EXPECT_EQ(refusal_of(goal), "TaskGoal.kind is the unknown choice 99, the last known one is 13 (speed)");
+  EXPECT_EQ(refusal_of(goal), "TaskGoal.kind is the unknown choice 99, the last known one is 14 (clear_person)");
 }
 
 TEST(Wire, NormalisesNearlyUnitQuaternionsAndRejectsZeroOnes) {
