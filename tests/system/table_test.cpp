@@ -54,7 +54,8 @@ std::set<std::string> words(const char* list) {
   std::istringstream in(list);
   std::set<std::string> out;
   for (std::string word; in >> word;)
-    if (word != "handsel" && word != "bridge" && word != "driver") out.insert(word);  // not here: the command, the page, a real robot
+    if (word != "handsel" && word != "bridge" && word != "driver" && word != "ros2_lane")
+      out.insert(word);  // not here: the command, the page, a real robot, the way to ROS 2
   return out;
 }
 
@@ -65,7 +66,10 @@ TEST_F(Table, NamesTheWritersAndReadersThereAre) {
     std::set<std::string> expected_writers = words(row.writers);
     expected_writers.erase("bridge");
     EXPECT_EQ(writers[row.type], expected_writers) << "writers of " << row.type;
-    EXPECT_EQ(readers[row.type], words(row.readers)) << "readers of " << row.type;
+    std::set<std::string> expected_readers = words(row.readers);
+    if (row.type == std::string("HumanObservation"))
+      expected_readers.erase("sim");  // only where a scenario has a person moved from outside
+    EXPECT_EQ(readers[row.type], expected_readers) << "readers of " << row.type;
   }
 }
 
