@@ -1,7 +1,6 @@
 #include "sim/world.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -11,10 +10,10 @@
 
 #include "common/model/robot_capsules.hpp"
 #include "sim/contacts.hpp"
+#include "sim/hand_measure.hpp"
 #include "sim/handover_oracle.hpp"
 #include "sim/limits_oracle.hpp"
-#include "sim/object_surface.hpp"
-#include "sim/person_hand.hpp"
+#include "sim/people.hpp"
 #include "sim/robot_grasp.hpp"
 
 namespace handsel::sim {
@@ -24,27 +23,6 @@ namespace {
 constexpr double kReach = 0.001;         // contacts closer than this touch [m]
 constexpr double kCollisionForce = 0.5;  // [N]
 constexpr double kFloorHeight = 0.02;    // an object's origin lower than this lies on the floor [m]
-
-struct ObjectBody {
-  StartObject start;
-  std::unique_ptr<btRigidBody> body;
-  double least_inertia{};
-  Pose T_world_object{Pose::Identity()};
-  BodyState state;  // of the centre of mass
-};
-
-struct PersonBody {
-  PersonModel model;
-  Grip grip;
-  int object{-1};  // index of the one the exchange is about
-  bool broke{false};
-  std::vector<BodyCapsule> capsules;
-  std::vector<std::unique_ptr<btRigidBody>> colliders;  // kinematic; none for a hand
-  std::array<std::unique_ptr<PersonHand>, 2> hands;     // left, right
-
-  PersonHand& hand() { return *hands[model.side() == Side::left ? 0 : 1]; }
-  const PersonHand& hand() const { return *hands[model.side() == Side::left ? 0 : 1]; }
-};
 
 struct Hash {
   std::uint64_t value{0xcbf29ce484222325ULL};
@@ -59,16 +37,6 @@ struct Hash {
   }
 };
 
-Pose along(const Vector3& a, const Vector3& b) {
-  return make_pose((a + b) / 2,
-                   Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), (b - a).norm() > 1e-9 ? Vector3(b - a) : Vector3(0, 0, 1)));
-}
-
-bool of_hand(BodyPart part, Side side) {
-  return side == Side::left ? part == BodyPart::hand_left || part == BodyPart::forearm_left
-                            : part == BodyPart::hand_right || part == BodyPart::forearm_right;
-}
-
 }  // namespace
 
 struct SimWorld::Impl {
@@ -82,6 +50,7 @@ struct SimWorld::Impl {
         dynamics(&dispatcher, &broadphase, &solver, &configuration),
         side(robot_model, setup.start, side_settings()),
         limits(robot_model, s.robot_side.max_gap, s.setpoint_period),
+        measured(robot_model.dof(), s.wrench_filter, s.step),
         separations(robot_model, s.ssm) {
     settings.constraint = settings.constraint && !setup.no_weld;
     dynamics.setGravity(btVector3(0, 0, -9.81));
@@ -98,27 +67,21 @@ struct SimWorld::Impl {
     }
     grasp = std::make_unique<RobotGrasp>(model, *robot, settings.touch_force, settings.grasp_time, settings.lose_time);
     robot_grip = Grip(settings.robot_grip);
-    build_objects();
-    build_people();
+    for (const StartObject& start : setup.objects) objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
+    people = std::make_unique<People>(setup, settings, objects, shapes, dynamics);
     prepare_sight();
     std::uint64_t salt = seed;
     for (const SensorSettings& sensor : setup.human_sensors) human_sensors.emplace_back(sensor, salt += 0x1000193);
     for (const SensorSettings& sensor : setup.object_sensors) object_sensors.emplace_back(sensor, salt += 0x1000193);
-    watched = object_index(setup.watched);
-    if (watched >= 0) handover = std::make_unique<HandoverOracle>(objects[watched].state.T_world_body.translation().z());
-    external = filtered_external = Vector::Zero(model.dof());
+    watched = object_index(objects, setup.watched);
+    if (watched >= 0) handover = std::make_unique<HandoverOracle>(objects[watched].state().T_world_body.translation().z());
     ssm_every = std::max(1, static_cast<int>(std::lround(0.01 / settings.step)));
   }
 
   ~Impl() {
     robot.reset();
-    for (ObjectBody& object : objects) dynamics.removeRigidBody(object.body.get());
-    for (PersonBody& person : people) {
-      for (auto& collider : person.colliders) {
-        if (collider) dynamics.removeRigidBody(collider.get());
-      }
-    }
-    people.clear();
+    people.reset();
+    objects.clear();
     for (auto& object : fixed) dynamics.removeCollisionObject(object.get());
   }
 
@@ -129,13 +92,6 @@ struct SimWorld::Impl {
   }
 
   double now() const { return static_cast<double>(steps) * settings.step; }
-
-  int object_index(const std::string& id) const {
-    for (std::size_t i = 0; i < objects.size(); ++i) {
-      if (objects[i].start.id == id) return static_cast<int>(i);
-    }
-    return -1;
-  }
 
   void add_fixed(btCollisionShape* shape, const Pose& T, Owner owner, int index) {
     auto object = std::make_unique<btCollisionObject>();
@@ -154,78 +110,6 @@ struct SimWorld::Impl {
     }
   }
 
-  void build_objects() {
-    for (const StartObject& start : setup.objects) {
-      ObjectBody object;
-      object.start = start;
-      Pose T_com_object = Pose::Identity();
-      T_com_object.translation() = -start.model->com;
-      btCollisionShape* shape = shapes.combine(start.model->parts, T_com_object);
-      if (shape == nullptr) throw ConfigError("object " + start.id + " of model " + start.model_name + " has no parts to collide with");
-      btVector3 inertia(0, 0, 0);
-      shape->calculateLocalInertia(start.model->mass, inertia);
-      btRigidBody::btRigidBodyConstructionInfo info(start.model->mass, nullptr, shape, inertia);
-      info.m_startWorldTransform = to_bt(Pose(start.T_world_object * T_com_object.inverse()));
-      info.m_friction = start.model->friction;
-      info.m_rollingFriction = 0;
-      info.m_linearDamping = 0;
-      info.m_angularDamping = 0.02;
-      object.body = std::make_unique<btRigidBody>(info);
-      object.body->setActivationState(DISABLE_DEACTIVATION);
-      object.least_inertia = std::min({inertia.x(), inertia.y(), inertia.z()});
-      own(*object.body, Owner::object, static_cast<int>(objects.size()));
-      dynamics.addRigidBody(object.body.get(), kObject, kRobot | kFixed | kObject);
-      objects.push_back(std::move(object));
-      read_object(objects.back());
-    }
-  }
-
-  void build_people() {
-    for (std::size_t p = 0; p < setup.people.size(); ++p) {
-      PersonBody person{PersonModel(setup.people[p].settings), Grip(settings.person_grip), -1, false, {}, {}, {}};
-      person.capsules = body_capsules(person.model.body());
-      for (std::size_t c = 0; c < person.capsules.size(); ++c) {
-        const BodyCapsule& capsule = person.capsules[c];
-        if (capsule.part == BodyPart::hand_left || capsule.part == BodyPart::hand_right) {
-          const int hand = capsule.part == BodyPart::hand_left ? 0 : 1;
-          person.hands[hand] = std::make_unique<PersonHand>(settings.person_hand, person.model.hand(hand), dynamics, kPerson, kRobot);
-          own(person.hands[hand]->body(), Owner::person, static_cast<int>(p * 100 + c));
-          person.colliders.push_back(nullptr);
-          continue;
-        }
-        btConvexShape* shape = shapes.convex(Capsule{capsule.radius, (capsule.b - capsule.a).norm()});
-        btRigidBody::btRigidBodyConstructionInfo info(0, nullptr, shape);
-        info.m_startWorldTransform = to_bt(along(capsule.a, capsule.b));
-        info.m_friction = 0.6;
-        auto body = std::make_unique<btRigidBody>(info);
-        body->setCollisionFlags(body->getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
-        body->setActivationState(DISABLE_DEACTIVATION);
-        own(*body, Owner::person, static_cast<int>(p * 100 + c));
-        dynamics.addRigidBody(body.get(), kPerson, kRobot);
-        person.colliders.push_back(std::move(body));
-      }
-      if (!setup.people[p].holds.empty()) {
-        person.object = object_index(setup.people[p].holds);
-        ObjectBody& object = objects[person.object];
-        const double beside = PersonModel::kPalm + 0.05;
-        const Pose hand = person.hand().state().T_world_body;
-        object.body->setWorldTransform(to_bt(Pose(hand * Eigen::Translation3d(beside, 0, 0))));
-        object.body->setInterpolationWorldTransform(object.body->getWorldTransform());
-        read_object(object);
-        person.grip.hold(hand.inverse() * object.state.T_world_body);
-      }
-      people.push_back(std::move(person));
-    }
-  }
-
-  void read_object(ObjectBody& object) {
-    object.state.T_world_body = from_bt(object.body->getWorldTransform());
-    object.state.velocity = from_bt(object.body->getLinearVelocity());
-    object.state.angular_velocity = from_bt(object.body->getAngularVelocity());
-    object.T_world_object = object.state.T_world_body;
-    object.T_world_object.translation() -= object.T_world_object.linear() * object.start.model->com;
-  }
-
   BodyState tool_state() const {
     const int tool = model.tool_link();
     BodyState s;
@@ -236,90 +120,17 @@ struct SimWorld::Impl {
     return s;
   }
 
-  void apply(ObjectBody& object, const Wrench& wrench) {
-    object.body->applyCentralForce(to_bt(wrench.force));
-    object.body->applyTorque(to_bt(wrench.torque));
-  }
-
-  void move_people() {
-    const double dt = settings.step;
-    for (PersonBody& person : people) {
-      PersonView view;
-      view.robot_hand = tool_state().T_world_body.translation();
-      if (!person.grip.holding() && !person.model.wants_grip())
-        person.object = gripped >= 0 ? gripped : person.model.exchanging() ? person.object : -1;
-      if (person.object >= 0) {
-        const ObjectBody& object = objects[person.object];
-        view.object = object.start.model;
-        view.T_world_object = object.T_world_object;
-        view.object_velocity = object.state.velocity;
-        view.held_by_robot = gripped == person.object;
-        view.grip_force = person.grip.wrench().force;
-      }
-      for (int s = 0; s < 2; ++s) {
-        view.hand_pushed[s] = person.hands[s]->state().T_world_body.translation() - person.model.hand(s).T_world_body.translation();
-      }
-      view.grip_broke = person.broke;
-      person.broke = false;
-      person.model.step(dt, view);
-      hold_or_let_go(person);
-      const bool soft = person.model.exchanging();
-      person.capsules = body_capsules(person.model.body());
-      for (int s = 0; s < 2; ++s) person.hands[s]->pull_to(person.model.hand(s), dt);
-      for (std::size_t c = 0; c < person.colliders.size(); ++c) {
-        const BodyCapsule& capsule = person.capsules[c];
-        if (person.colliders[c]) person.colliders[c]->setWorldTransform(to_bt(along(capsule.a, capsule.b)));
-        btRigidBody& body = person.colliders[c] ? *person.colliders[c] : person.hands[capsule.part == BodyPart::hand_left ? 0 : 1]->body();
-        const int flags = body.getCollisionFlags() & ~btCollisionObject::CF_NO_CONTACT_RESPONSE;
-        const bool yields = soft && of_hand(capsule.part, person.model.side());
-        body.setCollisionFlags(yields ? flags | btCollisionObject::CF_NO_CONTACT_RESPONSE : flags);
-      }
-      if (person.grip.holding()) {
-        ObjectBody& object = objects[person.object];
-        const BodyState hand = person.hand().state();
-        const Wrench& w = person.grip.update(hand, object.state, object.start.model->mass, object.least_inertia, dt);
-        apply(object, w);
-        person.hand().push(object.state.T_world_body.translation(), {-w.force, -w.torque});
-        person.broke = !person.grip.holding();
-      }
-    }
-  }
-
-  void hold_or_let_go(PersonBody& person) {
-    if (!person.model.wants_grip()) {
-      person.grip.release();
-    } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
-      if (hand_gap(person) < PersonModel::kPalm + 0.03) {
-        person.grip.hold(person.hand().state().T_world_body.inverse() * objects[person.object].state.T_world_body);
-      } else {
-        person.broke = true;
-      }
-    }
-  }
-
-  double hand_gap(const PersonBody& person) const {
-    const ObjectBody& object = objects[person.object];
-    return surface_distance(*object.start.model, object.T_world_object.inverse() * person.hand().state().T_world_body.translation());
-  }
-
-  bool hand_touches(const PersonBody& person, int object) const {
-    if (person.object != object || object < 0) return false;
-    if (person.grip.holding()) return true;
-    const PersonPhase phase = person.model.phase();
-    return (phase == PersonPhase::closing || phase == PersonPhase::reaching) && hand_gap(person) < PersonModel::kPalm + 0.012;
-  }
-
   void hold_with_robot() {
     if (gripped < 0 || !settings.constraint) return;
     ObjectBody& object = objects[gripped];
     const BodyState tool = tool_state();
-    const Wrench w = robot_grip.update(tool, object.state, object.start.model->mass, object.least_inertia, settings.step);
+    const Wrench w = robot_grip.update(tool, object.state(), object.model().mass, object.least_inertia(), settings.step);
     if (!robot_grip.holding()) {
       let_go();
       return;
     }
-    apply(object, w);
-    robot->push(grasp->palm(), object.state.T_world_body.translation(), {-w.force, -w.torque});
+    object.push(w);
+    robot->push(grasp->palm(), object.state().T_world_body.translation(), {-w.force, -w.torque});
   }
 
   void let_go() {
@@ -337,11 +148,11 @@ struct SimWorld::Impl {
         if (pressure > most) most = pressure, candidate = i;
       }
     }
-    const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero()) : objects[candidate].state.T_world_body.translation();
+    const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero()) : objects[candidate].state().T_world_body.translation();
     const bool held = grasp->update(touches, candidate, centre, settings.step);
     if (gripped < 0 && held) {
       gripped = candidate;
-      if (settings.constraint) robot_grip.hold(tool_state().T_world_body.inverse() * objects[candidate].state.T_world_body);
+      if (settings.constraint) robot_grip.hold(tool_state().T_world_body.inverse() * objects[candidate].state().T_world_body);
     } else if (gripped >= 0 && !held) {
       let_go();
     }
@@ -351,35 +162,14 @@ struct SimWorld::Impl {
     if (constraint_carries) constraint_time += settings.step;
   }
 
-  // What the world does to the hand: contacts of palm and fingers and the hold of the object, at the tool's origin in its axes.
   void measure() {
-    Wrench wrench;
-    external.setZero();
-    const BodyState tool = tool_state();
-    const Vector3 origin = tool.T_world_body.translation();
-    const auto add = [&](int body, const Vector3& point, const Vector3& force, const Vector3& torque) {
-      robot->project(body, point, {force, torque}, external);
-      if (grasp->chain_of(body) < 0) return;
-      wrench.force += force;
-      wrench.torque += torque + (point - origin).cross(force);
-    };
-    double contact = 0;
-    for (const Touch& t : touches) {
-      if (t.a != Owner::robot || t.normal_force <= 0) continue;
-      add(t.index_a, t.point, t.force_on_a, Vector3::Zero());
-      if (t.b == Owner::person) contact += t.normal_force;
-    }
+    Wrench load;
+    Vector3 at = Vector3::Zero();
     if (gripped >= 0 && robot_grip.holding()) {
-      const Wrench& w = robot_grip.wrench();
-      add(grasp->palm(), objects[gripped].state.T_world_body.translation(), -w.force, -w.torque);
+      load = {-robot_grip.wrench().force, -robot_grip.wrench().torque};
+      at = objects[gripped].state().T_world_body.translation();
     }
-    const double k = std::min(1.0, settings.step * 2 * M_PI * settings.wrench_filter);
-    filtered.force += k * (tool.T_world_body.linear().transpose() * wrench.force - filtered.force);
-    filtered.torque += k * (tool.T_world_body.linear().transpose() * wrench.torque - filtered.torque);
-    filtered_external += k * (external - filtered_external);
-    payload += std::min(1.0, settings.step * 2 * M_PI * 5.0) * (-wrench.force.z() / 9.81 - payload);
-    contact_force += std::min(1.0, settings.step / 0.01) * (contact - contact_force);
-    largest_contact = std::max(largest_contact, contact_force);
+    measured.update(touches, *robot, *grasp, tool_state().T_world_body, load, at);
   }
 
   void judge() {
@@ -388,24 +178,20 @@ struct SimWorld::Impl {
       if (t.a != Owner::robot || t.normal_force < kCollisionForce) continue;
       const bool by_hand = grasp->chain_of(t.index_a) >= 0;
       if (t.b == Owner::object && by_hand) continue;
-      if (t.b == Owner::person && yielding(t.index_b)) continue;
+      if (t.b == Owner::person && people->yields(t.index_b)) continue;
       if (!collided) {
         last_collision = robot->name_of(t.index_a) + " hits " +
                          (t.b == Owner::fixed    ? setup.boxes[t.index_b].id
                           : t.b == Owner::floor  ? std::string("floor")
-                          : t.b == Owner::object ? objects[t.index_b].start.id
-                                                 : setup.people[t.index_b / 100].settings.id);
+                          : t.b == Owner::object ? objects[t.index_b].start().id
+                                                 : people->id(t.index_b));
       }
       collided = true;
     }
     if (collided) ++collisions;
 
-    std::vector<PersonVolume>& volumes = person_volumes;
-    volumes.clear();
-    for (const PersonBody& person : people) {
-      volumes.push_back({&person.model.body(), person.model.exchanging() || exchanged(person), person.model.side()});
-    }
-    near = separations.separation(*robot, volumes);
+    people->volumes(tool_state().T_world_body.translation(), person_volumes);
+    near = separations.separation(*robot, person_volumes);
     least_separation = std::min(least_separation, near.distance);
     if (near.link >= 0 && near.distance < 0.5) {
       const Vector3 n = (near.on_person - near.on_robot).stableNormalized();
@@ -418,33 +204,20 @@ struct SimWorld::Impl {
     add_to_hash();
   }
 
-  // The exchange lasts until the robot's hand has drawn back from the object it gave.
-  bool exchanged(const PersonBody& person) const {
-    if (person.model.phase() != PersonPhase::keeping || person.object < 0) return false;
-    return (tool_state().T_world_body.translation() - objects[person.object].state.T_world_body.translation()).norm() < 0.35;
-  }
-
-  bool yielding(int code) const {
-    const PersonBody& person = people[code / 100];
-    return person.model.exchanging() && of_hand(person.capsules[code % 100].part, person.model.side());
-  }
-
   ObjectSituation situation() const {
     ObjectSituation s;
     const ObjectBody& object = objects[watched];
-    s.height = object.state.T_world_body.translation().z();
+    s.height = object.state().T_world_body.translation().z();
     s.robot_grips = gripped == watched;
-    s.on_floor = object.T_world_object.translation().z() < kFloorHeight;
+    s.on_floor = object.T_world_object().translation().z() < kFloorHeight;
     for (const Touch& t : touches) {
       if (t.a == Owner::robot && t.b == Owner::object && t.index_b == watched && t.normal_force > 0) s.robot_touches = true;
       if (t.a != Owner::object || t.index_a != watched) continue;
       if (t.b == Owner::floor) s.on_floor = true;
       if (t.b == Owner::fixed && setup.boxes[t.index_b].supports) s.on_surface = true;
     }
-    for (const PersonBody& person : people) {
-      s.human_grips = s.human_grips || (person.grip.holding() && person.object == watched);
-      s.human_touches = s.human_touches || hand_touches(person, watched);
-    }
+    s.human_grips = people->grips(watched);
+    s.human_touches = people->touches(watched);
     return s;
   }
 
@@ -452,12 +225,12 @@ struct SimWorld::Impl {
     hash.add_all(robot->position());
     hash.add_all(robot->velocity());
     for (const ObjectBody& object : objects) {
-      hash.add_all(object.state.T_world_body.translation());
-      hash.add_all(object.state.velocity);
-      hash.add_all(object.state.angular_velocity);
+      hash.add_all(object.state().T_world_body.translation());
+      hash.add_all(object.state().velocity);
+      hash.add_all(object.state().angular_velocity);
     }
-    for (const PersonBody& person : people) {
-      for (const BodyJoint& joint : person.model.body().joints) hash.add_all(joint.position);
+    for (std::size_t p = 0; p < people->size(); ++p) {
+      for (const BodyJoint& joint : people->model(p).body().joints) hash.add_all(joint.position);
     }
   }
 
@@ -477,11 +250,12 @@ struct SimWorld::Impl {
     sight.people.clear();
     sight.bodies.clear();
     sight.objects.clear();
-    for (const PersonBody& person : people) {
-      sight.people.push_back(&person.model.body());
-      sight.bodies.push_back(person.capsules);
+    for (std::size_t p = 0; p < people->size(); ++p) {
+      sight.people.push_back(&people->model(p).body());
+      sight.bodies.push_back(people->capsules(p));
     }
-    for (const ObjectBody& object : objects) sight.objects.push_back({object.start.id, object.start.model_name, object.T_world_object});
+    for (const ObjectBody& object : objects)
+      sight.objects.push_back({object.start().id, object.start().model_name, object.T_world_object()});
     for (std::size_t i = 0; i < hiding_links.size(); ++i) {
       const LinkCapsule& c = hiding_links[i];
       const Pose& T = robot->T_world_link(c.link);
@@ -505,12 +279,12 @@ struct SimWorld::Impl {
     }
     side.step(now(), settings.step, gripped >= 0);
     robot->drive(side.position(), side.velocity(), side.acceleration(), side.effort());
-    move_people();
+    people->move(settings.step, tool_state(), gripped);
     hold_with_robot();
     dynamics.stepSimulation(settings.step, 0);
     ++steps;
     robot->read();
-    for (ObjectBody& object : objects) read_object(object);
+    for (ObjectBody& object : objects) object.read();
     gather(dispatcher, settings.step, kReach, touches);
     update_grasp();
     measure();
@@ -521,9 +295,9 @@ struct SimWorld::Impl {
   std::string control(const SimControl& c) {
     const auto everyone = [&](auto&& act) -> std::string {
       bool any = false;
-      for (PersonBody& person : people) {
-        if (!c.subject.empty() && person.model.id() != c.subject) continue;
-        act(person.model);
+      for (std::size_t p = 0; p < people->size(); ++p) {
+        if (!c.subject.empty() && people->model(p).id() != c.subject) continue;
+        act(people->model(p));
         any = true;
       }
       return any ? "" : "there is no person " + c.subject;
@@ -577,8 +351,8 @@ struct SimWorld::Impl {
   btMultiBodyDynamicsWorld dynamics;
   std::vector<std::unique_ptr<btCollisionObject>> fixed;
   std::unique_ptr<RobotBody> robot;
-  std::vector<ObjectBody> objects;
-  std::vector<PersonBody> people;
+  ObjectBodies objects;
+  std::unique_ptr<People> people;
 
   RobotSide side;
   Grip robot_grip{GripSettings{}};
@@ -596,11 +370,8 @@ struct SimWorld::Impl {
   std::vector<HumanSensor> human_sensors;
   std::vector<ObjectSensor> object_sensors;
 
-  Wrench filtered;
-  Vector external, filtered_external;
-  double payload{0}, contact_force{0}, largest_contact{0};
-
   LimitsOracle limits;
+  HandMeasure measured;
   SeparationOracle separations;
   std::unique_ptr<HandoverOracle> handover;
   TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
@@ -636,9 +407,9 @@ bool SimWorld::robot_state(RobotState& out) {
   for (Eigen::Index i = 0; i < out.position.size(); ++i) out.position[i] += w.noise(w.settings.position_noise);
   out.velocity = w.robot->velocity();
   out.effort = w.robot->effort();
-  out.external_torque = w.filtered_external;
+  out.external_torque = w.measured.external_torque();
   for (Eigen::Index i = 0; i < out.external_torque.size(); ++i) out.external_torque[i] += w.noise(0.1 * w.settings.force_noise);
-  out.wrist_wrench = w.filtered;
+  out.wrist_wrench = w.measured.wrist_wrench();
   for (int i = 0; i < 3; ++i) {
     out.wrist_wrench.force[i] += w.noise(w.settings.force_noise);
     out.wrist_wrench.torque[i] += w.noise(0.1 * w.settings.force_noise);
@@ -647,7 +418,7 @@ bool SimWorld::robot_state(RobotState& out) {
   if (const Group* hand = w.model.group("hand")) {
     for (int axis : hand->axes) out.hand_effort += std::abs(w.robot->effort()[axis]);
   }
-  out.payload = std::max(0.0, w.payload);
+  out.payload = std::max(0.0, w.measured.payload());
   out.mode = w.side.mode();
   return true;
 }
@@ -665,8 +436,8 @@ void SimWorld::truth(GroundTruth& out) const {
   const Impl& w = *impl_;
   out.sim_time = w.now();
   if (w.watched >= 0) {
-    out.object = w.objects[w.watched].start.id;
-    out.T_world_object = w.objects[w.watched].T_world_object;
+    out.object = w.objects[w.watched].start().id;
+    out.T_world_object = w.objects[w.watched].T_world_object();
     w.handover->write(out);
     out.hold = w.gripped != w.watched ? "" : w.constraint_carries ? "constraint" : "contact";
     out.held_time = w.held_time;
@@ -676,7 +447,7 @@ void SimWorld::truth(GroundTruth& out) const {
   out.least_separation = w.least_separation;
   out.ssm_violations = w.ssm_violations;
   out.peak_closing_speed = w.peak_closing;
-  out.contact_force = w.largest_contact;
+  out.contact_force = w.measured.largest_contact();
   out.limit_share_velocity = w.limits.share_velocity();
   out.limit_share_acceleration = w.limits.share_acceleration();
   out.limit_share_jerk = w.limits.share_jerk();
@@ -694,9 +465,10 @@ void SimWorld::truth(GroundTruth& out) const {
   }
   out.person.clear();
   double least = std::numeric_limits<double>::infinity();
-  for (const PersonBody& person : w.people) {
-    const double d = (person.model.body().joints.front().position - w.setup.T_world_base.translation()).norm();
-    if (d < least) least = d, out.person = person.model.body().joints;
+  for (std::size_t p = 0; p < w.people->size(); ++p) {
+    const Person& person = w.people->model(p).body();
+    const double d = (person.joints.front().position - w.setup.T_world_base.translation()).norm();
+    if (d < least) least = d, out.person = person.joints;
   }
 }
 
@@ -709,11 +481,11 @@ bool SimWorld::robot_grips() const { return impl_->gripped >= 0; }
 double SimWorld::robot_pressure() const { return impl_->watched < 0 ? 0 : impl_->grasp->pressure(impl_->touches, impl_->watched); }
 double SimWorld::constraint_share() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }
 const Pose& SimWorld::T_world_object(const std::string& id) const {
-  const int i = impl_->object_index(id);
+  const int i = object_index(impl_->objects, id);
   if (i < 0) throw std::out_of_range("no object " + id);
-  return impl_->objects[i].T_world_object;
+  return impl_->objects[i].T_world_object();
 }
-const Person& SimWorld::person(std::size_t index) const { return impl_->people.at(index).model.body(); }
-PersonPhase SimWorld::person_phase(std::size_t index) const { return impl_->people.at(index).model.phase(); }
+const Person& SimWorld::person(std::size_t index) const { return impl_->people->model(index).body(); }
+PersonPhase SimWorld::person_phase(std::size_t index) const { return impl_->people->model(index).phase(); }
 
 }  // namespace handsel::sim
