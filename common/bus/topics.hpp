@@ -50,7 +50,7 @@ struct TopicRow {
     "manipulation_planner attention trajectory_controller") \
   X(Facts, "facts", state, 20, 0.3, 98304, "spark", "supervisor attention") \
   X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", "bridge") \
-  X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor") \
+  X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor spark") \
   X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel") \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner") \
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", \

@@ -54,7 +54,8 @@ void Session::require_system() {
 std::uint64_t Session::new_task_id() { return (next_task_++ << 8) | 1u; }
 
 bool Session::send(const TaskGoal& goal) {
-  return wait(from_seconds(1.0), [this] { return goals_->readers() > 0; }) && goals_->publish(goal);
+  wait(from_seconds(1.0), [this] { return goals_->readers() > 1; });  // supervisor and spark
+  return goals_->readers() > 0 && goals_->publish(goal);
 }
 
 }  // namespace handsel
