@@ -28,6 +28,7 @@ bool RobotSide::command(const JointCommand& command, double now) {
   position_ = command.position;
   velocity_ = command.velocity;
   acceleration_ = command.acceleration;
+  payload_ = command.payload;
   effort_ = command.effort.size() == n ? command.effort : Vector(Vector::Zero(n));
   return true;
 }

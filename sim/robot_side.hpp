@@ -38,6 +38,7 @@ class RobotSide {
   const Vector& velocity() const { return velocity_; }
   const Vector& acceleration() const { return acceleration_; }
   const Vector& effort() const { return effort_; }  ///< kept through a stop: what is held stays held
+  double payload() const { return payload_; }       ///< mass told to be in the hand [kg]
   DriveMode mode() const { return mode_; }
   bool hand_moves() const;  ///< its reference does
   bool stopped() const { return stopping_ && at_rest_; }
@@ -53,7 +54,7 @@ class RobotSide {
   Vector closed_, squeeze_;  // hand posture and effort kept by the mutant
   std::vector<SoftStop> stops_;
   bool stopping_{false}, at_rest_{false}, seen_{false}, fresh_{false}, clenched_{false};
-  double last_{0}, hand_rest_{0};
+  double last_{0}, hand_rest_{0}, payload_{0};
   int matching_{0};
 };
 

@@ -408,6 +408,10 @@ bool SimWorld::robot_state(RobotState& out) {
   out.velocity = w.robot->velocity();
   out.effort = w.robot->effort();
   out.external_torque = w.measured.external_torque();
+  if (w.side.payload() > 0 && w.model.tool_link() >= 0) {  // what it was told to hold is part of the robot's own model
+    const Wrench weight{Vector3(0, 0, 9.81 * w.side.payload()), Vector3::Zero()};
+    w.robot->project(w.robot->body_of(w.model.tool_link()), w.tool_state().T_world_body.translation(), weight, out.external_torque);
+  }
   for (Eigen::Index i = 0; i < out.external_torque.size(); ++i) out.external_torque[i] += w.noise(0.1 * w.settings.force_noise);
   out.wrist_wrench = w.measured.wrist_wrench();
   for (int i = 0; i < 3; ++i) {

@@ -161,6 +161,16 @@ SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable&
   return outcome;
 }
 
+bool TimeLaw::begin_with(double alpha) noexcept {
+  table_.evaluate(now_.tau, cursor_, row_);
+  if (!still(row_)) return false;
+  target_ = now_.alpha = std::isfinite(alpha) ? std::clamp(alpha, 0.0, 1.0) : 0.0;
+  now_.beta = push_ = phase_ = 0;
+  way_.stay(now_.alpha);
+  publish();
+  return true;
+}
+
 void TimeLaw::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
 
 void TimeLaw::rates_at(double tau, Rates& r) const noexcept {

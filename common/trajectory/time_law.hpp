@@ -40,6 +40,9 @@ class TimeLaw {
   /// Starts on a trajectory from any state of the axes, moving or not, whatever ran before; alpha is 1, and it never runs back beyond here.
   SwitchOutcome start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& = {}) noexcept;
 
+  /// Where the path itself stands still (its beginning at rest): goes on with this alpha in [0, 1] at once. False elsewhere.
+  bool begin_with(double alpha) noexcept;
+
   /// [-1, 1], clamped; anything not finite means 0.
   void set_target(double alpha) noexcept;
   double target() const noexcept { return target_; }

@@ -207,7 +207,7 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == surface; });
   if (box == scene_.boxes.end() || !box->supports) co_return Outcome::failure("there is no surface called " + surface);
   const SceneObject* held = object(object_id);
-  const ObjectModel* model = held != nullptr && objects_ ? objects_(held->model) : nullptr;
+  const ObjectModel* model = model_of(object_id);
   if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   status_.phase = "choosing a place";
 

@@ -96,6 +96,11 @@ Vector ManipulationPlanner::posture() const {
 
 bool ManipulationPlanner::may_move() const { return execution_ && execution_->mode < Mode::hold; }
 
+const ObjectModel* ManipulationPlanner::model_of(const std::string& id) const {
+  const SceneObject* seen = object(id);
+  return seen != nullptr && objects_ ? objects_(seen->model) : nullptr;
+}
+
 const SceneObject* ManipulationPlanner::object(const std::string& id) const {
   const auto it = std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == id; });
   return it == scene_.objects.end() ? nullptr : &*it;
@@ -353,6 +358,8 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
   command.position = position;
   if (effort != nullptr) command.effort = *effort;
   command.pull_force = settings_.pull_force();
+  if (const ObjectModel* grasped = model_of(status_.object); action == HandAction::grasp && grasped != nullptr)
+    command.payload = grasped->mass;
   HandResult result;
   const std::uint64_t id = command.id;
   bool heard = false;

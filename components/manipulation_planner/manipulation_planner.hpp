@@ -104,8 +104,9 @@ class ManipulationPlanner {
   bool may_move() const;
   Vector posture() const;  // the arm as commanded, hand and head as measured: squeezing fingers are commanded beyond what they touch
   const SceneObject* object(const std::string& id) const;
-  const Person* person(const std::string& id) const;  // empty id: the nearest
-  bool lost(const std::string& id) const;             // a person who might be anywhere near where they were last seen
+  const ObjectModel* model_of(const std::string& id) const;  // of an object of the scene; null: unknown
+  const Person* person(const std::string& id) const;         // empty id: the nearest
+  bool lost(const std::string& id) const;                    // a person who might be anywhere near where they were last seen
   void hold(const SceneObject& object);
   void release_object();
   void refuse(const std::string& what, const std::string& reason);

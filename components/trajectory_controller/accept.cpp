@@ -55,6 +55,7 @@ std::string Controller::why_not_now(const std::string& robot, std::uint64_t epoc
 std::string Controller::why_not(const TrajectoryCommand& command, Duration age) const {
   if (std::string reason = why_not_now(command.robot, command.epoch, age); !reason.empty()) return reason;
   if (command.axes.empty() && command.trajectory.size() == 0) return {};
+  if (!std::isfinite(command.switch_at)) return "its switch_at is not a number";
   if (command.trajectory.size() != static_cast<int>(command.axes.size()))
     return "it has " + std::to_string(command.trajectory.size()) + " axes and names " + std::to_string(command.axes.size());
   std::vector<char> used(part_.size(), 0);
@@ -109,13 +110,11 @@ void Controller::take(const TrajectoryCommand& command, double begin, double off
   refused_for_ = 0;
   refusal_.clear();
   arm_ = Arm::running;
-  new_path_ = true;
 }
 
-std::string Controller::accept(const TrajectoryCommand& command, Duration age, TimePoint now, double switch_at) {
+std::string Controller::accept(const TrajectoryCommand& command, Duration age, TimePoint now) {
   if (command.id != 0 && command.id == accepted_trajectory_) return "it came before; the first one counts";
   if (std::string reason = why_not(command, age); !reason.empty()) return refuse(command, reason);
-  if (!std::isfinite(switch_at)) return refuse(command, "switch_at is not a number");
   if (command.axes.empty()) {
     accepted_trajectory_ = command.id;
     refused_ = false;
@@ -126,11 +125,13 @@ std::string Controller::accept(const TrajectoryCommand& command, Duration age, T
   }
   const bool on_path = arm_ == Arm::running && !runner_.finished();
   std::string reason;
-  if (on_path ? !runner_.standing() || switch_at > 0 : arm_ == Arm::stopping)
-    reason = go_over(command, switch_at);
+  if (on_path ? !runner_.standing() || command.switch_at > 0 : arm_ == Arm::stopping)
+    reason = go_over(command);
   else
     reason = start(command, now);
-  return reason.empty() ? reason : refuse(command, reason);
+  if (!reason.empty()) return refuse(command, reason);
+  judge_new_path(now);
+  return {};
 }
 
 /// From rest, beginning with a short motion to its start where that is a little off.
@@ -153,7 +154,7 @@ std::string Controller::start(const TrajectoryCommand& command, TimePoint now) {
   } else {
     for (std::size_t i = 0; i < path.axes.size(); ++i) path.axes[i].start = {here.position[static_cast<Eigen::Index>(i)], 0.0, 0.0};
   }
-  if (std::string why = runner_.start(path, path_limits(command.axes), std::max(0.0, wanted_factor(now))); !why.empty()) return why;
+  if (std::string why = runner_.start(path, path_limits(command.axes)); !why.empty()) return why;
   stand_arm();
   pieces_.clear();
   current_ = 0;
@@ -162,12 +163,11 @@ std::string Controller::start(const TrajectoryCommand& command, TimePoint now) {
   path_ = runner_.state();
   started_ = now;
   too_near_for_ = 0.0;
-  verdict_now_ = verdict_ahead_ = {};
   return {};
 }
 
 /// In motion, or to wait in line.
-std::string Controller::go_over(const TrajectoryCommand& command, double switch_at) {
+std::string Controller::go_over(const TrajectoryCommand& command) {
   if (command.axes != axes_) return "it moves other axes than trajectory " + std::to_string(piece().id) + ", which runs";
   if (arm_ == Arm::stopping) {
     MotionState3 here = rest_state(Vector::Zero(command.trajectory.size()));
@@ -188,7 +188,7 @@ std::string Controller::go_over(const TrajectoryCommand& command, double switch_
   }
   const Piece& last = pieces_.back();
   double leave = runner_.time();
-  if (switch_at > 0) leave = std::max(leave, std::min(last.offset + switch_at, runner_.duration()));
+  if (command.switch_at > 0) leave = std::max(leave, std::min(last.offset + command.switch_at, runner_.duration()));
   const bool waits = leave > runner_.time();
   if (waits && pieces_.size() > current_ + kMostWaiting) return std::to_string(kMostWaiting) + " trajectories wait already";
   const double before = runner_.time(), reach = leave < runner_.duration() ? settings_.switch_reach : settings_.start_tolerance;
@@ -217,6 +217,7 @@ std::string Controller::accept(const HandCommand& command, Duration age, TimePoi
     refusal_ = "hand command " + std::to_string(command.id) + ": " + reason;
   } else {
     accepted_hand_ = command.id;
+    if (command.action == HandAction::grasp && (command.payload > 0.0 || payload_ == 0.0)) grasped_payload_ = command.payload;
     refusal_.clear();
   }
   return reason;

@@ -13,7 +13,10 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kStopSlack = 0.05;  // [s] after detection and the fastest stop the robot rests
+constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
+constexpr double kLeastLook = 0.6;    // speed factor looked ahead with at least: who goes on must also be able to stop
+constexpr double kBackward = 0.02;    // it runs back
+constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
   std::vector<int> axes;
@@ -58,6 +61,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
   require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
   require(settings.forecast_slow > settings.forecast_hold, "forecast_slow must be above forecast_hold");
+  require(settings.cost_from >= 0 && settings.cost_from < 1, "cost_from must be in [0, 1)");
   require(settings.late_limit > 0, "late_limit must be above 0");
   for (const Wall& wall : settings.walls) require(std::abs(wall.normal.norm() - 1.0) < 1e-6, "the normal of a wall must have length 1");
   const int n = robot_->dof();
@@ -178,9 +182,8 @@ void Controller::stop_arm() noexcept {
 }
 
 void Controller::run_guard(TimePoint now) noexcept {
-  const double age = std::max(0.0, human_seen_.age(now));
   if (arm_ != Arm::running || runner_.finished()) {
-    verdict_now_ = verdict_ahead_ = {};
+    verdict_now_ = verdict_near_ = verdict_far_ = {};
     verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
     if (cycles_ % 50 != 0) {  // at rest only the distance and the end of an exchange are of interest
       guard_verdict_ = verdict_now_;
@@ -189,30 +192,50 @@ void Controller::run_guard(TimePoint now) noexcept {
     full_velocity_.setZero();
     full_acceleration_.setZero();
   }
-  // Alternates between where the path is and where it will be a little later, from where it is as soon as people have just been seen; a
-  // path just taken is judged for both at once.
-  guard_ahead_ = !guard_ahead_ && !new_people_ && arm_ == Arm::running;
-  judge_path(guard_ahead_, age);
-  if (new_path_ && arm_ == Arm::running) judge_path(!guard_ahead_, age);
-  if (!guard_ahead_ || new_path_) nearest_ = verdict_now_;
-  new_people_ = new_path_ = false;
-  guard_verdict_ = verdict_now_;
-  guard_verdict_.forward = std::min(verdict_now_.forward, verdict_ahead_.forward);
-  guard_verdict_.backward = std::max(verdict_now_.backward, verdict_ahead_.backward);
-  guard_verdict_.separation = verdict_now_.separation || verdict_ahead_.separation;
-  guard_verdict_.wall = verdict_now_.wall || verdict_ahead_.wall;
-  if (!guard_ahead_ && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
+  // In turn where the path is and where it will be a little later, the one or the other; where it is as soon as people have just been seen.
+  turn_ = new_people_ || arm_ != Arm::running ? 0 : (turn_ + 1) % 4;
+  const bool here = turn_ % 2 == 0;
+  if (here)
+    judge_path(0.0, verdict_now_, now);
+  else if (turn_ == 1)
+    judge_path(settings_.look_ahead, verdict_near_, now);
+  else
+    judge_path(settings_.look_far_ahead, verdict_far_, now);
+  if (here) nearest_ = verdict_now_;
+  new_people_ = false;
+  merge_verdicts();
+  if (here && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
     exchanging_.clear();
     for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
   }
 }
 
-void Controller::judge_path(bool ahead, double age) noexcept {
+/// A path is judged before its first step; from rest it begins with no more than may be.
+void Controller::judge_new_path(TimePoint now) noexcept {
+  judge_path(0.0, verdict_now_, now);
+  judge_path(settings_.look_ahead, verdict_near_, now);
+  judge_path(settings_.look_far_ahead, verdict_far_, now);
+  merge_verdicts();
+  runner_.begin_with(std::max(0.0, wanted_factor(now)));
+}
+
+void Controller::merge_verdicts() noexcept {
+  guard_verdict_ = verdict_now_;
+  for (const GuardVerdict* ahead : {&verdict_near_, &verdict_far_}) {
+    guard_verdict_.forward = std::min(guard_verdict_.forward, ahead->forward);
+    guard_verdict_.backward = std::max(guard_verdict_.backward, ahead->backward);
+    guard_verdict_.separation = guard_verdict_.separation || ahead->separation;
+    guard_verdict_.wall = guard_verdict_.wall || ahead->wall;
+  }
+}
+
+void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) noexcept {
   posture_ = set_point_.position;
   if (arm_ == Arm::running) {
     full_velocity_.setZero();
     full_acceleration_.setZero();
-    runner_.look(runner_.time() + (ahead ? settings_.look_ahead * std::max(runner_.factor(), 0.2) : 0.0), path_);
+    const double factor = runner_.factor(), pace = std::max(std::abs(factor), kLeastLook);
+    runner_.look(runner_.time() + ahead * (factor < -kBackward ? -pace : pace), path_);
     for (std::size_t i = 0; i < axes_.size(); ++i) {
       const auto axis = static_cast<Eigen::Index>(axes_[i]);
       const auto k = static_cast<Eigen::Index>(i);
@@ -223,8 +246,8 @@ void Controller::judge_path(bool ahead, double age) noexcept {
   }
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
-  (ahead ? verdict_ahead_ : verdict_now_) = guard(settings_.guard, capsules_, {&full_velocity_, &full_acceleration_, &links_, &twists_},
-                                                  state_.T_world_base, robot_->stop_limits(), crowd_, settings_.walls, age, speed_factor());
+  verdict = guard(settings_.guard, capsules_, {&full_velocity_, &full_acceleration_, &links_, &twists_}, state_.T_world_base,
+                  robot_->stop_limits(), crowd_, settings_.walls, std::max(0.0, human_seen_.age(now)), speed_factor());
 }
 
 double Controller::wanted_factor(TimePoint now) const noexcept {
@@ -232,11 +255,19 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   const double attention_age = advice_seen_.age(now);
   const bool silent = attention_age < 0 || attention_age > settings_.timeouts.attention;
   double wanted = std::min({go_.override_factor, guard_verdict_.forward, silent ? settings_.attention_lost_factor : advice_.speed_factor});
+  wanted = std::min(wanted, cost_share());
   if (forecast_.collides && forecast_.trajectory == piece().id) {
     const double share = (forecast_.time_to_collision - settings_.forecast_hold) / (settings_.forecast_slow - settings_.forecast_hold);
     wanted = std::min(wanted, exchanging_.empty() ? std::clamp(share, 0.0, 1.0) : 0.5);
   }
   return wanted >= 0.0 ? wanted : std::max({wanted, guard_verdict_.backward, -settings_.recoil_limit});
+}
+
+/// The human-aware cost ahead lowers the speed (chapter section 2), smoothly from cost_from on; at an exchange it is meant to be high.
+double Controller::cost_share() const noexcept {
+  if (forecast_.trajectory != piece().id || !exchanging_.empty()) return 1.0;
+  const double x = std::clamp((forecast_.cost - settings_.cost_from) / (1.0 - settings_.cost_from), 0.0, 1.0);
+  return 1.0 - x * x * (3.0 - 2.0 * x) * (1.0 - settings_.cost_factor);
 }
 
 ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
@@ -273,6 +304,7 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.contact_stop = touched_ && !in.at_rest && !yielding_;
   in.human_unknown = human_seen_.ever && !crowd_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
+  in.cost_slow = in.running && cost_share() < 0.999;
   in.override_slow = go_.override_factor < 0.999;
   in.go_epoch = go_.epoch;
   in.go_allowed = go_.allowed;
@@ -290,9 +322,18 @@ double Controller::fastest_stop() const noexcept {
   return longest;
 }
 
+/// Faster than the guard allows, by more than what the time law lags behind a verdict that changes slowly.
+bool Controller::too_fast() const noexcept {
+  constexpr double kLag = 1.1, kLeast = 0.02;
+  const double factor = speed_factor(), allowed = factor < 0.0 ? -guard_verdict_.backward : guard_verdict_.forward;
+  return std::abs(factor) > kLag * allowed + kLeast;
+}
+
 /// A stop along the path may take longer than the axes need: then it is ended beside it, in the time that is promised.
 bool Controller::must_leave_path(TimePoint now) const noexcept {
-  return verdict_.mode == Mode::hold && !runner_.standing() && now + from_seconds(fastest_stop() + 3 * settings_.period) >= hold_due_;
+  if (runner_.standing() || !(verdict_.mode == Mode::hold || too_fast())) return false;
+  const double slack = verdict_.mode == Mode::hold ? kStopSlack : kGuardSlack;
+  return now + from_seconds(fastest_stop() + 3 * settings_.period) >= rest_due_ + from_seconds(slack);
 }
 
 void Controller::give_up_path() noexcept {
@@ -300,7 +341,7 @@ void Controller::give_up_path() noexcept {
   rejoin_ = false;
 }
 
-void Controller::go_back_to_path() noexcept {
+void Controller::go_back_to_path(TimePoint now) noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) path_.position[static_cast<Eigen::Index>(i)] = set_point_.position[axes_[i]];
   path_.velocity.setZero();
   path_.acceleration.setZero();
@@ -314,12 +355,12 @@ void Controller::go_back_to_path() noexcept {
     p.offset += runner_.rejoin_shift();
   }
   arm_ = Arm::running;
-  new_path_ = true;
+  judge_new_path(now);
 }
 
 void Controller::step_arm(TimePoint now) noexcept {
   if (rejoin_ && verdict_.mode >= Mode::stop) give_up_path();
-  if (rejoin_ && arm_ == Arm::standing && verdict_.mode < Mode::hold) go_back_to_path();
+  if (rejoin_ && arm_ == Arm::standing && verdict_.mode < Mode::hold) go_back_to_path(now);
   if (arm_ == Arm::running) {
     if (verdict_.mode >= Mode::stop) {
       give_up_path();
@@ -382,6 +423,14 @@ void Controller::step_hand(TimePoint now) noexcept {
   new_state_ = false;
   hand_.step(in, settings_.period, now, next_);
   for (int i = 0; i < hand_.size(); ++i) effort_[hand_.axes()[static_cast<std::size_t>(i)]] = hand_.effort(i);
+}
+
+/// What the arm feels changes with what the hand holds.
+void Controller::note_hold(HandState before) noexcept {
+  const HandState state = hand_.state();
+  if (state == HandState::grasped) payload_ = grasped_payload_;
+  if (state == HandState::empty || state == HandState::released) payload_ = 0.0;
+  if (state != before) contact_.reset();
 }
 
 void Controller::step_head() noexcept {
@@ -498,7 +547,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
       latched_cause_ = Cause::no_go;
   } else {
     latched_cause_ = Cause::none;
-    hold_due_ = now + from_seconds(fastest_stop() + kStopSlack);
+    if (!too_fast()) rest_due_ = now + from_seconds(fastest_stop());
   }
   if (refused_for_ > 0 && --refused_for_ == 0) {
     refused_ = false;
@@ -510,7 +559,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   step_arm(now);
   const HandState held = hand_.state();
   step_hand(now);
-  if (hand_.state() != held) contact_.reset();  // what the arm feels changes with what the hand holds
+  note_hold(held);
   step_head();
   check_last();
   measure(set_point_, next_, robot_->guard_limits(), settings_.period, shares_);

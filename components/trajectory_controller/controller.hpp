@@ -35,8 +35,11 @@ struct ControllerSettings {
   double tracking_time{0.1};          ///< for this long [s]
   double forecast_hold{0.6};          ///< collision forecast within this time: Hold [s]
   double forecast_slow{2.0};          ///< within this time: slower in proportion [s]
+  double cost_from{0.5};              ///< the human-aware cost ahead from which the arm is slower, [0, 1)
+  double cost_factor{0.4};            ///< speed factor at a cost of 1, (0, 1]
   double head_dead_band{0.03};        ///< the head turns only for more than this [rad]
-  double look_ahead{0.15};            ///< the guard also judges the path this much later [s]
+  double look_ahead{0.15};            ///< the guard also judges the path this much later,
+  double look_far_ahead{0.45};        ///< and this much: about the time of a stop [s]
   int late_limit{5};                  ///< late cycles in a row: Hold
   std::vector<Wall> walls;            ///< that moving links never pass: virtual walls and the sides of the workspace
   TimeoutSettings timeouts;
@@ -61,9 +64,8 @@ class Controller {
 
   /// Empty when accepted, else why not, one sentence; then what runs goes on. While the arm moves the path is left for it at once, or, with
   /// switch_at, when the command accepted before has run so far; commands wait in line. A command without axes stops the running trajectory
-  /// softly, and ends those that wait. `age`: of the command at arrival; `switch_at`: on the own time of the command accepted before, when
-  /// that is left for this one; 0 or past: now [s].
-  std::string accept(const TrajectoryCommand& command, Duration age, TimePoint now, double switch_at = 0.0);
+  /// softly, and ends those that wait. `age`: of the command at arrival.
+  std::string accept(const TrajectoryCommand& command, Duration age, TimePoint now);
   std::string accept(const HandCommand& command, Duration age, TimePoint now);
 
   // Samples: `sampled` is the arrival minus the age at arrival.
@@ -80,6 +82,7 @@ class Controller {
 
   const MotionState3& set_point() const { return set_point_; }  ///< all axes
   const Vector& effort() const { return effort_; }              ///< likewise, what the motors give besides following it [Nm]
+  double payload() const { return payload_; }                   ///< mass of what the hand holds; 0: nothing or unknown [kg]
   Mode mode() const { return verdict_.mode; }
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
@@ -115,7 +118,7 @@ class Controller {
   std::string why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const;
   std::string why_not_from_rest(const TrajectoryCommand& command) const;
   std::string start(const TrajectoryCommand& command, TimePoint now);
-  std::string go_over(const TrajectoryCommand& command, double switch_at);
+  std::string go_over(const TrajectoryCommand& command);
   std::string refuse(const TrajectoryCommand& command, const std::string& reason);
   void take(const TrajectoryCommand& command, double begin, double offset);
   const Piece& piece() const noexcept { return pieces_[current_]; }
@@ -125,17 +128,22 @@ class Controller {
   PathLimits path_limits(const std::vector<std::uint32_t>& axes) const;
   double inside(int axis, double position) const noexcept;
   void stop_arm() noexcept;
+  bool too_fast() const noexcept;
   bool must_leave_path(TimePoint now) const noexcept;
   double fastest_stop() const noexcept;
   void give_up_path() noexcept;
-  void go_back_to_path() noexcept;
+  void go_back_to_path(TimePoint now) noexcept;
   void stand_arm() noexcept;
   void run_guard(TimePoint now) noexcept;
-  void judge_path(bool ahead, double age) noexcept;
+  void judge_path(double ahead, GuardVerdict& verdict, TimePoint now) noexcept;
+  void judge_new_path(TimePoint now) noexcept;
+  void merge_verdicts() noexcept;
   double wanted_factor(TimePoint now) const noexcept;
+  double cost_share() const noexcept;
   ModeInputs mode_inputs(TimePoint now, bool late) noexcept;
   void step_arm(TimePoint now) noexcept;
   void step_hand(TimePoint now) noexcept;
+  void note_hold(HandState before) noexcept;
   void step_head() noexcept;
   void step_yield() noexcept;
   void check_last() noexcept;
@@ -180,7 +188,7 @@ class Controller {
   std::size_t current_{};
   bool cancelled_{};
   bool rejoin_{};  // the arm left the path to stop in time, and goes back to it
-  TimePoint hold_due_{};
+  TimePoint rest_due_{};
   TimePoint started_{};
   std::vector<AxisMover> movers_;  // one a robot axis; those of the hand unused
   std::uint64_t accepted_trajectory_{}, refused_trajectory_{};
@@ -192,6 +200,7 @@ class Controller {
   HandExecutor hand_;
   std::uint64_t last_hand_{}, accepted_hand_{};
   bool hand_refused_{};
+  double grasped_payload_{}, payload_{};
   std::vector<double> head_target_;
   bool head_wanted_{}, head_paused_{};
 
@@ -201,14 +210,15 @@ class Controller {
   Vector yield_from_;
   ModeMachine modes_;
   ModeVerdict verdict_;
-  GuardVerdict guard_verdict_, verdict_now_, verdict_ahead_, nearest_;
+  GuardVerdict guard_verdict_, verdict_now_, verdict_near_, verdict_far_, nearest_;
+  int turn_{};  // of judging these
   MotionState3 path_;
   Vector full_velocity_, full_acceleration_, posture_;
   std::vector<Pose> links_;
   std::vector<LinkTwist> twists_;
 
   double too_near_for_{}, tracking_for_{};
-  bool limit_violation_{}, guard_ahead_{}, new_people_{}, new_path_{}, touched_{};
+  bool limit_violation_{}, new_people_{}, touched_{};
   int late_in_a_row_{};
   std::uint64_t cycles_{}, late_cycles_{};
   std::string refusal_;

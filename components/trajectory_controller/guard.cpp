@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kGrid = 16;
 constexpr double kSideways = 0.05;  // share of a link's speed
+constexpr double kAway = 0.5;       // likewise
 constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not closing
 
 /// Stop of the axes that move along the path, for factors on a grid of [0, 1].
@@ -145,10 +146,10 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       if (quickest < kStill) continue;
       const double v_h = directed_speed(part, -toward, settings);
       const double left = distance - v_h * part.age;  // the person may have come that much nearer since
-      // Nearly sideways counts as closing both ways: until they meet the direction between them may turn.
-      const double sideways = std::max(kStill, kSideways * quickest), speed = std::max(std::abs(closing), sideways);
-      if (closing > -sideways) forward = allowed(left, v_h, speed, margin, forward);
-      if (closing < sideways) backward = allowed(left, v_h, speed, margin, backward);
+      // What does not clearly lead away counts as closing both ways: until they meet the direction between them may turn.
+      const double sideways = std::max(kStill, kSideways * quickest), away = kAway * quickest;
+      if (closing > -away) forward = allowed(left, v_h, std::max(closing, sideways), margin, forward);
+      if (closing < away) backward = allowed(left, v_h, std::max(-closing, sideways), margin, backward);
       high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kGrid - 1e-9)));
       const bool closes_now = closing * factor > 0.05;
       if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > left) verdict.too_near = true;

@@ -37,6 +37,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(slow, Cause::wall, in.wall_slow);
   set(slow, Cause::human_unknown, in.human_unknown);
   set(slow, Cause::attention_slow, in.attention_slow);
+  set(slow, Cause::cost_ahead, in.cost_slow);
   set(slow, Cause::override_slow, in.override_slow);
 
   if (fault | stop | hold) {
@@ -67,7 +68,7 @@ Cause gravest(std::uint32_t causes) {
                               Cause::contact,         Cause::human_state_silent, Cause::forecast_collision, Cause::separation,
                               Cause::human_unknown,   Cause::forecast_silent,    Cause::cycle_late,         Cause::supervisor_silent,
                               Cause::no_go,           Cause::attention_silent,   Cause::attention_slow,     Cause::wall,
-                              Cause::override_slow};
+                              Cause::cost_ahead,      Cause::override_slow};
   for (Cause cause : kOrder)
     if (causes & bit(cause)) return cause;
   return Cause::none;

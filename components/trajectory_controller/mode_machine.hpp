@@ -27,7 +27,7 @@ struct ModeInputs {
   bool tracking_error{}, limit_violation{}, cycle_late{};
   bool forecast_collision_hold{}, forecast_collision_slow{};
   bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{};
-  bool attention_slow{}, override_slow{};
+  bool attention_slow{}, cost_slow{}, override_slow{};
   std::uint64_t go_epoch{};
   bool go_allowed{}, go_acknowledge{};
 };

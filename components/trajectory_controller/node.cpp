@@ -34,6 +34,7 @@ void Node::tick(TimePoint now) {
     command_.velocity = core_.set_point().velocity;
     command_.acceleration = core_.set_point().acceleration;
     command_.effort = core_.effort();
+    command_.payload = core_.payload();
     command_out_->publish(command_);
   }
   late_before_ = late;

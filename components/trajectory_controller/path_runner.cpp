@@ -25,8 +25,8 @@ bool begins_alike(const MotionState3& from, const MotionState3& first, const Kin
 
 }  // namespace
 
-std::string PathRunner::start(const Trajectory& trajectory, const PathLimits& limits, double factor) {
-  if (std::string why = law_.init(trajectory, limits.motion, dt_, std::clamp(factor, 0.0, 1.0)); !why.empty()) return why;
+std::string PathRunner::start(const Trajectory& trajectory, const PathLimits& limits) {
+  if (std::string why = law_.init(trajectory, limits.motion, dt_); !why.empty()) return why;
   limits_ = limits;
   path_ = trajectory;
   stale_ = false;

@@ -19,8 +19,10 @@ class PathRunner {
  public:
   explicit PathRunner(double period) : dt_(period) {}
 
-  /// From rest at its beginning, at once with `factor` in [0, 1]. Empty, or why it cannot be run. May allocate.
-  std::string start(const Trajectory& trajectory, const PathLimits& limits, double factor);
+  /// From rest at its beginning, at once with factor 1. Empty, or why it cannot be run. May allocate.
+  std::string start(const Trajectory& trajectory, const PathLimits& limits);
+  /// Another factor, in [0, 1], before the first step from rest; elsewhere nothing happens.
+  void begin_with(double factor) noexcept { law_.begin_with(factor); }
   /// Leaves the present path at `leave` on its time() [s] (at once when that is past) for `next`, over the fastest connecting motion that
   /// joins it no farther than `reach` [rad] from there in any axis, at its beginning when the present path is run to its end; the factor is
   /// kept. Empty, or why not; then nothing has changed. May allocate.

@@ -34,6 +34,8 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.recoil_limit = read(in.recoil_limit(), "recoil_limit", 0, 1);
   s.max_command_age = read(in.max_command_age(), "max_command_age", kTiny, 60);
   s.start_tolerance = read(in.start_tolerance(), "start_tolerance", 0, 1);
+  s.cost_from = read(in.cost_from(), "cost_from", 0, 0.999);
+  s.cost_factor = read(in.cost_factor(), "cost_factor", kTiny, 1);
   s.yield_speed = read(in.yield_speed(), "yield_speed", 0, 2);
   s.yield_reach = read(in.yield_reach(), "yield_reach", 0, 2);
   s.dry_run = in.dry_run();
@@ -44,6 +46,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.forecast_slow = read(in.forecast_slow(), "forecast_slow", s.forecast_hold + kTiny, 60);
   s.head_dead_band = read(in.head_dead_band(), "head_dead_band", 0, 1);
   s.look_ahead = read(in.look_ahead(), "look_ahead", 0, 2);
+  s.look_far_ahead = read(in.look_far_ahead(), "look_far_ahead", s.look_ahead, 2);
   s.late_limit = static_cast<int>(read(in.late_limit(), "late_limit", 1, 1000));
 
   const auto& t = in.timeouts();

@@ -15,6 +15,12 @@ Vector gather(const Vector& robot, const std::vector<int>& axes) {
   return values;
 }
 
+bool Driver::command(const JointCommand& command, double now) {
+  if (!follow(command, now)) return false;
+  if (command.payload != load_) set_load(load_ = command.payload);
+  return true;
+}
+
 int CycleCount::passed(std::uint64_t cycle) {
   const std::uint64_t since = known_ && cycle > at_ ? cycle - at_ : 1;
   at_ = cycle;

@@ -96,13 +96,20 @@ class CycleCount {
 class Driver {
  public:
   virtual ~Driver() = default;
-  virtual bool command(const JointCommand& command, double now) = 0;
-  virtual void cycle(double now) = 0;      ///< once a maker's cycle, or once the time for one has passed without it
-  virtual void acknowledge() = 0;          ///< a person has looked
-  virtual void set_load(double mass) = 0;  ///< the hand holds this much now [kg]
+  /// A set-point from the wire. False when it is not followed. What the hand holds is told on to the arm's controller.
+  bool command(const JointCommand& command, double now);
+  virtual void cycle(double now) = 0;  ///< once a maker's cycle, or once the time for one has passed without it
+  virtual void acknowledge() = 0;      ///< a person has looked
   virtual RobotState state() const = 0;
   virtual std::string trouble() const = 0;  ///< why the robot does not follow, one sentence; empty while it does
   virtual const DriverCore& core() const = 0;
+
+ protected:
+  virtual bool follow(const JointCommand& command, double now) = 0;
+  virtual void set_load(double mass) = 0;  ///< in the arm's controller [kg]
+
+ private:
+  double load_{};
 };
 
 /// `values` of the arm's own order into the robot's, and back.

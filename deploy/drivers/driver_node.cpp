@@ -19,8 +19,6 @@ DriverNode::DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<Cyc
     const std::lock_guard lock(mutex_);
     driver_->acknowledge();
   });
-  bus.subscribe<Scene>([this](const Scene& m, const Receipt&) { scene_ = m; });
-  bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& m, const Receipt&) { on(m); }, {from_seconds(0.05)});
   bus.every(std::chrono::milliseconds(2), [this](TimePoint) { publish(); });
   cycles_ = std::thread([this, cycle] { run_cycles(cycle); });
 }
@@ -36,22 +34,6 @@ void DriverNode::run_cycles(double cycle) {
     const std::lock_guard lock(mutex_);
     driver_->cycle(to_seconds(monotonic_now().time_since_epoch()));
   }
-}
-
-/// What the hand carries is told to the arm's controller: it weighs on every joint.
-void DriverNode::on(const ActiveTrajectory& active) {
-  if (active.robot != context_.robot->name() || active.attachment.object == held_object_) return;
-  held_object_ = active.attachment.object;
-  const double mass = mass_of(held_object_);
-  const std::lock_guard lock(mutex_);
-  driver_->set_load(mass);
-}
-
-double DriverNode::mass_of(const std::string& object) const {
-  for (const SceneObject& o : scene_.objects)
-    if (o.id == object)
-      if (const ObjectModel* model = context_.objects(o.model)) return model->mass;
-  return 0.0;
 }
 
 void DriverNode::publish() {

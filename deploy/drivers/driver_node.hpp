@@ -1,4 +1,4 @@
-// Binds a driver to a bus: set-points, permissions and the load in; the robot's state out. The arm's cycles run on a thread of their own.
+// Binds a driver to a bus: set-points and permissions in; the robot's state out. The arm's cycles run on a thread of their own.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,6 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
-#include "common/messages/world.hpp"
 #include "deploy/drivers/driver_core.hpp"
 
 namespace handsel::drivers {
@@ -33,16 +32,13 @@ class DriverNode {
  private:
   void run_cycles(double cycle);
   void publish();
-  void on(const ActiveTrajectory& active);
-  double mass_of(const std::string& object) const;  ///< of an object of the scene [kg]; 0: unknown
 
   Bus& bus_;
   NodeContext context_;
   std::unique_ptr<CycleSource> source_;
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<Publisher<RobotState>> state_out_;
-  std::string told_trouble_{"-"}, held_object_;
-  Scene scene_;
+  std::string told_trouble_{"-"};
   std::uint64_t acknowledged_{};  // epoch
   std::mutex mutex_;              // the driver: between its cycles and the bus
   std::atomic<bool> ends_{false};

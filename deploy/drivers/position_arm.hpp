@@ -36,14 +36,16 @@ class PositionArm : public Driver {
   /// `cycle` of the arm's controller [s]; `arm_axes`: robot axes in the order of the arm's controller.
   PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle, CyclicLink& link, const DriverSettings& settings);
 
-  bool command(const JointCommand& command, double now) override { return core_.command(command, now); }
   void cycle(double now) override;
   void acknowledge() override { core_.acknowledge(); }
-  void set_load(double mass) override;
   RobotState state() const override { return core_.state(session_ == Session::commanding_active); }
   std::string trouble() const override;
   const DriverCore& core() const override { return core_; }
   std::uint64_t missed() const { return missed_; }  ///< cycles without a message
+
+ protected:
+  bool follow(const JointCommand& command, double now) override { return core_.command(command, now); }
+  void set_load(double mass) override;
 
  private:
   double cycle_;

@@ -19,7 +19,7 @@ ReflexArm::ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexL
   measured_.position = measured_.velocity = measured_.effort = measured_.external_torque = Vector::Zero(model.dof());
 }
 
-bool ReflexArm::command(const JointCommand& command, double now) {
+bool ReflexArm::follow(const JointCommand& command, double now) {
   const RobotModel& model = core_.model();
   if (core_.following() && command.position.size() == model.dof() && command.velocity.size() == model.dof()) {
     for (int axis : core_.arm_axes()) {

@@ -61,16 +61,18 @@ class ReflexArm : public Driver {
 
   ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link, const ReflexSettings& settings);
 
-  bool command(const JointCommand& command, double now) override;
   void cycle(double now) override;
   /// Recovers from a reflex too: never by itself.
   void acknowledge() override;
-  void set_load(double mass) override;
   RobotState state() const override { return core_.state(commanding_); }
   std::string trouble() const override {
     return state_.position.size() == 0 ? "the arm's controller has not been heard yet" : core_.trouble();
   }
   const DriverCore& core() const override { return core_; }
+
+ protected:
+  bool follow(const JointCommand& command, double now) override;
+  void set_load(double mass) override;
 
  private:
   void judge();

@@ -39,6 +39,7 @@ class Stage {
     c.position = bench.core.set_point().position;
     c.velocity = bench.core.set_point().velocity;
     c.acceleration = bench.core.set_point().acceleration;
+    c.payload = bench.core.payload();
     if (late > 0) {
       --late;
       return;
@@ -162,13 +163,22 @@ TYPED_TEST(AnyDriver, a_set_point_that_jumps_never_reaches_the_arm) {
   EXPECT_EQ(s.fake().account.violations, 0);
 }
 
-TYPED_TEST(AnyDriver, the_maker_is_told_the_load) {
+TYPED_TEST(AnyDriver, what_the_hand_holds_is_told_to_the_maker_with_the_set_point_that_says_so) {
   auto& s = this->stage_;
   s.start();
-  s.driver().set_load(0.4);
-  s.run(0.01);
+  JointCommand c;
+  c.position = s.bench.core.set_point().position;
+  c.velocity = c.acceleration = Vector::Zero(7);
+  c.payload = 0.4;
+  EXPECT_TRUE(s.driver().command(c, s.now()));
   EXPECT_EQ(s.fake().account.load, 0.4);
-  EXPECT_EQ(s.state.payload, 0.4);
+  JointCommand jumps = c;
+  jumps.payload = 0.9;
+  jumps.position[1] += 0.2;
+  EXPECT_FALSE(s.driver().command(jumps, s.now()));
+  EXPECT_EQ(s.fake().account.load, 0.4) << "nothing of a set-point that is refused";
+  s.run(0.01);
+  EXPECT_EQ(s.fake().account.load, 0.0) << "the controller says that nothing is held";
 }
 
 TYPED_TEST(AnyDriver, a_silent_maker_stops_the_robot_and_it_goes_on_with_a_new_permission) {

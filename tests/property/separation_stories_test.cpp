@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "common/trajectory/smooth.hpp"
 #include "common/trajectory/stop.hpp"
 #include "tests/support/controller_bench.hpp"
 
@@ -37,9 +38,18 @@ class Watch {
   std::vector<Pose> links_;
 };
 
-int runs_wanted() {
-  const char* text = std::getenv("HANDSEL_SEPARATION_RUNS");
-  return text ? std::atoi(text) : 60;
+int number(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::atoi(text) : otherwise;
+}
+
+/// Over the nodes without a stop.
+TrajectoryCommand round_corners(const test::ControllerBench& b, std::vector<Eigen::VectorXd> nodes, std::uint64_t id) {
+  TrajectoryCommand c = b.command(nodes.back(), id);
+  nodes.insert(nodes.begin(), b.core.set_point().position.head(3));
+  const KinematicLimits& l = b.robot->comfort_limits();
+  c.trajectory = smooth(nodes, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
+  return c;
 }
 
 /// The separation the rule asks for between a person at `v_h` and an arm whose axes and hand move as fast as they ever do [m].
@@ -55,13 +65,13 @@ double separation_needed(const test::ControllerBench& b, double v_h, double age)
 
 // Starting from at least the separation the rule asks for, what the controller knows of them up to 100 ms old.
 TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) {
-  const std::uint64_t seed = 77;
+  const auto seed = static_cast<std::uint64_t>(number("HANDSEL_SEPARATION_SEED", 77));
   std::printf("seed %llu\n", static_cast<unsigned long long>(seed));
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   int met = 0, was_moving = 0;
   double worst = -10.0, nearest_start = 1e9;
-  const int runs = runs_wanted();
+  const int runs = number("HANDSEL_SEPARATION_RUNS", 60);
   for (int trial = 0; trial < runs; ++trial) {
     test::ControllerBench b;
     b.human_age = 0.1 * unit(random) * unit(random);
@@ -81,7 +91,11 @@ TEST(SeparationStories, the_arm_stands_before_a_person_who_darts_in_reaches_it) 
     for (int k = 0; k < 14000; ++k) {
       if (b.core.status_key().motion != MotionState::running && b.core.mode() < Mode::hold) {
         ++id;
-        b.go_to(test::ControllerBench::arm(id % 2 ? -1.2 : 1.2, 0.2, -0.3), id);
+        const Vector goal = test::ControllerBench::arm(id % 2 ? -1.2 : 1.2, 0.2, -0.3);
+        if (trial % 2 == 0)
+          b.go_to(goal, id);
+        else
+          b.send(round_corners(b, {test::ControllerBench::arm(-0.4, 0.5, -0.6), test::ControllerBench::arm(0.3, 0.0, 0.2), goal}, id));
       }
       if (k * 0.001 >= begin)
         for (BodyJoint& j : b.people.people[0].joints) {

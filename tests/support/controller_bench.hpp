@@ -85,8 +85,9 @@ class ControllerBench {
     c.trajectory = solve(from, to, {l.velocity.head(3), l.acceleration.head(3), l.jerk.head(3)}).trajectory;
     return c;
   }
-  std::string send(const TrajectoryCommand& c, double age = 0.0, double switch_at = 0.0) {
-    return core.accept(c, from_seconds(age), now, switch_at);
+  std::string send(TrajectoryCommand c, double age = 0.0, double switch_at = 0.0) {
+    c.switch_at = switch_at;
+    return core.accept(c, from_seconds(age), now);
   }
   std::string go_to(const Vector& arm_goal, std::uint64_t id) { return send(command(arm_goal, id)); }
   static Vector arm(double a, double b, double c) {

@@ -458,19 +458,6 @@ TEST(Controller, after_a_contact_the_arm_gives_way_to_who_is_pressed) {
   expect_smooth(b);
 }
 
-TEST(Controller, the_least_of_all_factors_holds_and_every_cause_is_named) {
-  ControllerBench b;
-  b.start();
-  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 4), "");
-  b.go.override_factor = 0.8;
-  b.advice.speed_factor = 0.6;
-  b.people.covered = false;
-  b.run(1.0);
-  EXPECT_NEAR(b.core.speed_factor(), b.settings.guard.uncovered_factor, 1e-6);
-  const std::uint32_t all = bit(Cause::override_slow) | bit(Cause::attention_slow) | bit(Cause::human_unknown);
-  EXPECT_EQ(b.core.status().causes, all);
-}
-
 TEST(Controller, a_wall_ahead_is_named_and_kept) {
   ControllerSettings s;
   s.walls = {Wall{-Vector3::UnitY(), -0.5}};
@@ -569,6 +556,38 @@ TEST(Controller, hand_and_head_stop_with_the_arm_and_keep_the_same_limits) {
     ASSERT_FALSE(has(b, Cause::limit_violation)) << k;
   }
   expect_smooth(b);
+}
+
+TEST(Controller, the_payload_is_told_from_grasp_to_release) {
+  ControllerBench b;
+  b.start();
+  EXPECT_EQ(b.core.payload(), 0.0);
+  HandCommand c;
+  c.robot = "small";
+  c.id = 1;
+  c.epoch = 1;
+  c.action = HandAction::grasp;
+  c.position = Vector::Constant(2, 0.6);
+  c.payload = 0.35;
+  const auto run = [&] {
+    ASSERT_EQ(b.core.accept(c, Duration(0), b.now), "");
+    for (int k = 0; k < 5000 && (k == 0 || b.core.status().hand == HandState::moving); ++k) b.tick();
+    ++c.id;
+  };
+  b.external_torque = Vector::Zero(b.robot->dof());
+  b.external_torque.segment(3, 2).setConstant(-0.5);  // something is between the fingers
+  run();
+  ASSERT_EQ(b.core.status().hand, HandState::grasped);
+  EXPECT_EQ(b.core.payload(), 0.35);
+  c.payload = 0.0;  // tighter, by who does not know what it is
+  run();
+  EXPECT_EQ(b.core.payload(), 0.35);
+  b.external_torque.setZero();
+  c.action = HandAction::release;
+  c.position = Vector::Zero(2);
+  run();
+  EXPECT_EQ(b.core.status().hand, HandState::released);
+  EXPECT_EQ(b.core.payload(), 0.0);
 }
 
 TEST(Controller, hand_commands_are_judged_like_trajectories) {

@@ -1,0 +1,82 @@
+// How fast the arm goes on, by whom, and what is told of it.
+#include "components/trajectory_controller/controller.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/controller_expectations.hpp"
+
+namespace handsel::trajectory_controller {
+namespace {
+
+using test::ControllerBench;
+using test::expect_smooth;
+using test::has;
+using testing::HasSubstr;
+
+TEST(Controller, a_costly_way_ahead_is_taken_slower_but_not_at_an_exchange) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 4), "");
+  b.forecast.trajectory = 4;
+  b.forecast.cost = 0.75;
+  b.run(0.8);
+  EXPECT_EQ(b.core.mode(), Mode::slow);
+  EXPECT_TRUE(has(b, Cause::cost_ahead));
+  EXPECT_THAT(b.core.status().reason, HasSubstr("cost_ahead"));
+  EXPECT_NEAR(b.core.speed_factor(), 0.7, 1e-6) << "half the way from cost_from to 1";
+  double last = 1.0;
+  for (double cost : {0.52, 0.6, 0.7, 0.8, 0.9, 1.0}) {
+    b.forecast.cost = cost;
+    b.run(0.3);
+    EXPECT_LE(b.core.speed_factor(), last + 1e-6) << cost;
+    last = b.core.speed_factor();
+  }
+  EXPECT_NEAR(last, b.settings.cost_factor, 1e-6);
+  b.forecast.trajectory = 3;
+  b.run(0.8);
+  EXPECT_NEAR(b.core.speed_factor(), 1.0, 1e-6) << "it speaks of another trajectory";
+  EXPECT_FALSE(has(b, Cause::cost_ahead));
+  b.forecast.trajectory = 4;
+  ActionStatus exchange;
+  exchange.exchange_engaged = true;
+  exchange.human = "anna";
+  b.core.on(exchange, b.now);
+  b.run(0.3);
+  EXPECT_NEAR(b.core.speed_factor(), 1.0, 1e-6);
+  expect_smooth(b);
+}
+
+TEST(Controller, the_least_of_all_factors_holds_and_every_cause_is_named) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 4), "");
+  b.forecast.trajectory = 4;
+  b.forecast.cost = 1.0;
+  b.go.override_factor = 0.8;
+  b.advice.speed_factor = 0.6;
+  b.people.covered = false;
+  b.run(1.0);
+  EXPECT_NEAR(b.core.speed_factor(), b.settings.guard.uncovered_factor, 1e-6);
+  const std::uint32_t all = bit(Cause::cost_ahead) | bit(Cause::override_slow) | bit(Cause::attention_slow) | bit(Cause::human_unknown);
+  EXPECT_EQ(b.core.status().causes, all);
+}
+
+TEST(Controller, a_trajectory_that_comes_while_somebody_runs_in_begins_with_no_more_than_the_guard_allows) {
+  ControllerBench b;
+  b.people.people = {b.standing(1.15, 0.0)};
+  for (BodyJoint& j : b.people.people[0].joints) j.velocity = Vector3(-2.0, 0.0, 0.0);
+  b.human_age = 0.05;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0, 0), 1), "");
+  EXPECT_EQ(b.core.speed_factor(), 0.0) << "before its first step";
+  b.run(0.5);
+  EXPECT_TRUE(b.at_rest());
+  EXPECT_EQ(b.core.status().motion, MotionState::running) << "it waits";
+  b.people.people.clear();
+  b.run(6);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+}
+
+}  // namespace
+}  // namespace handsel::trajectory_controller
