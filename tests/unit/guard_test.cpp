@@ -149,16 +149,28 @@ TEST_F(GuardTest, older_data_allow_less) {
   EXPECT_LT(judge(p, 0.15).forward, judge(p, 0.0).forward);
 }
 
-TEST_F(GuardTest, moving_away_is_never_held_back_and_running_back_is) {
+TEST_F(GuardTest, moving_clearly_away_is_not_held_back_and_running_back_is) {
   swing(0.5);
-  q_[0] = 0.5;
+  q_[0] = 0.9;
   dq_[0] = 0.5;
-  Person p = standing(1.25);
-  walk(p, Vector3(-1.0, 0, 0));
+  Person p = standing(1.0);
+  walk(p, Vector3(-1.5, 0, 0));
   const GuardVerdict v = judge(p);
   EXPECT_EQ(v.forward, 1.0);
   EXPECT_GT(v.backward, -0.2);
   EXPECT_FALSE(v.too_near);
+}
+
+TEST_F(GuardTest, what_leads_past_a_person_is_held_back_both_ways_the_faster_they_come) {
+  swing(0.5);
+  q_[0] = 0.2;
+  Person p = standing(1.15);
+  const double still = judge(p).forward;
+  walk(p, Vector3(-1.5, 0, 0));
+  const GuardVerdict fast = judge(p);
+  EXPECT_LT(fast.forward, still);
+  EXPECT_LT(fast.forward, 0.5);
+  EXPECT_GT(fast.backward, -0.5);
 }
 
 TEST_F(GuardTest, a_person_not_seen_just_now_counts_as_walking_in) {
