@@ -11,12 +11,14 @@
 #include "common/collision/collision_shape.hpp"
 #include "common/collision/wide_capsules.hpp"
 #include "common/collision/wide_world.hpp"
+#include "common/model/object_extent.hpp"
 #include "common/model/robot_capsules.hpp"
 
 namespace handsel {
 namespace {
 
-constexpr int kSweepFrom = 64;  // lines of more states are looked at in stretches first
+constexpr int kSweepFrom = 64;        // lines of more states are looked at in stretches first
+constexpr double kSurePlace = 0.002;  // an object no more uncertain than this keeps its mesh [m]
 
 struct RobotBody {
   int link{};
@@ -158,7 +160,31 @@ struct CollisionWorld::Impl {
     if (!axes.empty()) pairs.push_back({static_cast<int>(i), static_cast<int>(j), {axes.begin(), axes.end()}});
   }
 
-  CollisionShapePtr object_shape(const std::string& model_name) {
+  /// A described object, or the primitive of an unknown one, larger by `margin` [m].
+  CollisionShapePtr object_shape(const SceneObject& object, double margin) {
+    if (CollisionShapePtr shape = model_shape(object.model)) return shape;
+    const std::optional<Shape> shape = primitive_shape(object.primitive, margin);
+    return shape ? CollisionShape::make(*shape) : nullptr;
+  }
+
+  /// Instead of a mesh with a margin the box around it; T becomes its pose.
+  CollisionShapePtr object_shape(const SceneObject& object, double margin, Pose& T) {
+    CollisionShapePtr shape = object_shape(object, margin);
+    if (!shape || !shape->is_mesh() || margin <= kSurePlace) return shape;
+    Eigen::AlignedBox3d box;
+    for (const Vector3& vertex : std::get<MeshPtr>(shape->shape())->vertices) box.extend(vertex);
+    T = T * Eigen::Translation3d(box.center());
+    return CollisionShape::make(Box{box.sizes() + Vector3::Constant(2 * margin)});
+  }
+
+  std::vector<Vector3> corners(const SceneObject& object) const {
+    const Eigen::AlignedBox3d box = object_extent(nullptr, object.primitive);
+    std::vector<Vector3> out;
+    for (int i = 0; i < 8; ++i) out.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+    return out;
+  }
+
+  CollisionShapePtr model_shape(const std::string& model_name) {
     auto found = meshes.find(model_name);
     if (found != meshes.end()) return found->second;
     const ObjectModel* model = library ? library(model_name) : nullptr;
@@ -194,10 +220,10 @@ struct CollisionWorld::Impl {
       SceneBody body;
       body.id = object.id;
       body.is_object = true;
-      body.shape = object_shape(object.model);
-      if (!body.shape) continue;
       body.T_world_shape = object.T_world_object;
       body.allowed = allowed.count(object.id) > 0;
+      body.shape = body.allowed ? object_shape(object, 0) : object_shape(object, object.uncertainty, body.T_world_shape);
+      if (!body.shape) continue;
       bodies_now.push_back(std::move(body));
     }
     scene = std::move(bodies_now);
@@ -208,11 +234,12 @@ struct CollisionWorld::Impl {
     capsules.resize(link_capsules);
     held_pairs.clear();
     if (!attachment.object.empty() && robot.tool_link() >= 0) {
-      std::string model = attachment.object;
+      SceneObject held;
+      held.model = attachment.object;
       for (const SceneObject& object : last_scene.objects)
-        if (object.id == attachment.object) model = object.model;
-      if (CollisionShapePtr shape = object_shape(model)) {
-        LinkCapsule capsule = enclosing_capsule(std::get<MeshPtr>(shape->shape())->vertices);
+        if (object.id == attachment.object) held = object;
+      if (CollisionShapePtr shape = object_shape(held, 0)) {
+        LinkCapsule capsule = enclosing_capsule(shape->is_mesh() ? std::get<MeshPtr>(shape->shape())->vertices : corners(held));
         capsule.link = robot.tool_link();
         capsule.a = attachment.T_tool_object * capsule.a;
         capsule.b = attachment.T_tool_object * capsule.b;
@@ -578,6 +605,17 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
         if (on_robot) *on_robot = a + w.capsules[c].radius * along;
         if (on_person) *on_person = b - body.radius * along;
       }
+  }
+  return least;
+}
+
+double CollisionWorld::distance_to_ball(const Vector& q, const Vector3& centre, double radius) {
+  Impl& w = *impl_;
+  w.robot.forward(q, w.T_root_link);
+  double least = std::numeric_limits<double>::infinity();
+  for (const LinkCapsule& capsule : w.capsules) {
+    const Pose T = w.T_world_base * w.T_root_link[capsule.link];
+    least = std::min(least, segment_distance(T * capsule.a, T * capsule.b, centre, centre) - capsule.radius - radius);
   }
   return least;
 }

@@ -4,6 +4,7 @@
 #include <google/protobuf/descriptor.pb.h>
 
 #include "common/model/human_body.hpp"
+#include "common/model/object_extent.hpp"
 #include "components/bridge/drawing.pb.h"
 
 namespace handsel::bridge {
@@ -13,8 +14,9 @@ struct Shade {
   double r, g, b, a;
 };
 constexpr Shade kRobot{0.92, 0.55, 0.16, 1}, kPerson{0.35, 0.55, 0.85, 0.9}, kLost{0.35, 0.55, 0.85, 0.35}, kObject{0.85, 0.3, 0.3, 1},
-    kFurniture{0.6, 0.58, 0.54, 1};
-constexpr int kFades = 1;  // [s]
+    kUnknown{0.8, 0.5, 0.75, 1}, kMislaid{0.85, 0.3, 0.3, 0.35}, kFurniture{0.6, 0.58, 0.54, 1};
+constexpr int kFades = 1;            // [s]
+constexpr double kSurePlace = 0.02;  // an object more uncertain than this is drawn pale [m]
 
 void set(const Vector3& from, foxglove::Vector3& to) {
   to.set_x(from.x());
@@ -189,9 +191,13 @@ std::string Drawing::scene(Stamp now) const {
   }
   for (const SceneObject& object : scene_.objects) {
     const ObjectModel* model = objects_(object.model);
-    if (!model) continue;
+    const std::optional<Shape> unknown = primitive_shape(object.primitive);
+    if (!model && !unknown) continue;
     foxglove::SceneEntity& entity = add_entity(out, now, "object/" + object.id, "world");
-    for (const PlacedShape& part : model->parts) add_shape(entity, object.T_world_object * part.T_parent_shape, part.shape, kObject);
+    const Shade& shade = object.uncertainty > kSurePlace ? kMislaid : model ? kObject : kUnknown;
+    if (!model) add_shape(entity, object.T_world_object, *unknown, shade);
+    if (model)
+      for (const PlacedShape& part : model->parts) add_shape(entity, object.T_world_object * part.T_parent_shape, part.shape, shade);
   }
   for (const SceneBox& box : scene_.boxes)
     put(*add_entity(out, now, "furniture/" + box.id, "world").add_cubes(), box.T_world_box, box.size, kFurniture);

@@ -47,6 +47,18 @@ void Forecaster::set_scene(const Scene& scene) {
 void Forecaster::set_people(const HumanState& people) {
   world_.set_people(people, PeopleParts::without_forearms_and_hands);
   cost_.set_people(people);
+  hands_.clear();
+  for (const Person& person : people.people)
+    for (const HandPrediction& hand : person.hands) {
+      const BodyPart part = hand.joint == "l_hand" ? BodyPart::hand_left : BodyPart::hand_right;
+      const auto joint = std::find_if(person.joints.begin(), person.joints.end(), [&](const BodyJoint& j) { return j.name == hand.joint; });
+      if (joint == person.joints.end()) continue;
+      Hand& known = hands_.emplace_back();
+      for (const BodyCapsule& capsule : body_capsules(person))
+        if (capsule.part == part) known.radius = capsule.radius;
+      known.way.push_back({0, joint->position, 0});
+      known.way.insert(known.way.end(), hand.ahead.begin(), hand.ahead.end());
+    }
   rest_known_ = false;
 }
 
@@ -86,8 +98,16 @@ CollisionVerdict Forecaster::scene_verdict(std::size_t index, const Vector& q) {
   return contacts_[index];
 }
 
-void Forecaster::look(const Vector& q, TrajectoryForecast& forecast) {
+void Forecaster::look(const Vector& q, double ahead, TrajectoryForecast& forecast) {
   forecast.clearance = std::min(forecast.clearance, world_.distance_to_people(q));
+  for (const Hand& hand : hands_) {
+    const auto next = std::find_if(hand.way.begin(), hand.way.end(), [&](const HandAhead& h) { return h.time > ahead; });
+    if (next == hand.way.begin() || next == hand.way.end()) continue;
+    const HandAhead& before = *std::prev(next);
+    const double share = (ahead - before.time) / (next->time - before.time);
+    const Vector3 expected = (1 - share) * before.position + share * next->position;
+    forecast.clearance = std::min(forecast.clearance, world_.distance_to_ball(q, expected, hand.radius));
+  }
   if (cost_.anyone()) forecast.cost = std::max(forecast.cost, cost_(q));
 }
 
@@ -111,7 +131,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     if (!stood) {
       if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts) remember_for(active);
       rest_ = forecast;
-      look(active.position, rest_);
+      look(active.position, 0, rest_);
       rest_position_ = active.position;
       rest_known_ = true;
     }
@@ -127,7 +147,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   // States lie on a fixed grid of the trajectory's own time; the first is the one about to be reached, then on in the sense of motion.
   const long first = backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
   const long end = backward ? index_at(active.time - reach) : std::min(last_index, index_at(active.time + reach) + 1);
-  look(active.position, forecast);
+  look(active.position, 0, forecast);
   Vector q = active.position;
   for (long k = first;; k += backward ? -1 : 1) {
     const double t = std::min(duration, static_cast<double>(k) * spacing);
@@ -135,7 +155,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     for (std::size_t i = 0; i < active.axes.size(); ++i) q[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
     CollisionVerdict verdict = scene_verdict(static_cast<std::size_t>(k), q);
     if (verdict.free) verdict = world_.check_people(q);
-    look(q, forecast);
+    look(q, std::max(0.0, std::abs(t - active.time) / speed), forecast);
     if (!verdict.free) {
       forecast.collides = true;
       forecast.time_to_collision = std::max(0.0, std::abs(t - active.time) / speed);

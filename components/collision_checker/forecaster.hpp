@@ -18,7 +18,8 @@ struct ForecastSettings {
 };
 
 /// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower the clearance, the controller's guard
-/// answers for them. What scene and robot themselves say about a state of a trajectory is remembered until one of them changes.
+/// answers for them. A hand counts where it is and where SPARK expects it when the robot gets there. What scene and robot themselves say
+/// about a state of a trajectory is remembered until one of them changes.
 class Forecaster {
  public:
   Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings);
@@ -36,7 +37,7 @@ class Forecaster {
   enum class Memory : char { unknown, free, collides };
   bool fits(const ActiveTrajectory& active) const;
   void remember_for(const ActiveTrajectory& active);
-  void look(const Vector& q, TrajectoryForecast& forecast);
+  void look(const Vector& q, double ahead, TrajectoryForecast& forecast);
   CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
 
   const RobotModel& robot_;
@@ -54,6 +55,11 @@ class Forecaster {
   std::vector<Memory> memory_;  // by state of the trajectory
   std::vector<CollisionVerdict> contacts_;
   MotionState3 sample_;
+  struct Hand {
+    double radius{};
+    std::vector<HandAhead> way;  // from now on
+  };
+  std::vector<Hand> hands_;
 
   Vector rest_position_;  // where `rest_` was computed
   TrajectoryForecast rest_;

@@ -149,7 +149,9 @@ void Node::choose(const GraspRequest& request, bool reply) {
   } else if (!scene_.robot_known) {
     result->reply.reason = "the place of the robot is not known yet";
   } else if (model == nullptr) {
-    result->reply.reason = "object " + request.object + " is of model " + object->model + ", of which there is no description";
+    result->reply.reason = object->model.empty()
+                               ? "object " + request.object + " is known by its outline only: grasps need a description of it"
+                               : "object " + request.object + " is of model " + object->model + ", of which there is no description";
   } else if (request.start.size() != chooser_->robot().dof()) {
     result->reply.reason =
         "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(chooser_->robot().dof());

@@ -7,6 +7,7 @@
 
 #include "common/cost/human_cost.hpp"
 #include "common/cost/person_frame.hpp"
+#include "common/model/object_extent.hpp"
 #include "components/spark/directed.hpp"
 
 namespace handsel::spark {
@@ -120,12 +121,12 @@ void FactFinder::hand_facts(const Scene& scene, const Person& person, std::vecto
 FactFinder::Extent FactFinder::extent(const SceneObject& object) const {
   const ObjectModel* model = library_ ? library_(object.model) : nullptr;
   Extent e;
-  if (model == nullptr || model->mesh.vertices.empty()) {
-    e.box.extend(object.T_world_object.translation());
-    e.box.min().array() -= kUnknownExtent / 2;
-    e.box.max().array() += kUnknownExtent / 2;
-  } else {
+  if (model != nullptr && !model->mesh.vertices.empty()) {
     for (const Vector3& v : model->mesh.vertices) e.box.extend(object.T_world_object * v);
+  } else {
+    e.box = object_extent(nullptr, object.primitive);
+    if (e.box.isEmpty()) e.box = Eigen::AlignedBox3d(Vector3::Constant(-kUnknownExtent / 2), Vector3::Constant(kUnknownExtent / 2));
+    e.box.transform(object.T_world_object);
   }
   e.radius = e.box.diagonal().norm() / 2;
   return e;

@@ -82,7 +82,8 @@ void Node::publish_world(TimePoint now) {
   const HumanState people = tracker_.state(now, scene_.reach());
   const Scene scene = scene_.scene(now, people);
   facts_out_->publish(facts_.find(scene, people, now));
-  bus_.set_degraded(tracker_.trouble(now));
+  const std::string people_trouble = tracker_.trouble(now), things_trouble = scene_.trouble(now);
+  bus_.set_degraded(people_trouble + (people_trouble.empty() || things_trouble.empty() ? "" : "; ") + things_trouble);
   const double wanted = wanted_period_ > 0 ? std::clamp(wanted_period_, 0.02, settings_.publish_period()) : settings_.publish_period();
   if (to_seconds(now - scene_published_) < 0.99 * wanted) return;
   scene_out_->publish(scene);

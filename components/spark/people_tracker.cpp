@@ -6,6 +6,8 @@
 #include <limits>
 #include <tuple>
 
+#include "common/cost/human_cost.hpp"
+
 namespace handsel::spark {
 namespace {
 
@@ -20,9 +22,13 @@ constexpr double kGuessed = 3;   // a joint that was not seen is this much noisi
 constexpr double kGrid = 0.3;    // places of a lost person are tried this far apart [m]
 constexpr double kFarthest = 5;  // and no farther than this [m]
 constexpr std::size_t kMostPeople = 16;
+constexpr int kAheads = 5;      // looks ahead at a hand
+constexpr double kAhead = 0.1;  // this far apart [s]
 
 int index(const char* name) { return body_joint_index(name); }
 const int kHead = index("head"), kTorso = index("torso");
+const std::array kHands = {index("l_hand"), index("r_hand")}, kWrists = {index("l_wrist"), index("r_wrist")},
+                 kShoulders = {index("l_shoulder"), index("r_shoulder")};
 
 bool of_trunk(int joint) {
   static const std::array trunk = {index("neck"),       index("torso"), index("waist"), index("l_shoulder"),
@@ -142,9 +148,44 @@ void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint s
     track.doubted_until = seen + from_seconds(settings_.doubt_time());
   }
   person.joints = std::move(fitted);
+  follow_hands(track, told, at);
   track.seen = at;
   track.empty_since.reset();
   track.outside_since.reset();
+}
+
+/// A wrist tells where the hand is as well.
+void PeopleTracker::follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const {
+  for (std::size_t side = 0; side < kHands.size(); ++side) {
+    if (!told[static_cast<std::size_t>(kHands[side])] && !told[static_cast<std::size_t>(kWrists[side])]) continue;
+    const Vector3 &hand = position(track.person, kHands[side]), &trunk = position(track.person, kTorso);
+    std::optional<TimePoint>& last = track.hand_seen[side];
+    const double dt = last ? to_seconds(at - *last) : kGapOfVelocity;
+    if (dt >= kGapOfVelocity)
+      track.hands[side].reset(hand, trunk, settings_.joint_noise());
+    else if (dt > 1e-4)
+      track.hands[side].update(hand, trunk, dt, settings_.joint_noise());
+    else
+      continue;
+    last = at;
+  }
+}
+
+/// No farther from the shoulder than the arm is long.
+std::vector<HandPrediction> PeopleTracker::hands_ahead(const Track& track, const Person& person, TimePoint now) const {
+  std::vector<HandPrediction> out;
+  for (std::size_t side = 0; side < kHands.size(); ++side) {
+    if (!track.hand_seen[side]) continue;
+    const double since = std::max(0.0, to_seconds(now - *track.hand_seen[side]));
+    HandPrediction hand{kBodyJoints[static_cast<std::size_t>(kHands[side])], {}};
+    for (int k = 1; k <= kAheads; ++k) {
+      const HandPredictor::Ball ball = track.hands[side].at(since + k * kAhead);
+      const double arm = (ball.centre - position(person, kShoulders[side])).norm() + arm_length(person) + kFastest * (since + k * kAhead);
+      hand.ahead.push_back({k * kAhead, ball.centre, std::min(ball.radius, arm) + person.inflation});
+    }
+    out.push_back(std::move(hand));
+  }
+  return out;
 }
 
 void PeopleTracker::add(const ObservedPerson& body, const std::string& source, TimePoint seen) {
@@ -269,6 +310,7 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
       }
     }
     if (now < track.doubted_until) person.inflation = std::max(person.inflation, track.doubt);
+    if (person.age <= settings_.lost_after()) person.hands = hands_ahead(track, person, now);
     out.people.push_back(std::move(person));
   }
   std::vector<Coverage> looked_at;

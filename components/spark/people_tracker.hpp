@@ -11,6 +11,7 @@
 #include "common/config/spark.pb.h"
 #include "common/messages/world.hpp"
 #include "common/model/human_body.hpp"
+#include "components/spark/hand_predictor.hpp"
 #include "components/spark/joint_motion.hpp"
 #include "components/spark/sources.hpp"
 
@@ -49,7 +50,9 @@ class PeopleTracker {
     std::array<std::optional<TimePoint>, kJoints> joint_seen;
     std::array<JointMotion, kJoints> motion;
     std::array<TimePoint, kJoints> moved{};  // when the motion was last told
-    double doubt{};                          // [m], until doubted_until
+    std::array<HandPredictor, 2> hands;      // left, right
+    std::array<std::optional<TimePoint>, 2> hand_seen;
+    double doubt{};  // [m], until doubted_until
     TimePoint doubted_until{};
     std::optional<TimePoint> empty_since;
     std::optional<TimePoint> outside_since;
@@ -62,6 +65,8 @@ class PeopleTracker {
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
   const Source* left_through(const Track& track, TimePoint now) const;
   void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const;
+  void follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const;
+  std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) const;
   void add(const ObservedPerson& body, const std::string& source, TimePoint seen);
   void forget(TimePoint now, const Obstacles& obstacles);
 

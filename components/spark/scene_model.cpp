@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "common/model/human_body.hpp"
+#include "common/model/object_extent.hpp"
+#include "components/spark/directed.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -13,9 +15,16 @@ constexpr double kSameMove = 0.004;       // [m] what is seen this near the esti
 constexpr double kSameTurn = 0.06;        // [rad]
 constexpr int kAverageOver = 15;          // [samples]
 constexpr double kVelocityMemory = 0.06;  // [s]
+constexpr double kMissed = 0.1;           // [s] what is held and unseen for longer moves with the hand
 constexpr double kVelocityGap = 0.3;      // [s] longer unseen: nothing is known of its velocity
 constexpr double kClearOfSupport = 0.01;  // [m] what a loaded hand has lifted so far stands there no longer
 constexpr double kRevisionMove = 0.005;   // [m] an object that moved this far makes a new revision
+constexpr double kRevisionDoubt = 0.02;   // [m] so does one whose place is more or less sure by this
+constexpr double kFastest = 2.5;          // [m/s] of what somebody carries
+constexpr double kLeap = 0.1;             // [m] beyond that a thing has jumped
+constexpr double kTrust = 0.2;            // [s] a source that says nothing for longer is not believed any more
+constexpr double kAgree = 0.01;           // [m] two sources may differ by this
+constexpr double kTold = 5;               // [s] a refusal is told for so long
 
 double arm_length(const RobotModel& robot) {
   double length = 0;
@@ -31,7 +40,9 @@ bool differs(const Scene& a, const Scene& b) {
   if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() || a.robot_known != b.robot_known) return true;
   for (std::size_t i = 0; i < a.objects.size(); ++i) {
     const auto &x = a.objects[i], &y = b.objects[i];
-    if (x.id != y.id || x.holder != y.holder || x.holder_id != y.holder_id) return true;
+    if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id) return true;
+    if (x.primitive.kind != y.primitive.kind || x.primitive.size != y.primitive.size) return true;
+    if (std::abs(x.uncertainty - y.uncertainty) > kRevisionDoubt) return true;
     if ((x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove) return true;
   }
   return false;
@@ -65,20 +76,86 @@ void SceneModel::locate_tool() {
   T_world_tool_ = T_world_base_ * links_[static_cast<std::size_t>(robot_->tool_link())];
 }
 
+/// A described model counts more than a primitive.
+bool SceneModel::known_shape(ObservedObject& observed) const {
+  const bool described = !observed.model.empty() && (!library_ || library_(observed.model) != nullptr);
+  if (described) {
+    observed.primitive = {};
+    return true;
+  }
+  if (!primitive_shape(observed.primitive)) return false;
+  observed.model.clear();
+  return true;
+}
+
+void SceneModel::unswap(std::vector<ObservedObject>& seen, TimePoint at) const {
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    for (std::size_t k = i + 1; k < seen.size(); ++k) {
+      const auto a = objects_.find(seen[i].id), b = objects_.find(seen[k].id);
+      if (a == objects_.end() || b == objects_.end() || seen[i].model != seen[k].model) continue;
+      if (seen[i].primitive.kind != seen[k].primitive.kind || !seen[i].primitive.size.isApprox(seen[k].primitive.size, 0.1)) continue;
+      const auto apart = [&](const ObservedObject& look, const Known& known) {
+        return (look.T_world_object.translation() - known.last_seen_at).norm();
+      };
+      const double possible = kLeap + kFastest * to_seconds(at - std::min(a->second.seen, b->second.seen));
+      const bool leapt = apart(seen[i], a->second) > possible && apart(seen[k], b->second) > possible;
+      if (leapt && apart(seen[i], b->second) < possible && apart(seen[k], a->second) < possible) std::swap(seen[i].id, seen[k].id);
+    }
+  }
+}
+
+/// One source at a time, so that what stands still does not move to and fro between two that differ.
+bool SceneModel::believes(Known& known, const ObservedObject& observed, const std::string& source, TimePoint seen) const {
+  if (known.looks == 0 || known.source == source || to_seconds(seen - known.seen) > kTrust) {
+    known.source = source;
+    return true;
+  }
+  const double between = std::abs(to_seconds(seen - known.seen)) * known.object.velocity.norm();
+  const double apart = (observed.T_world_object.translation() - known.last_seen_at).norm() - between;
+  const bool wider = apart > known.spread || seen > known.spread_until;
+  if (apart > kAgree && wider) known.spread = apart;
+  if (apart > kAgree) known.spread_until = seen + from_seconds(settings_.doubt_time());
+  return false;
+}
+
 void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
   locate_tool();
-  for (const auto& observed : observation.objects) {
+  std::vector<ObservedObject> looks = observation.objects;
+  std::erase_if(looks, [&](ObservedObject& observed) {
+    if (known_shape(observed)) return false;
+    ++refused_;
+    refused_at_ = seen;
+    refusal_ = "object " + observed.id + " of source " + observation.source +
+               (observed.model.empty() ? " has neither a model nor a primitive"
+                                       : " is of model " + observed.model + ", which is not described, and has no primitive") +
+               " with a size above 0";
+    return true;
+  });
+  unswap(looks, seen);
+  for (const ObservedObject& observed : looks) {
     Known& known = objects_[observed.id];
-    if (seen < known.seen) continue;
+    if (seen < known.seen || !believes(known, observed, observation.source, seen)) continue;
+    const double leap = (observed.T_world_object.translation() - known.last_seen_at).norm();
+    if (known.looks > 0 && leap > kLeap + kFastest * to_seconds(seen - known.seen)) {
+      known.jump = leap;
+      known.jump_until = seen + from_seconds(settings_.doubt_time());
+    }
     follow(known, observed, seen);
     known.object.id = observed.id;
     known.object.model = observed.model;
+    known.object.primitive = observed.primitive;
     known.object.T_world_object =
         known.looks > 0 ? averaged(known.object.T_world_object, observed.T_world_object, known.looks) : observed.T_world_object;
     known.looks = std::max(known.looks, 1);
     known.seen = seen;
+    known.wandered = 0;
     if (robot_known_) known.T_tool_object = T_world_tool_.inverse() * observed.T_world_object;
   }
+}
+
+std::string SceneModel::trouble(TimePoint now) const {
+  if (refused_ == 0 || to_seconds(now - refused_at_) > kTold) return "";
+  return refusal_ + ": refused, " + std::to_string(refused_) + " so far";
 }
 
 // Velocity by a first-order filter over what was seen; steps of the averaged place would look like jerks.
@@ -103,14 +180,20 @@ void SceneModel::update(const RobotState& state) {
 
 const SceneBox* SceneModel::support_under(const SceneObject& object, double gap) const {
   const ObjectModel* model = library_ ? library_(object.model) : nullptr;
-  if (model == nullptr) return nullptr;
+  const Eigen::AlignedBox3d box = object_extent(nullptr, object.primitive);
+  if (model == nullptr && box.isEmpty()) return nullptr;
   double bottom = std::numeric_limits<double>::max();
-  for (const auto& v : model->mesh.vertices) bottom = std::min(bottom, (object.T_world_object * v).z());
-  for (const auto& box : boxes_) {
-    if (!box.supports) continue;
-    const Vector3 p = box.T_world_box.inverse() * object.T_world_object.translation();
-    const double top = box.T_world_box.translation().z() + box.size.z() / 2;
-    if (std::abs(bottom - top) <= gap && std::abs(p.x()) <= box.size.x() / 2 && std::abs(p.y()) <= box.size.y() / 2) return &box;
+  const auto reach = [&](const Vector3& v) { bottom = std::min(bottom, (object.T_world_object * v).z()); };
+  if (model != nullptr)
+    for (const auto& v : model->mesh.vertices) reach(v);
+  else
+    for (int i = 0; i < 8; ++i) reach(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  for (const auto& support : boxes_) {
+    if (!support.supports) continue;
+    const Vector3 p = support.T_world_box.inverse() * object.T_world_object.translation();
+    const double top = support.T_world_box.translation().z() + support.size.z() / 2;
+    if (std::abs(bottom - top) <= gap && std::abs(p.x()) <= support.size.x() / 2 && std::abs(p.y()) <= support.size.y() / 2)
+      return &support;
   }
   return nullptr;
 }
@@ -187,20 +270,71 @@ void SceneModel::assign_holder(Known& known, const HumanState& people) const {
   }
 }
 
+/// How far it may have gone since it was seen: with the hand that has it no farther than the person may have gone.
+void SceneModel::mislay(Known& known, const HumanState& people, TimePoint now) const {
+  const double unseen = to_seconds(now - known.seen) - settings_.unseen_after();
+  const double since = std::clamp(to_seconds(now - known.judged), 0.0, std::max(0.0, unseen));
+  known.judged = now;
+  SceneObject& object = known.object;
+  if (object.holder == Holder::robot) known.wandered = 0;
+  double speed = object.holder == Holder::robot ? 0 : settings_.unseen_drift(), with = 0;
+  for (const Person& person : people.people) {
+    if (object.holder == Holder::human && object.holder_id == person.id) with = person.inflation;
+    for (const char* hand : {"l_hand", "r_hand"})
+      if ((joint_of(person, hand).position - object.T_world_object.translation()).norm() <
+              2 * settings_.near_distance() + person.inflation &&
+          object.holder != Holder::robot)
+        speed = settings_.touched_drift();
+  }
+  known.wandered = std::min(known.wandered + since * speed, settings_.unseen_most());
+  object.uncertainty = known.wandered + with;
+  if (now < known.spread_until) object.uncertainty += known.spread;
+  if (now < known.jump_until) object.uncertainty = std::max(object.uncertainty, known.jump);
+}
+
+bool SceneModel::carry(Known& known, const HumanState& people) const {
+  SceneObject& object = known.object;
+  if (object.holder != Holder::human) return false;
+  const auto who = std::find_if(people.people.begin(), people.people.end(), [&](const Person& p) { return p.id == object.holder_id; });
+  if (who == people.people.end()) return false;
+  if (known.object.age <= kMissed) {
+    if (known.gripped == known.seen) return false;
+    known.gripped = known.seen;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const char* hand : {"l_hand", "r_hand"}) {
+      const Vector3 p = object.T_world_object.translation() - joint_of(*who, hand).position;
+      if (p.norm() >= nearest) continue;
+      nearest = p.norm();
+      known.hand = body_joint_index(hand);
+      known.p_hand_object = p;
+    }
+    return false;
+  }
+  object.T_world_object.translation() = who->joints[static_cast<std::size_t>(known.hand)].position + known.p_hand_object;
+  object.velocity = who->joints[static_cast<std::size_t>(known.hand)].velocity;
+  return true;
+}
+
 Scene SceneModel::scene(TimePoint now, const HumanState& people) {
   locate_tool();
+  std::erase_if(objects_, [&](const auto& entry) {
+    const Known& known = entry.second;
+    return known.looks > 0 && known.object.holder == Holder::human && to_seconds(now - known.seen) > settings_.unseen_after() &&
+           std::none_of(people.people.begin(), people.people.end(), [&](const Person& p) { return p.id == known.object.holder_id; });
+  });
   Scene out;
   out.robot_known = robot_known_;
   out.T_world_base = T_world_base_;
   out.robot_position = position_;
   out.boxes = boxes_;
   for (auto& [id, known] : objects_) {
-    attribute_grips(known, people);
-    assign_holder(known, people);
     known.object.age = std::max(0.0, to_seconds(now - known.seen));
+    attribute_grips(known, people);
     if (known.object.age > kVelocityGap) known.object.velocity.setZero();
+    if (!carry(known, people)) assign_holder(known, people);
+    mislay(known, people, now);
     SceneObject object = known.object;
-    if (object.holder == Holder::robot && object.age > 0.1) object.T_world_object = T_world_tool_ * known.T_tool_object;
+    if (object.holder == Holder::robot && object.age > kMissed) object.T_world_object = T_world_tool_ * known.T_tool_object;
     out.objects.push_back(std::move(object));
   }
   if (revision_ == 0 || differs(out, last_)) {

@@ -1,6 +1,7 @@
 // What stands where and who holds it: objects from observations, fixed boxes from the place, the robot's own posture. Pure.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,12 +18,20 @@
 
 namespace handsel::spark {
 
+/// An object stays when nobody sees it: `uncertainty` grows from then on, faster where somebody's hand could reach it, until it is seen
+/// again. In a hand out of sight it moves with the hand, and leaves with the person. Of several sources that see it one is believed as long
+/// as it tells; what another says makes the place more uncertain when it differs. Two things of a kind that change places faster than
+/// anybody could have carried them have changed names. An object nobody has described enters as its primitive. Ours.
 class SceneModel {
  public:
   SceneModel(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
              std::vector<SceneBox> boxes);
 
+  /// What is neither described nor a primitive of a size is refused and counted.
   void observe(const ObjectObservation& observation, TimePoint seen);
+  std::uint64_t refused() const { return refused_; }
+  /// One sentence about the objects refused lately; empty: none.
+  std::string trouble(TimePoint now) const;
   void update(const RobotState& state);
   /// Decides who holds what from geometry, the hand's load and the people's hands.
   Scene scene(TimePoint now, const HumanState& people);
@@ -43,9 +52,25 @@ class SceneModel {
     int looks{};  ///< that make up the estimate
     Vector3 last_seen_at{Vector3::Zero()};
     std::vector<ObservedGrip> grips;
+    std::string source;  ///< that is believed
+    double spread{};     ///< how far from there another sees it [m]
+    TimePoint spread_until{};
+    double jump{};  ///< faster than anybody carries [m]
+    TimePoint jump_until{};
+    int hand{};                              ///< joint of the person who holds it
+    Vector3 p_hand_object{Vector3::Zero()};  ///< from there, world axes [m]
+    TimePoint gripped{};                     ///< the look p_hand_object is of
+    double wandered{};                       ///< how far it may have gone since it was seen [m]
+    TimePoint judged{};                      ///< when that was
   };
   void locate_tool();
   void follow(Known& known, const ObservedObject& observed, TimePoint seen) const;
+  bool known_shape(ObservedObject& observed) const;
+  void unswap(std::vector<ObservedObject>& seen, TimePoint at) const;
+  bool believes(Known& known, const ObservedObject& observed, const std::string& source, TimePoint seen) const;
+  void mislay(Known& known, const HumanState& people, TimePoint now) const;
+  /// Whether it is out of sight in somebody's hand, and moves with it.
+  bool carry(Known& known, const HumanState& people) const;
   void attribute_grips(Known& known, const HumanState& people) const;
   void assign_holder(Known& known, const HumanState& people) const;
   bool keep_gripped(SceneObject& object) const;
@@ -67,6 +92,9 @@ class SceneModel {
   Obstacles obstacles_;
   std::uint64_t revision_{0};
   Scene last_;
+  std::uint64_t refused_{0};
+  std::string refusal_;
+  TimePoint refused_at_{};
 };
 
 }  // namespace handsel::spark

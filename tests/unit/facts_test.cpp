@@ -2,9 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
+#include <optional>
 #include <random>
-#include <sstream>
 
 #include "common/config/resources.hpp"
 #include "common/messages/names.hpp"
@@ -12,6 +11,7 @@
 #include "components/spark/fact_finder.hpp"
 #include "components/spark/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
+#include "tests/support/recorded_handover.hpp"
 #include "tests/support/small_robot.hpp"
 
 namespace handsel::spark {
@@ -213,43 +213,10 @@ TEST_F(FactsTest, who_can_reach_what) {
 
 // ---- a real handover between two people (120 Hz, both upper bodies, an object with force sensors) ----
 
-std::vector<std::vector<double>> rows(const fs::path& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  std::vector<std::vector<double>> out;
-  while (std::getline(in, line)) {
-    std::istringstream cells(line);
-    std::string cell;
-    out.emplace_back();
-    while (std::getline(cells, cell, ',')) out.back().push_back(std::stod(cell));
-  }
-  return out;
-}
-
-Vector3 place(const std::vector<double>& row) { return {row[0], row[1], row[2]}; }
-
-struct Recorded {
-  explicit Recorded(const fs::path& folder) {
-    const std::pair<const char*, const char*> parts[] = {
-        {"head", "head"},     {"neck", "neck"},    {"chest", "torso"},      {"hip", "waist"},     {"LUArm", "l_shoulder"},
-        {"LFArm", "l_elbow"}, {"LHand", "l_hand"}, {"RUArm", "r_shoulder"}, {"RFArm", "r_elbow"}, {"RHand", "r_hand"}};
-    for (const char* who : {"giver", "taker"})
-      for (const auto& [part, joint] : parts)
-        bodies[who].emplace_back(joint, rows(folder / (std::string(who) + "_" + part + "_pose_saved.csv")));
-    baton = rows(folder / "baton_pose_saved.csv");
-    giver_wrench = rows(folder / "Wrench_giver_saved.csv");
-    taker_wrench = rows(folder / "Wrench_taker_saved.csv");
-  }
-  std::map<std::string, std::vector<std::pair<std::string, std::vector<std::vector<double>>>>> bodies;
-  std::vector<std::vector<double>> baton, giver_wrench, taker_wrench;
-};
-
 TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  const fs::path folder = data == nullptr ? fs::path() : fs::path(data) / "motion/kth_handover/handover_sample";
-  if (!fs::exists(folder / "baton_pose_saved.csv")) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
-  const Recorded recorded(folder);
+  const std::optional<test::RecordedHandover> found = test::recorded_handover();
+  if (!found) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
+  const test::RecordedHandover& recorded = *found;
   const auto robot = test::small_robot();
   const config::SparkSettings settings = shipped();
   PeopleTracker tracker(settings);
@@ -271,13 +238,13 @@ TEST(RecordedHandover, each_step_is_found_within_a_fifth_of_a_second_and_once) {
     for (const auto& [who, joints] : recorded.bodies) {
       ObservedPerson body;
       body.body = who;
-      for (const auto& [joint, frames] : joints) body.joints.push_back({joint, place(frames[i]), 1.0});
+      for (const auto& [joint, frames] : joints) body.joints.push_back({joint, test::place(frames[i]), 1.0});
       people.people.push_back(std::move(body));
     }
     tracker.observe(people, at(t));
-    ObservedObject baton{"baton", "", Pose::Identity(), 1.0, {}};
+    ObservedObject baton{"baton", "", Pose::Identity(), 1.0, {}, {PrimitiveKind::box, {0.45, 0.03, 0.03}}};
     const auto& row = recorded.baton[i];
-    baton.T_world_object = make_pose(place(row), Eigen::Quaterniond(row[6], row[3], row[4], row[5]).normalized());
+    baton.T_world_object = make_pose(test::place(row), Eigen::Quaterniond(row[6], row[3], row[4], row[5]).normalized());
     baton.grips = {{baton.T_world_object * Vector3(-0.2, 0, 0), std::max(0.0, -recorded.giver_wrench[i][2])},
                    {baton.T_world_object * Vector3(0.2, 0, 0), std::max(0.0, -recorded.taker_wrench[i][2])}};
     model.observe({0, "capture", {baton}}, at(t));

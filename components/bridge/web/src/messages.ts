@@ -5,7 +5,17 @@ export interface Pose { position: Vector3; orientation: Quaternion }
 
 export interface RobotState { robot: string; stamp: bigint; T_world_base: Pose; position: ArrayLike<number>; mode: number }
 
-export interface SceneObject { id: string; model: string; T_world_object: Pose; holder: number; age: number }
+export enum PrimitiveKind { none, box, cylinder, sphere }
+export interface Primitive { kind: PrimitiveKind; size: Vector3 }
+export interface SceneObject {
+  id: string;
+  model: string;
+  T_world_object: Pose;
+  holder: number;
+  age: number;
+  primitive: Primitive;
+  uncertainty: number;
+}
 export interface SceneBox { id: string; T_world_box: Pose; size: Vector3 }
 export interface Scene { objects: SceneObject[]; boxes: SceneBox[] }
 

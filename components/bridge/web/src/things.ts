@@ -4,11 +4,12 @@ import { OBJLoader } from "three/examples/jsm/loaders/OBJLoader.js";
 import { STLLoader } from "three/examples/jsm/loaders/STLLoader.js";
 import { mergeVertices, toCreasedNormals } from "three/examples/jsm/utils/BufferGeometryUtils.js";
 import { Config } from "./config";
-import { Scene, SceneBox, SceneObject } from "./messages";
+import { PrimitiveKind, Scene, SceneBox, SceneObject } from "./messages";
 import { dispose, kSphere, setPose } from "./shapes";
 
 const kUnknownSize = 0.04;  // [m] radius of what has no mesh
-const kObject = 0xd6336c, kWood = 0xdcc39b, kEdge = 0xa08259;
+const kSurePlace = 0.02;    // [m] an object more uncertain than this is drawn pale
+const kObject = 0xd6336c, kUnknown = 0xb06ab3, kWood = 0xdcc39b, kEdge = 0xa08259;
 
 async function loadMesh(url: string): Promise<THREE.BufferGeometry> {
   const answer = await fetch(url);
@@ -27,6 +28,14 @@ async function loadMesh(url: string): Promise<THREE.BufferGeometry> {
   return toCreasedNormals(mergeVertices(geometry), 0.6);
 }
 
+// One metre in each direction; along z.
+const kCube = new THREE.BoxGeometry(1, 1, 1), kCan = new THREE.CylinderGeometry(0.5, 0.5, 1, 32).rotateX(Math.PI / 2),
+      kBall = new THREE.SphereGeometry(0.5, 32, 16);
+
+function primitive(kind: PrimitiveKind): THREE.BufferGeometry | undefined {
+  return kind === PrimitiveKind.box ? kCube : kind === PrimitiveKind.cylinder ? kCan : kind === PrimitiveKind.sphere ? kBall : undefined;
+}
+
 export class Things {
   readonly group = new THREE.Group();
   private readonly objects = new Map<string, THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial>>();
@@ -38,7 +47,23 @@ export class Things {
   show(scene: Scene): boolean {
     let changed = forget(this.objects, scene.objects) || false;
     changed = forget(this.boxes, scene.boxes) || changed;
-    for (const object of scene.objects) changed = setPose(this.object(object), object.T_world_object) || changed;
+    for (const object of scene.objects) {
+      const mesh = this.object(object);
+      changed = setPose(mesh, object.T_world_object) || changed;
+      const pale = object.uncertainty > kSurePlace;
+      if (mesh.material.transparent !== pale) {
+        mesh.material.transparent = pale;
+        mesh.material.opacity = pale ? 0.35 : 1;
+        mesh.material.needsUpdate = changed = true;
+      }
+      const shape = object.model ? undefined : primitive(object.primitive.kind);
+      const size = new THREE.Vector3(object.primitive.size.x, object.primitive.size.y, object.primitive.size.z);
+      if (!shape || (mesh.geometry === shape && mesh.scale.equals(size))) continue;
+      mesh.geometry = shape;
+      mesh.material.color.set(kUnknown);
+      mesh.scale.copy(size);
+      changed = true;
+    }
     for (const box of scene.boxes) {
       const mesh = this.box(box);
       changed = setPose(mesh, box.T_world_box) || changed;
@@ -58,7 +83,7 @@ export class Things {
     return [...this.objects.values()][0];
   }
 
-  private object(object: SceneObject): THREE.Mesh {
+  private object(object: SceneObject): THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial> {
     const known = this.objects.get(object.id);
     if (known) return known;
     const mesh = new THREE.Mesh<THREE.BufferGeometry, THREE.MeshLambertMaterial>(

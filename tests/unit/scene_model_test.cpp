@@ -1,0 +1,196 @@
+// Objects as SPARK holds them: out of sight, in hands, told by two sources, under exchanged names, unknown.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/collision/collision_world.hpp"
+#include "common/config/resources.hpp"
+#include "components/spark/directed.hpp"
+#include "components/spark/scene_model.hpp"
+#include "tests/support/planar_arm.hpp"
+
+namespace handsel::spark {
+namespace {
+
+using ::testing::HasSubstr;
+
+TimePoint at(double t) { return TimePoint(from_seconds(t)); }
+
+ObservedObject mug(const std::string& id, const Vector3& where) { return {id, "mug", make_pose(where), 0.9, {}, {}}; }
+
+ObservedObject unknown(const std::string& id, const Vector3& where, PrimitiveKind kind, const Vector3& size) {
+  return {id, "", make_pose(where), 0.9, {}, {kind, size}};
+}
+
+Person person_at(const Vector3& feet) {
+  Person anna;
+  anna.id = "anna";
+  anna.joints = standing_body(feet, 0, 1.75);
+  return anna;
+}
+
+class SceneObjects : public ::testing::Test {
+ protected:
+  SceneObjects() {
+    load_text_proto(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config/spark.txtpb", settings_);
+    mug_.mass = 0.3;
+    for (int i = 0; i < 8; ++i) mug_.mesh.vertices.push_back(0.04 * Vector3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    model_.emplace(
+        settings_, std::make_shared<const RobotModel>(), [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; },
+        std::vector<SceneBox>{{"table", make_pose({0.7, 0, 0.35}), {1, 1, 0.7}, true}});
+  }
+  void see(double t, std::vector<ObservedObject> objects, const std::string& source = "camera") {
+    model_->observe({0, source, std::move(objects)}, at(t));
+  }
+  /// At the rate of the node.
+  Scene wait(double from, double to) {
+    Scene scene;
+    for (double t = from; t <= to + 1e-9; t += 0.05) scene = model_->scene(at(t), people_);
+    return scene;
+  }
+  static const SceneObject* find(const Scene& scene, const std::string& id) {
+    for (const SceneObject& object : scene.objects)
+      if (object.id == id) return &object;
+    return nullptr;
+  }
+
+  config::SparkSettings settings_;
+  ObjectModel mug_;
+  std::optional<SceneModel> model_;
+  HumanState people_;
+};
+
+TEST_F(SceneObjects, out_of_sight_grows_uncertain_and_seen_again_is_sure) {
+  see(0, {mug("mug", {0.7, 0, 0.74})});
+  EXPECT_EQ(find(wait(0, 0.4), "mug")->uncertainty, 0);
+  double before = 0;
+  for (int second = 1; second < 10; ++second) {
+    const double now = find(wait(second, second + 0.95), "mug")->uncertainty;
+    EXPECT_GT(now, before);
+    before = now;
+  }
+  EXPECT_NEAR(before, settings_.unseen_drift() * 9.45, 0.01);
+  const std::uint64_t revision = wait(10, 10).revision;
+  see(10.1, {mug("mug", {0.72, 0, 0.74})});
+  const Scene again = wait(10.1, 10.1);
+  EXPECT_EQ(find(again, "mug")->uncertainty, 0);
+  EXPECT_GT(again.revision, revision) << "planners are told";
+  EXPECT_LE(find(wait(11, 200), "mug")->uncertainty, settings_.unseen_most());
+}
+
+TEST_F(SceneObjects, a_hand_near_what_nobody_sees_makes_it_uncertain_fast) {
+  see(0, {mug("mug", {0.7, 0, 0.74})});
+  people_.people = {person_at({1.6, 0, 0})};
+  for (BodyJoint& joint : people_.people[0].joints)
+    if (joint.name == "r_hand") joint.position = {0.75, 0.1, 0.8};
+  EXPECT_NEAR(find(wait(0, 1.5), "mug")->uncertainty, 0.3, 0.03);
+}
+
+TEST_F(SceneObjects, in_a_hand_out_of_sight_it_moves_with_the_hand_and_leaves_with_the_person) {
+  people_.people = {person_at({1.2, 0.6, 0})};
+  Vector3 hand = joint_of(people_.people[0], "r_hand").position;
+  see(0, {mug("mug", hand + Vector3(0.05, 0, 0.03))});
+  ASSERT_EQ(find(wait(0, 0.05), "mug")->holder, Holder::human);
+  for (double t = 0.1; t < 2; t += 0.05) {  // she walks off, her body hides it
+    for (BodyJoint& joint : people_.people[0].joints) joint.position.y() += 0.04;
+    const Scene scene = wait(t, t);
+    ASSERT_EQ(find(scene, "mug")->holder, Holder::human) << t;
+    if (t < 0.12) continue;
+    const Vector3 there = joint_of(people_.people[0], "r_hand").position + Vector3(0.05, 0, 0.03);
+    EXPECT_LT((find(scene, "mug")->T_world_object.translation() - there).norm(), 1e-9) << t;
+  }
+  people_.people[0].inflation = 0.5;
+  EXPECT_GE(find(wait(2, 2), "mug")->uncertainty, 0.5) << "as lost as she is";
+  people_.people.clear();
+  EXPECT_FALSE(find(wait(2.1, 2.1), "mug"));
+  see(3, {mug("mug", {0.7, 0, 0.74})});
+  EXPECT_TRUE(find(wait(3, 3), "mug"));
+}
+
+TEST_F(SceneObjects, of_two_sources_one_is_believed_and_the_other_takes_over) {
+  for (int i = 0; i < 60; ++i) {
+    see(i / 30.0, {mug("mug", {0.70, 0, 0.74})}, "left");
+    see(i / 30.0 + 0.01, {mug("mug", {0.73, 0, 0.74})}, "right");
+    const Scene scene = wait(i / 30.0 + 0.02, i / 30.0 + 0.02);
+    ASSERT_NEAR(find(scene, "mug")->T_world_object.translation().x(), 0.70, 1e-9) << "no moving to and fro";
+    ASSERT_NEAR(find(scene, "mug")->uncertainty, 0.03, 1e-6) << "where they differ";
+  }
+  for (int i = 60; i < 90; ++i) see(i / 30.0 + 0.01, {mug("mug", {0.73, 0, 0.74})}, "right");
+  const Scene scene = wait(3, 3);
+  EXPECT_NEAR(find(scene, "mug")->T_world_object.translation().x(), 0.73, 1e-6);
+  EXPECT_EQ(find(scene, "mug")->uncertainty, 0);
+}
+
+TEST_F(SceneObjects, exchanged_names_move_nothing) {
+  const Vector3 here(0.5, 0.2, 0.74), there(0.9, -0.2, 0.74);
+  for (int i = 0; i < 30; ++i) see(i / 30.0, {mug("one", here), mug("two", there)});
+  const std::uint64_t revision = wait(1, 1).revision;
+  for (int i = 30; i < 60; ++i) see(i / 30.0, {mug("one", there), mug("two", here)});
+  const Scene scene = wait(2, 2);
+  EXPECT_LT((find(scene, "one")->T_world_object.translation() - here).norm(), 1e-6);
+  EXPECT_LT((find(scene, "two")->T_world_object.translation() - there).norm(), 1e-6);
+  EXPECT_EQ(scene.revision, revision);
+}
+
+TEST_F(SceneObjects, after_a_jump_both_places_count_for_a_moment) {
+  for (int i = 0; i < 30; ++i) see(i / 30.0, {mug("mug", {0.5, 0, 0.74})});
+  see(1, {mug("mug", {0.9, 0, 0.74})});
+  EXPECT_GE(find(wait(1, 1), "mug")->uncertainty, 0.4);
+  see(1.6, {mug("mug", {0.9, 0, 0.74})});
+  EXPECT_EQ(find(wait(1.6, 1.6), "mug")->uncertainty, 0);
+}
+
+TEST_F(SceneObjects, from_the_past_is_no_news) {
+  see(1, {mug("mug", {0.5, 0, 0.74})});
+  see(0.9, {mug("mug", {0.9, 0, 0.74})});
+  EXPECT_NEAR(find(wait(1, 1), "mug")->T_world_object.translation().x(), 0.5, 1e-9);
+}
+
+TEST_F(SceneObjects, unknown_things_enter_as_primitives_and_what_has_no_shape_is_refused_and_counted) {
+  see(0, {unknown("crate", {0.6, 0, 0.8}, PrimitiveKind::box, {0.2, 0.3, 0.2}),
+          unknown("nothing", {0, 0, 1}, PrimitiveKind::none, {}),
+          unknown("flat", {0, 0, 1}, PrimitiveKind::cylinder, {0.1, 0.1, 0}),
+          {"vase", "vase", make_pose({0, 0, 1}), 0.9, {}, {}},
+          {"tin", "tin", make_pose({0.5, 0.3, 0.75}), 0.9, {}, {PrimitiveKind::cylinder, {0.08, 0.08, 0.1}}}});
+  const Scene scene = wait(0, 0);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(find(scene, "crate")->primitive.kind, PrimitiveKind::box);
+  EXPECT_EQ(find(scene, "crate")->holder, Holder::surface) << "it stands on the table";
+  EXPECT_EQ(find(scene, "tin")->primitive.kind, PrimitiveKind::cylinder);
+  EXPECT_EQ(find(scene, "tin")->model, "") << "nobody has described a tin";
+  EXPECT_EQ(model_->refused(), 3u);
+  EXPECT_EQ(
+      model_->trouble(at(1)),
+      "object vase of source camera is of model vase, which is not described, and has no primitive with a size above 0: refused, 3 so far");
+  EXPECT_EQ(model_->trouble(at(20)), "");
+}
+
+/// A straight arm along +x at the height of its base, against one unknown thing.
+TEST(UnknownObjects, are_obstacles_of_their_shape_and_of_where_they_may_be) {
+  const RobotModel arm = test::planar_arm();
+  CollisionWorld world(arm, nullptr);
+  Vector q = Vector::Zero(arm.dof());
+  Scene scene;
+  scene.objects = {
+      {"crate", "", make_pose({0.8, 0, 0}), Holder::nobody, "", 0, Vector3::Zero(), {}, {PrimitiveKind::box, {0.1, 0.1, 0.1}}, 0}};
+  const auto touches = [&](PrimitiveKind kind, const Vector3& size, const Vector3& where, double uncertainty) {
+    scene.objects[0].primitive = {kind, size};
+    scene.objects[0].T_world_object.translation() = where;
+    scene.objects[0].uncertainty = uncertainty;
+    world.set_scene(scene);
+    const CollisionVerdict verdict = world.check(q);
+    if (!verdict.free) EXPECT_EQ(verdict.id, "crate");
+    return !verdict.free;
+  };
+  for (const auto kind : {PrimitiveKind::box, PrimitiveKind::cylinder, PrimitiveKind::sphere}) {
+    const Vector3 size = Vector3::Constant(0.2);
+    EXPECT_TRUE(touches(kind, size, {0.8, 0.1, 0}, 0));
+    EXPECT_FALSE(touches(kind, size, {0.8, 0.6, 0}, 0));
+    EXPECT_TRUE(touches(kind, size, {0.8, 0.6, 0}, 0.5)) << "it may be there";
+    EXPECT_FALSE(touches(kind, size, {0.8, 2.5, 0}, 0.5));
+  }
+  EXPECT_NEAR(world.distance_to_ball(q, {3, 0, 0}, 0.1), 1.7, 0.06);
+  EXPECT_LT(world.distance_to_ball(q, {0.8, 0.1, 0}, 0.2), 0);
+}
+
+}  // namespace
+}  // namespace handsel::spark
