@@ -6,9 +6,10 @@
 namespace handsel::spark {
 namespace {
 
-constexpr FadingModel kHand{0.2, 0.04, 1, 4};
-constexpr FadingModel kTrunk{5, 0.04, 2, 0};
-constexpr double kSure = 3.2;      // standard deviations in the radius
+constexpr FadingModel kHand{0.15, 0.04, 1.2, 4};
+constexpr FadingModel kTrunk{1, 0.04, 1, 0};
+constexpr double kSure = 4;        // standard deviations in the radius
+constexpr double kMean = 0.5;      // of several joints is so much less noisy
 constexpr double kChecked = 0.2;   // what was expected of this moment, so long ago, is compared with what came [s]
 constexpr double kMargin = 1.2;    // a ball that was missed is made larger than would have sufficed by this factor
 constexpr double kMemory = 2;      // and shrinks again within [s]
@@ -19,14 +20,14 @@ constexpr std::size_t kMost = 64;  // promises kept
 HandPredictor::HandPredictor() : hand_(kHand), trunk_(kTrunk) {}
 
 void HandPredictor::reset(const Vector3& hand, const Vector3& trunk, double noise) {
-  trunk_.reset(trunk, noise);
+  trunk_.reset(trunk, kMean * noise);
   hand_.reset(hand - trunk, noise);
   clock_ = 0;
   promises_.clear();
 }
 
 void HandPredictor::update(const Vector3& hand, const Vector3& trunk, double dt, double noise) {
-  trunk_.update(trunk, dt, noise);
+  trunk_.update(trunk, dt, kMean * noise);
   hand_.update(hand - trunk, dt, noise);
   clock_ += dt;
   misses_ = 1 + (misses_ - 1) * std::exp(-dt / kMemory);

@@ -13,7 +13,7 @@ namespace handsel::spark {
 class HandPredictor {
  public:
   HandPredictor();
-  /// A first look, or one after a gap.
+  /// A first look, or one after a gap. `trunk`: mean of several of its joints.
   void reset(const Vector3& hand, const Vector3& trunk, double noise);
   /// `dt` > 0 [s] since the last look, `noise` of a point [m]; world [m].
   void update(const Vector3& hand, const Vector3& trunk, double dt, double noise);

@@ -35,8 +35,10 @@ std::vector<SceneBox> boxes_of(const config::Scenario& scenario) {
   return boxes;
 }
 
-std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario) {
+std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario, const Calibration& calibration) {
   std::map<std::string, Vector3> eyes;
+  for (const auto& [name, source] : calibration.sources())
+    if (source.own_frame) eyes[name] = source.T_world_camera.translation();
   for (const auto& sensor : scenario.human_sensors()) {
     const auto& xyz = sensor.pose().xyz();
     if (sensor.occlusion()) eyes[sensor.source()] = {xyz.x(), xyz.y(), xyz.z()};
@@ -51,7 +53,8 @@ Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, load_scena
 Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
     : bus_(bus),
       settings_(load_settings(context)),
-      eyes_(eyes_of(place)),
+      calibration_(context.settings / "calibration.txtpb"),
+      eyes_(eyes_of(place, calibration_)),
       tracker_(settings_, eyes_),
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot, context.objects),
@@ -60,12 +63,21 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       facts_out_(bus.advertise<Facts>()) {
   bus.subscribe<HumanObservation>([this](const HumanObservation& observation, const Receipt& receipt) {
     const TimePoint seen = receipt.arrival - receipt.age - from_seconds(settings_.least_latency());
-    tracker_.observe(observation, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles());
+    HumanObservation there = observation;
+    calibration_.to_world(there);
+    tracker_.observe(there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles());
     publish_people(bus_.now());
   });
-  bus.subscribe<ObjectObservation>(
-      [this](const ObjectObservation& observation, const Receipt& receipt) { scene_.observe(observation, receipt.arrival - receipt.age); });
+  bus.subscribe<ObjectObservation>([this](const ObjectObservation& observation, const Receipt& receipt) {
+    ObjectObservation there = observation;
+    calibration_.to_world(there);
+    scene_.observe(there, receipt.arrival - receipt.age);
+    publish_news(bus_.now());
+  });
   bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { scene_.update(state); });
+  bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
+    if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0) publish_people(bus_.now());
+  });
   bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt&) { wanted_period_ = advice.human_period; });
   bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())), [this](TimePoint now) {
     if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period()) publish_people(now);
@@ -78,6 +90,17 @@ void Node::publish_people(TimePoint now) {
   people_published_ = now;
 }
 
+void Node::publish(const Scene& scene, TimePoint now) {
+  scene_out_->publish(scene);
+  scene_published_ = now;
+  revision_published_ = scene.revision;
+}
+
+void Node::publish_news(TimePoint now) {
+  const Scene scene = scene_.scene(now, tracker_.state(now, scene_.reach()));
+  if (scene.revision != revision_published_) publish(scene, now);
+}
+
 void Node::publish_world(TimePoint now) {
   const HumanState people = tracker_.state(now, scene_.reach());
   const Scene scene = scene_.scene(now, people);
@@ -85,9 +108,7 @@ void Node::publish_world(TimePoint now) {
   const std::string people_trouble = tracker_.trouble(now), things_trouble = scene_.trouble(now);
   bus_.set_degraded(people_trouble + (people_trouble.empty() || things_trouble.empty() ? "" : "; ") + things_trouble);
   const double wanted = wanted_period_ > 0 ? std::clamp(wanted_period_, 0.02, settings_.publish_period()) : settings_.publish_period();
-  if (to_seconds(now - scene_published_) < 0.99 * wanted) return;
-  scene_out_->publish(scene);
-  scene_published_ = now;
+  if (to_seconds(now - scene_published_) >= 0.99 * wanted) publish(scene, now);
 }
 
 }  // namespace handsel::spark

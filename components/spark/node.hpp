@@ -7,6 +7,8 @@
 #include "common/bus/process.hpp"
 #include "common/config/scenario.pb.h"
 #include "common/messages/attention.hpp"
+#include "common/messages/task.hpp"
+#include "components/spark/calibration.hpp"
 #include "components/spark/fact_finder.hpp"
 #include "components/spark/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
@@ -20,10 +22,13 @@ class Node {
  private:
   Node(Bus& bus, const NodeContext& context, const config::Scenario& place);
   void publish_people(TimePoint now);
+  void publish(const Scene& scene, TimePoint now);
+  void publish_news(TimePoint now);   // the scene, when it has changed in a way that matters to a planner
   void publish_world(TimePoint now);  // facts always, the scene at its period
 
   Bus& bus_;
   config::SparkSettings settings_;
+  Calibration calibration_;
   std::map<std::string, Vector3> eyes_;  // where sources look from
   PeopleTracker tracker_;
   SceneModel scene_;
@@ -33,6 +38,7 @@ class Node {
   std::unique_ptr<Publisher<Facts>> facts_out_;
   TimePoint people_published_{};
   TimePoint scene_published_{};
+  std::uint64_t revision_published_{0};
   double wanted_period_{0};
 };
 

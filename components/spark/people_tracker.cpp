@@ -11,11 +11,13 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameId = 0.15;        // a body with the id they had is preferred by this [m]
-constexpr double kPause = 0.3;          // under another id a person comes back no farther than they walk in this time [s]
-constexpr double kFresh = 0.1;          // sights of joints this much apart are one body [s]
-constexpr double kFastest = 2.2;        // [m/s]
-constexpr double kSettled = 0.08;       // a body moves by this between two looks without a doubt [m]
+constexpr double kSameId = 0.15;   // a body with the id they had is preferred by this [m]
+constexpr double kPause = 0.3;     // under another id a person comes back no farther than they walk in this time [s]
+constexpr double kFresh = 0.1;     // sights of joints this much apart are one body [s]
+constexpr double kFastest = 2.2;   // [m/s]
+constexpr double kSettled = 0.08;  // a body moves by this between two looks without a doubt [m]
+constexpr double kConfirmed =
+    0.15;  // one look does not show that a lost person is where it says: all they may have reached counts so long [s]
 constexpr double kGapOfVelocity = 0.5;  // beyond this a velocity is found anew [s]
 constexpr double kLeastConfidence = 0.05;
 constexpr double kGuessed = 3;   // a joint that was not seen is this much noisier
@@ -29,6 +31,7 @@ int index(const char* name) { return body_joint_index(name); }
 const int kHead = index("head"), kTorso = index("torso");
 const std::array kHands = {index("l_hand"), index("r_hand")}, kWrists = {index("l_wrist"), index("r_wrist")},
                  kShoulders = {index("l_shoulder"), index("r_shoulder")};
+const std::array kTrunkMiddle = {index("neck"), index("torso"), index("waist"), index("l_shoulder"), index("r_shoulder")};
 
 bool of_trunk(int joint) {
   static const std::array trunk = {index("neck"),       index("torso"), index("waist"), index("l_shoulder"),
@@ -142,23 +145,28 @@ void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint s
     if (!known || !lately[i]) track.moved[i] = at;
     fitted[i].velocity = track.motion[i].velocity();
   }
-  if (known && jump > kFastest * (dt + behind) + kSettled) {
-    const bool doubted = seen < track.doubted_until;
-    track.doubt = doubted ? track.doubt + jump : jump;
-    track.doubted_until = seen + from_seconds(settings_.doubt_time());
-  }
+  const auto doubt = [&](double by, double time) {
+    track.doubt = seen < track.doubted_until ? track.doubt + by : by;
+    track.doubted_until = std::max(track.doubted_until, seen + from_seconds(time));
+  };
+  if (known && dt > settings_.lost_after())
+    doubt(settings_.lost_speed() * dt + jump, kConfirmed);
+  else if (known && jump > kFastest * (dt + behind) + kSettled)
+    doubt(jump, settings_.doubt_time());
   person.joints = std::move(fitted);
   follow_hands(track, told, at);
   track.seen = at;
   track.empty_since.reset();
-  track.outside_since.reset();
+  track.left_by.clear();
 }
 
 /// A wrist tells where the hand is as well.
 void PeopleTracker::follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const {
+  Vector3 trunk = Vector3::Zero();
+  for (const int joint : kTrunkMiddle) trunk += position(track.person, joint) / static_cast<double>(kTrunkMiddle.size());
   for (std::size_t side = 0; side < kHands.size(); ++side) {
     if (!told[static_cast<std::size_t>(kHands[side])] && !told[static_cast<std::size_t>(kWrists[side])]) continue;
-    const Vector3 &hand = position(track.person, kHands[side]), &trunk = position(track.person, kTorso);
+    const Vector3& hand = position(track.person, kHands[side]);
     std::optional<TimePoint>& last = track.hand_seen[side];
     const double dt = last ? to_seconds(at - *last) : kGapOfVelocity;
     if (dt >= kGapOfVelocity)
@@ -196,8 +204,11 @@ void PeopleTracker::add(const ObservedPerson& body, const std::string& source, T
   fresh.person.id = name_free ? body.body : "person" + std::to_string(++unnamed_);
   fresh.born = fresh.seen = seen;
   fresh.bodies[source] = body.body;
+  const auto from = sources_.find(source);
   update(fresh, body, seen, 0);
-  if (!fresh.person.joints.empty()) tracks_.push_back(std::move(fresh));
+  if (fresh.person.joints.empty()) return;
+  fresh.came_in = from != sources_.end() && at_edge(from->second, position(fresh.person, kTorso));
+  tracks_.push_back(std::move(fresh));
 }
 
 /// Whether a person anywhere in the grown volume would show head or chest to a source.
@@ -225,45 +236,73 @@ bool PeopleTracker::seen_empty(const Track& track, TimePoint now, const Obstacle
   return true;
 }
 
-/// The source that has looked on since the person was lost near the edge of its coverage, or beyond; nullptr: there is none.
-const Source* PeopleTracker::left_through(const Track& track, TimePoint now) const {
+bool PeopleTracker::at_edge(const Source& source, const Vector3& place) const {
+  const bool looks = (source.coverage.low.array() < source.coverage.high.array()).all();
+  return looks && !contains(source.coverage, place, settings_.edge());
+}
+
+/// Who was lost near the edge of a source's coverage, or beyond, and it has looked on since. When it looks again after a gap, what it looks
+/// at is seen empty of them after empty_after.
+void PeopleTracker::confine(Track& track, TimePoint now) const {
   for (const auto& [name, source] : sources_) {
+    if (!track.left_by.empty()) break;
     const bool watched = recent(source, now) && source.seen > track.seen && source.unbroken <= track.seen;
-    if (!watched || !(source.coverage.low.array() < source.coverage.high.array()).all()) continue;
-    if (!contains(source.coverage, position(track.person, kTorso), settings_.edge())) return &source;
+    if (watched && at_edge(source, position(track.person, kTorso))) track.left_by = name, track.confined = source.seen;
   }
-  return nullptr;
+  const auto found = sources_.find(track.left_by);
+  if (found == sources_.end()) return;
+  const Source& source = found->second;
+  if (source.unbroken <= track.confined || to_seconds(source.seen - source.unbroken) >= settings_.empty_after())
+    track.confined = std::max(track.confined, source.seen);
+}
+
+/// Who appeared since, as near as the lost one may have come or with the id they had.
+PeopleTracker::Track* PeopleTracker::heir(const Track& gone, TimePoint now) {
+  Track* out = nullptr;
+  const double walked = settings_.association_distance() + settings_.lost_speed() * age(gone, now);
+  double least = std::numeric_limits<double>::infinity();
+  for (Track& other : tracks_) {
+    const double d = (position(other.person, kTorso) - position(gone.person, kTorso)).norm();
+    const bool called_so = std::any_of(other.bodies.begin(), other.bodies.end(), [&](const auto& body) {
+      const auto before = gone.bodies.find(body.first);
+      return before != gone.bodies.end() && before->second == body.second;
+    });
+    if (&other == &gone || other.born <= gone.seen || d >= least || (d > walked && !called_so)) continue;
+    out = &other;
+    least = d;
+  }
+  return out;
+}
+
+/// Who came in through an edge since, as near as the one who left may have come by then.
+PeopleTracker::Track* PeopleTracker::comer(const Track& gone, TimePoint now) {
+  if (gone.left_by.empty() || age(gone, now) <= settings_.doubt_time()) return nullptr;
+  Track* other = heir(gone, now);
+  if (other == nullptr || !other->came_in) return nullptr;
+  const double walked = settings_.association_distance() + settings_.lost_speed() * age(gone, now);
+  return (position(other->person, kTorso) - position(gone.person, kTorso)).norm() <= walked ? other : nullptr;
+}
+
+void PeopleTracker::erase(std::size_t index, Track* name_goes_to) {
+  if (name_goes_to != nullptr) {
+    name_goes_to->person.id = tracks_[index].person.id;
+    name_goes_to->came_in = false;
+  }
+  tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 void PeopleTracker::forget(TimePoint now, const Obstacles& obstacles) {
-  const auto held_for = [&](std::optional<TimePoint>& since, bool holds, double wanted) {
-    if (!holds) since.reset();
-    if (holds && !since) since = now;
-    return holds && to_seconds(now - *since) >= wanted;
-  };
   for (std::size_t i = tracks_.size(); i-- > 0;) {
     Track& track = tracks_[i];
     if (age(track, now) <= settings_.lost_after()) continue;
-    const bool empty = held_for(track.empty_since, seen_empty(track, now, obstacles), settings_.empty_after());
-    const bool left = held_for(track.outside_since, left_through(track, now) != nullptr, settings_.edge_after());
-    if (!empty && !left) continue;
-    const Track gone = std::move(track);
-    tracks_.erase(tracks_.begin() + static_cast<std::ptrdiff_t>(i));
-    // Who appeared since, as near as the lost one may have come or with the id they had, has their name.
-    Track* heir = nullptr;
-    const double walked = settings_.association_distance() + settings_.lost_speed() * age(gone, now);
-    double least = std::numeric_limits<double>::infinity();
-    for (Track& other : tracks_) {
-      const double d = (position(other.person, kTorso) - position(gone.person, kTorso)).norm();
-      const bool called_so = std::any_of(other.bodies.begin(), other.bodies.end(), [&](const auto& body) {
-        const auto before = gone.bodies.find(body.first);
-        return before != gone.bodies.end() && before->second == body.second;
-      });
-      if (other.born <= gone.seen || d >= least || (d > walked && !called_so)) continue;
-      heir = &other;
-      least = d;
-    }
-    if (heir != nullptr) heir->person.id = gone.person.id;
+    confine(track, now);
+    const bool empty = seen_empty(track, now, obstacles);
+    if (!empty) track.empty_since.reset();
+    if (empty && !track.empty_since) track.empty_since = now;
+    if (empty && to_seconds(now - *track.empty_since) >= settings_.empty_after())
+      erase(i, heir(track, now));
+    else if (Track* other = comer(track, now))
+      erase(i, other);
   }
 }
 
@@ -296,6 +335,11 @@ void PeopleTracker::observe(const HumanObservation& observation, TimePoint seen,
   forget(seen, obstacles);
 }
 
+std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
+  return std::erase_if(
+      tracks_, [&](const Track& track) { return age(track, now) > settings_.lost_after() && (id.empty() || track.person.id == id); });
+}
+
 HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
   HumanState out;
   for (const Track& track : tracks_) {
@@ -304,8 +348,8 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
     person.gaze_known = track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory();
     if (person.age > settings_.lost_after()) {
       person.inflation = settings_.lost_speed() * person.age;
-      if (const Source* source = left_through(track, now)) {
-        const double unseen = std::max(0.0, to_seconds(now - source->seen));
+      if (!track.left_by.empty()) {
+        const double unseen = std::max(0.0, to_seconds(now - track.confined));
         person.inflation = std::min(person.inflation, settings_.edge() + settings_.lost_speed() * unseen);
       }
     }
@@ -321,8 +365,9 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
     const Vector3 middle = (reach.low + reach.high) / 2;
     const auto far = [&](const Person& p) { return (position(p, kTorso) - middle).norm() - p.inflation; };
     std::sort(out.people.begin(), out.people.end(), [&](const Person& a, const Person& b) { return far(a) < far(b); });
+    const bool near = std::any_of(out.people.begin() + kMostPeople, out.people.end(), [&](const Person& p) { return far(p) < kFarthest; });
     out.people.resize(kMostPeople);
-    out.covered = false;
+    out.covered = out.covered && !near;
   }
   return out;
 }

@@ -21,12 +21,13 @@ namespace handsel::spark {
 /// Ids of the trackers are hints only; places decide.
 ///
 /// A lost person is never gone (reliability promise P3): the last body stays, inflated by lost_speed x age, until its volume has been seen
-/// empty (from where the sources stand) for empty_after, or the same person is seen as far away as they may have come. A body that is
-/// nearer the edge of what is looked at than `edge` when lost may have left: it grows no farther than `edge` while the source goes on
-/// looking, for who comes back is seen, and is dropped after edge_after.
+/// empty (from where the sources stand) for empty_after, the same person is seen as far away as they may have come, or an operator clears
+/// them. A body that is nearer the edge of what is looked at than `edge` when lost has left through it, or stands there unseen: it grows no
+/// farther than `edge` while the source goes on looking, for who comes back is seen; whoever comes in through an edge then is that person.
 ///
 /// Occupied space does not shrink by a jump: one too far for a person makes a second person, and the first counts as lost; a shorter one
-/// inflates the body by its length for doubt_time. Data told twice is no news. Ours.
+/// inflates the body by its length for doubt_time. Where a lost person may have been counts until several looks show them. Data told twice
+/// is no news. Ours.
 class PeopleTracker {
  public:
   /// `eyes`: where sources look from, by name [m]; without, a source sees all of its coverage.
@@ -35,6 +36,8 @@ class PeopleTracker {
 
   /// `seen`: when the observation was true (arrival less its age).
   void observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles = {});
+  /// An operator says that a lost person is gone: `id`, or everybody lost when it is empty. Who is seen stays. How many went.
+  std::size_t clear(const std::string& id, TimePoint now);
   /// Everybody as of now, ages and inflation filled in. `covered`: sources looked at the whole of `reach` lately.
   HumanState state(TimePoint now, const Coverage& reach) const;
   /// Which source is silent or repeats itself; empty: none.
@@ -55,7 +58,9 @@ class PeopleTracker {
     double doubt{};  // [m], until doubted_until
     TimePoint doubted_until{};
     std::optional<TimePoint> empty_since;
-    std::optional<TimePoint> outside_since;
+    bool came_in{};        // appeared at an edge, and nobody who had left is known to be it
+    std::string left_by;   // source through whose edge they left; empty: they did not
+    TimePoint confined{};  // when that source last showed that they had not come back
   };
 
   std::vector<int> associate(const HumanObservation& observation, TimePoint seen) const;
@@ -63,7 +68,11 @@ class PeopleTracker {
   double age(const Track& track, TimePoint now) const { return to_seconds(now - track.seen); }
   bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
-  const Source* left_through(const Track& track, TimePoint now) const;
+  bool at_edge(const Source& source, const Vector3& place) const;
+  void confine(Track& track, TimePoint now) const;
+  Track* heir(const Track& gone, TimePoint now);
+  Track* comer(const Track& gone, TimePoint now);
+  void erase(std::size_t index, Track* name_goes_to);
   void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const;
   void follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const;
   std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) const;

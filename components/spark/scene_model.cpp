@@ -43,7 +43,8 @@ bool differs(const Scene& a, const Scene& b) {
     if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id) return true;
     if (x.primitive.kind != y.primitive.kind || x.primitive.size != y.primitive.size) return true;
     if (std::abs(x.uncertainty - y.uncertainty) > kRevisionDoubt) return true;
-    if ((x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove) return true;
+    const bool carried = x.holder == Holder::robot;  // it moves with the hand that everybody knows
+    if (!carried && (x.T_world_object.translation() - y.T_world_object.translation()).norm() > kRevisionMove) return true;
   }
   return false;
 }

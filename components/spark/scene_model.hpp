@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,7 @@ class SceneModel {
     TimePoint jump_until{};
     int hand{};                              ///< joint of the person who holds it
     Vector3 p_hand_object{Vector3::Zero()};  ///< from there, world axes [m]
-    TimePoint gripped{};                     ///< the look p_hand_object is of
+    std::optional<TimePoint> gripped;        ///< the look p_hand_object is of
     double wandered{};                       ///< how far it may have gone since it was seen [m]
     TimePoint judged{};                      ///< when that was
   };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <limits>
 #include <list>
 #include <map>
@@ -14,9 +15,11 @@
 
 #include "common/base/errors.hpp"
 #include "common/bus/dds_configuration.hpp"
+#include "common/config/resources.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/robot.hpp"
+#include "components/spark/calibration.hpp"
 #include "deploy/handsel/doctor.hpp"
 #include "deploy/handsel/launcher.hpp"
 #include "deploy/handsel/machine.hpp"
@@ -33,10 +36,11 @@ constexpr Duration kEnter = std::chrono::seconds(5);  // for one participant, on
 constexpr Duration kMeet = std::chrono::seconds(3);   // for all to hear each other
 constexpr Duration kLook = std::chrono::milliseconds(800);
 constexpr Duration kSpeak = std::chrono::milliseconds(50);
-constexpr double kOffset = 0.05;  // of clocks [s]; more than any transit on one machine or a local network
-constexpr double kFuture = 0.01;  // a measurement from so far ahead cannot be [s]
-constexpr double kOld = 1.0;      // older measurements than any sensor's latency [s]
-constexpr double kJump = 0.005;   // of the wall clock against the monotonic one while looked at [s]
+constexpr double kOffset = 0.05;                       // of clocks [s]; more than any transit on one machine or a local network
+constexpr double kFuture = 0.01;                       // a measurement from so far ahead cannot be [s]
+constexpr double kOld = 1.0;                           // older measurements than any sensor's latency [s]
+constexpr double kJump = 0.005;                        // of the wall clock against the monotonic one while looked at [s]
+constexpr double kBaseOff = 0.01, kBaseTurned = 0.01;  // of the robot's base from its calibration [m], [rad]
 constexpr const char* kDefaultRemedy = "correct it, or unset CYCLONEDDS_URI: Handsel then uses deploy/dds/loopback.xml";
 
 std::string where(int domain) { return "domain " + std::to_string(domain); }
@@ -102,9 +106,9 @@ class Look {
     });
     bus.subscribe<ComponentHealth>(
         [this](const ComponentHealth& health, const Receipt& receipt) { clocks_[health.component].add(health.stamp, receipt.arrival); });
-    watch<RobotState>("the robot's state");
-    watch<HumanObservation>("people");
-    watch<ObjectObservation>("objects");
+    watch<RobotState>("the robot's state", [this](const RobotState& state) { bases_[state.robot] = state.T_world_base; });
+    watch<HumanObservation>("people", [this](const HumanObservation& seen) { sources_.insert(seen.source); });
+    watch<ObjectObservation>("objects", [this](const ObjectObservation& seen) { sources_.insert(seen.source); });
   }
 
   Json operator()() {
@@ -130,6 +134,9 @@ class Look {
                                {"last_rejection", input.status->last_rejection},
                                {"least", input.offset->samples ? Json(input.offset->least) : Json()}});
     }
+    out["sources"] = sources_;
+    out["bases"] = Json::object();
+    for (const auto& [robot, T] : bases_) out["bases"][robot] = std::vector<double>(T.data(), T.data() + 16);
     const DomainView view = session_.bus().look_around();
     out["commanders"] = Json::array();
     for (const DomainParticipant& commander : view.commanders)
@@ -150,10 +157,12 @@ class Look {
     std::shared_ptr<Offset> offset = std::make_shared<Offset>();
   };
   template <class M>
-  void watch(const char* what) {
+  void watch(const char* what, std::function<void(const M&)> look) {
     auto offset = std::make_shared<Offset>();
-    const SubscriptionStatus& status =
-        session_.bus().subscribe<M>([offset](const M& message, const Receipt& receipt) { offset->add(message.stamp, receipt.arrival); });
+    const SubscriptionStatus& status = session_.bus().subscribe<M>([offset, look](const M& message, const Receipt& receipt) {
+      offset->add(message.stamp, receipt.arrival);
+      look(message);
+    });
     inputs_.push_back({what, &TopicOf<M>::row, &status, offset});
   }
 
@@ -164,6 +173,8 @@ class Look {
   std::set<std::uint64_t> heard_;
   std::map<std::string, Offset> clocks_;
   std::vector<Input> inputs_;
+  std::set<std::string> sources_;
+  std::map<std::string, Pose> bases_;
 };
 
 Finding check_configuration(const DdsConfiguration& dds) {
@@ -299,6 +310,43 @@ void judge_inputs(const DoctorOptions& options, const Json& seen, std::vector<Fi
   }
 }
 
+/// What the calibration says against what comes. Its own mistakes are told with the descriptions.
+void judge_calibration(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
+  const std::string file = resource("config/calibration.txtpb");
+  spark::Calibration calibration;
+  try {
+    calibration = spark::Calibration(file);
+  } catch (const std::exception&) {
+    return;
+  }
+  const std::set<std::string> heard = seen["sources"];
+  const std::size_t before = out.size();
+  for (const std::string& source : heard)
+    if (!calibration.sources().empty() && !calibration.sources().contains(source))
+      out.push_back({"calibration", Verdict::bad,
+                     "source " + source + " is heard, and is not in " + file + ": taken to speak in frame world",
+                     "say there where it stands, or that it speaks_in WORLD"});
+  for (const auto& [name, source] : calibration.sources())
+    if (options.perception && !heard.contains(name))
+      out.push_back({"calibration", Verdict::missing, "source " + name + " of " + file + " says nothing on " + where(options.domain),
+                     "start it, or take it out of the file"});
+  for (const auto& [name, numbers] : seen["bases"].items()) {
+    const auto robot = calibration.robots().find(name);
+    if (robot == calibration.robots().end()) continue;
+    const std::vector<double> is = numbers;
+    const Pose T = robot->second.T_world_base.inverse() * Pose(Eigen::Map<const Eigen::Matrix4d>(is.data()));
+    const double off = T.translation().norm(), turned = Eigen::AngleAxisd(T.linear()).angle();
+    if (off <= kBaseOff && turned <= kBaseTurned) continue;
+    out.push_back(
+        {"calibration", Verdict::bad,
+         format("the base of %s is %.3f m and %.1f degrees from where %s says", name.c_str(), off, turned * 180 / M_PI, file.c_str()),
+         "measure it again, or correct what its driver reports as T_world_base"});
+  }
+  if (out.size() == before && (!heard.empty() || !seen["bases"].empty()) &&
+      !(calibration.sources().empty() && calibration.robots().empty()))
+    out.push_back({"calibration", Verdict::good, "what comes on " + where(options.domain) + " is as the file says", ""});
+}
+
 void judge_company(const DoctorOptions& options, const Json& seen, bool held, std::vector<Finding>& out) {
   std::string commanders;
   for (const Json& commander : seen["commanders"]) commanders += (commanders.empty() ? "" : ", ") + commander.get<std::string>();
@@ -372,6 +420,7 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
   }
   judge_clocks(options, seen, out);
   judge_inputs(options, seen, out);
+  judge_calibration(options, seen, out);
   judge_company(options, seen, held, out);
   return out;
 }

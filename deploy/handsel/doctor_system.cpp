@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <functional>
 
 #include "common/base/errors.hpp"
@@ -13,6 +14,7 @@
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
 #include "common/model/hand_model.hpp"
+#include "components/spark/calibration.hpp"
 #include "deploy/handsel/doctor.hpp"
 #include "deploy/handsel/launcher.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
@@ -70,6 +72,37 @@ Finding check_port(const DoctorOptions& options, const std::vector<RunningProces
   }
   return {"port", Verdict::bad, port + " is taken" + (holder.empty() ? "" : " by " + holder) + "; a system that starts now shows no page",
           "end what holds it, or choose another with --port"};
+}
+
+Finding check_calibration() {
+  const std::string file = (resource_root() / "config/calibration.txtpb").string();
+  if (!std::filesystem::exists(file))
+    return {"calibration", Verdict::note, file + " is not there: every source is taken to speak in frame world",
+            "write one; docs/calibration.md says how"};
+  try {
+    const spark::Calibration calibration(file);
+    const std::time_t now = std::time(nullptr);
+    char today[16];
+    std::strftime(today, sizeof today, "%Y-%m-%d", std::gmtime(&now));
+    std::string stale;
+    const auto judge = [&](const std::string& what, const std::string& measured) {
+      const auto days = spark::days_between(measured, today);
+      if (!days) return;
+      if (*days < -1) stale += (stale.empty() ? "" : ", ") + what + " was measured on " + measured + ", which is not yet";
+      if (calibration.valid_days() > 0 && *days > calibration.valid_days())
+        stale += (stale.empty() ? "" : ", ") + what + " was measured " + std::to_string(static_cast<int>(*days)) + " days ago";
+    };
+    for (const auto& [name, source] : calibration.sources()) judge("source " + name, source.measured);
+    for (const auto& [name, robot] : calibration.robots()) judge("robot " + name, robot.measured);
+    if (!stale.empty()) return {"calibration", Verdict::note, stale, "measure again, and write the date to " + file};
+    const std::size_t count = calibration.sources().size();
+    return {"calibration", Verdict::good,
+            count == 0 ? "no source is listed: each speaks in frame world"
+                       : std::to_string(count) + " sources and " + std::to_string(calibration.robots().size()) + " robots",
+            ""};
+  } catch (const std::exception& error) {
+    return {"calibration", Verdict::bad, error.what(), "correct it; docs/calibration.md says what stands there"};
+  }
 }
 
 std::string names(const std::vector<RunningProcess>& processes) {
@@ -132,6 +165,7 @@ std::vector<Finding> check_descriptions(const DoctorOptions& options) {
     }
     return text.empty() ? std::string("the scenario has none") : text;
   }));
+  out.push_back(check_calibration());
   const bool loads = std::all_of(out.begin(), out.end(), [](const Finding& finding) { return finding.verdict == Verdict::good; });
   if (loads) {
     out.push_back(attempt("settings", [&] {

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <array>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
 
 #include "common/base/errors.hpp"
+#include "common/messages/world.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/performer.hpp"
 #include "deploy/handsel/session.hpp"
@@ -92,6 +94,39 @@ int tell(const TaskOptions& options) {
   return 0;
 }
 
+/// Says who was cleared, or why nobody was.
+int clear_person(const TaskOptions& options) {
+  catch_interrupts();
+  Session session(options.domain);
+  session.require_system();
+  Seen<HumanState> people;
+  session.bus().subscribe<HumanState>([&](const HumanState& sample, const Receipt& receipt) { people = {true, sample, receipt.arrival}; });
+  if (!session.wait(std::chrono::seconds(1), [&] { return people.ever; }))
+    throw MissingError("no HumanState on DDS domain " + std::to_string(options.domain) + ": SPARK is not there");
+  const auto lost = [&] {
+    std::vector<std::string> out;
+    for (const Person& person : people.sample.people)
+      if (person.inflation > 0 && person.hands.empty() && (options.goal.human.empty() || person.id == options.goal.human))
+        out.push_back(person.id);
+    return out;
+  };
+  const std::vector<std::string> before = lost();
+  if (before.empty()) {
+    const bool known = std::any_of(people.sample.people.begin(), people.sample.people.end(),
+                                   [&](const Person& person) { return person.id == options.goal.human; });
+    std::printf("%s\n", options.goal.human.empty() ? "nobody is lost"
+                        : known                    ? (options.goal.human + " is seen, and stays").c_str()
+                                                   : ("nobody is called " + options.goal.human).c_str());
+    return 1;
+  }
+  TaskGoal goal = options.goal;
+  goal.id = session.new_task_id();
+  if (!session.send(goal)) throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks");
+  const bool done = session.wait(std::chrono::seconds(2), [&] { return lost().empty(); });
+  for (const std::string& id : before) std::printf("%s: %s\n", id.c_str(), done ? "cleared" : "still held as lost");
+  return done ? 0 : 1;
+}
+
 std::shared_ptr<TaskOptions> add(CLI::App& parent, int& exit_code, const char* word, const char* help, TaskKind kind,
                                  int (*action)(const TaskOptions&)) {
   auto options = std::make_shared<TaskOptions>();
@@ -140,6 +175,10 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   add(*task, exit_code, "resume", "goes on after pause", TaskKind::resume, tell);
   add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, tell);
   add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault", TaskKind::acknowledge, tell);
+
+  auto clear_lost =
+      add(*task, exit_code, "clear-person", "says that a person SPARK has lost sight of is gone", TaskKind::clear_person, clear_person);
+  task->get_subcommand("clear-person")->add_option("person", clear_lost->goal.human, "who; without, everybody lost");
 
   auto speed = add(app, exit_code, "speed", "global speed override, 0-100 %", TaskKind::speed, tell);
   CLI::App* command = app.get_subcommand("speed");

@@ -22,7 +22,7 @@ config::SparkSettings settings() {
   s.set_empty_after(0.5);
   s.set_doubt_time(0.5);
   s.set_edge(0.5);
-  s.set_edge_after(3);
+  s.set_unseen_after(0.5);
   return s;
 }
 
@@ -267,18 +267,57 @@ TEST(PeopleTracker, WhatTheSourceCannotSeeIsNotSeenEmpty) {
   EXPECT_TRUE(with_eye.state(at(2.2), kReach).people.empty()) << "with the wall gone the place is seen empty";
 }
 
-TEST(PeopleTracker, WhoLeavesThroughTheEdgeGrowsNoFartherThanTheEdgeAndIsDroppedAfterAWhile) {
+/// Anna walks out of the room along +x at 1 m/s within two seconds.
+void walk_out(PeopleTracker& tracker, const std::string& name = "anna") {
+  for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at(name, 2.9 + i / 60.0, 0)}), at(i / 30.0));
+}
+
+TEST(PeopleTracker, WhoLeavesThroughTheEdgeGrowsNoFartherThanTheEdgeAndIsNotDropped) {
   PeopleTracker tracker(settings());
-  for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at("anna", 2.9 + i / 60.0, 0)}), at(i / 30.0));
-  look(tracker, {}, 2.033, 4.0);
-  HumanState state = tracker.state(at(4), kReach);
-  ASSERT_EQ(state.people.size(), 1u) << "not gone at once";
+  walk_out(tracker);
+  look(tracker, {}, 2.033, 60.0);
+  const HumanState state = tracker.state(at(60), kReach);
+  ASSERT_EQ(state.people.size(), 1u) << "never gone silently";
   EXPECT_LE(state.people[0].inflation, 0.51) << "for the source looks on and would see her come back";
   EXPECT_FALSE(occupied(state, {2.9, 0, 1.2}));
-  PeopleTracker unwatched = tracker;
-  EXPECT_GT(unwatched.state(at(6), kReach).people[0].inflation, 3.0) << "when it no longer looks she may be anywhere";
-  look(tracker, {}, 4.033, 6.0);
-  EXPECT_TRUE(tracker.state(at(6), kReach).people.empty());
+  EXPECT_TRUE(state.covered);
+  EXPECT_NEAR(tracker.state(at(62), kReach).people[0].inflation, 0.5 + 2 * 1.6, 0.1) << "when it no longer looks she may come back";
+  look(tracker, {}, 62.0, 63.0);
+  EXPECT_LE(tracker.state(at(63), kReach).people[0].inflation, 0.51) << "what it looks at again is empty";
+}
+
+TEST(PeopleTracker, WhoComesInThroughAnEdgeIsTheOneWhoLeft) {
+  PeopleTracker tracker(settings());
+  walk_out(tracker);
+  look(tracker, {}, 2.033, 10.0);
+  look(tracker, {body_at("77", -3.8, 1)}, 10.033, 10.5);
+  const HumanState state = tracker.state(at(10.5), kReach);
+  ASSERT_EQ(state.people.size(), 1u);
+  EXPECT_EQ(state.people[0].id, "anna");
+  EXPECT_LT(torso(state.people[0]).position.x(), -3);
+}
+
+TEST(PeopleTracker, WhoAppearsInTheMiddleIsNotTheOneWhoLeft) {
+  PeopleTracker tracker(settings());
+  walk_out(tracker);
+  look(tracker, {}, 2.033, 10.0);
+  look(tracker, {body_at("77", 0, 1)}, 10.033, 10.5);
+  EXPECT_EQ(tracker.state(at(10.5), kReach).people.size(), 2u);
+}
+
+TEST(PeopleTracker, AnOperatorClearsWhoIsLostAndNobodyElse) {
+  PeopleTracker tracker(settings());
+  walk_out(tracker);
+  look(tracker, {body_at("bert", 0, 1)}, 2.033, 3.0);
+  EXPECT_EQ(tracker.clear("bert", at(3)), 0u) << "he is seen";
+  EXPECT_EQ(tracker.clear("carla", at(3)), 0u);
+  ASSERT_EQ(tracker.state(at(3), kReach).people.size(), 2u);
+  EXPECT_EQ(tracker.clear("anna", at(3)), 1u);
+  EXPECT_EQ(tracker.state(at(3), kReach).people.at(0).id, "bert");
+  look(tracker, {body_at("bert", 0, 1), body_at("anna", 3, 0)}, 3.033, 3.1);
+  EXPECT_EQ(tracker.state(at(3.1), kReach).people.size(), 2u) << "who is seen after all is there";
+  look(tracker, {}, 3.133, 3.4, "camera", {{0.5, -4, -0.5}, {0.6, 4, 2.6}});
+  EXPECT_EQ(tracker.clear("", at(3.6)), 2u) << "everybody lost";
 }
 
 TEST(PeopleTracker, TwoHalvesCoverTheWhole) {
