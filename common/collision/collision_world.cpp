@@ -609,17 +609,6 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
   return least;
 }
 
-double CollisionWorld::distance_to_ball(const Vector& q, const Vector3& centre, double radius) {
-  Impl& w = *impl_;
-  w.robot.forward(q, w.T_root_link);
-  double least = std::numeric_limits<double>::infinity();
-  for (const LinkCapsule& capsule : w.capsules) {
-    const Pose T = w.T_world_base * w.T_root_link[capsule.link];
-    least = std::min(least, segment_distance(T * capsule.a, T * capsule.b, centre, centre) - capsule.radius - radius);
-  }
-  return least;
-}
-
 double CollisionWorld::distance_to_scene(const Vector& q, double cap) {
   Impl& w = *impl_;
   w.place(q);

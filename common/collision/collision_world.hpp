@@ -71,8 +71,6 @@ class CollisionWorld {
   /// Negative when they overlap. All body parts count, whatever set_people and the allowed contacts say.
   /// Writes the points nearest each other on robot and person, in the world, when given.
   double distance_to_people(const Vector& q, Vector3* on_robot = nullptr, Vector3* on_person = nullptr);
-  /// Least distance robot (with what it holds) to a ball in the world [m], by the capsules around its links; negative when they overlap.
-  double distance_to_ball(const Vector& q, const Vector3& centre, double radius);
   /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked: distances beyond `cap` return `cap`.
   double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity());
 

@@ -10,6 +10,7 @@ namespace {
 using namespace body;
 
 constexpr double kLeastConfidence = 0.05;
+constexpr double kLeastSpread = 4e-3;  // points closer to one vertical line do not tell which way a body faces [m^2]
 constexpr int kCount = static_cast<int>(kBodyJoints.size());
 
 /// The skeleton as a tree from the chest outward.
@@ -43,7 +44,7 @@ void place(Points& body, const Points& points, const Seen& seen, const ObservedP
     spread += w * flat_norm(a) * flat_norm(b);
   }
   double turn = 0;
-  if (spread > 1e-3) {
+  if (spread > kLeastSpread) {
     turn = std::atan2(sine, cosine);
   } else if (observed.has_gaze && flat_norm(observed.gaze_direction) > 0.1) {
     const Vector3 left = body[l_shoulder] - body[r_shoulder];

@@ -30,7 +30,7 @@ bool same(const Trajectory& a, const Trajectory& b) {
 }  // namespace
 
 Forecaster::Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings)
-    : robot_(robot), settings_(settings), world_(robot, std::move(library)), cost_(robot, cost) {}
+    : robot_(robot), settings_(settings), world_(robot, std::move(library)), cost_(robot, cost), capsules_(robot_capsules(robot)) {}
 
 void Forecaster::set_scene(const Scene& scene) {
   const bool moved = !scene.T_world_base.isApprox(T_world_base_, 1e-6);
@@ -98,15 +98,26 @@ CollisionVerdict Forecaster::scene_verdict(std::size_t index, const Vector& q) {
   return contacts_[index];
 }
 
+/// Of the links where `links_` has them.
+double Forecaster::distance_to_ball(const Vector3& centre, double radius) const {
+  double least = kInfinity;
+  for (const LinkCapsule& capsule : capsules_) {
+    const Pose T = T_world_base_ * links_[static_cast<std::size_t>(capsule.link)];
+    least = std::min(least, segment_distance(T * capsule.a, T * capsule.b, centre, centre) - capsule.radius - radius);
+  }
+  return least;
+}
+
 void Forecaster::look(const Vector& q, double ahead, TrajectoryForecast& forecast) {
   forecast.clearance = std::min(forecast.clearance, world_.distance_to_people(q));
+  if (!hands_.empty()) robot_.forward(q, links_);
   for (const Hand& hand : hands_) {
     const auto next = std::find_if(hand.way.begin(), hand.way.end(), [&](const HandAhead& h) { return h.time > ahead; });
     if (next == hand.way.begin() || next == hand.way.end()) continue;
     const HandAhead& before = *std::prev(next);
     const double share = (ahead - before.time) / (next->time - before.time);
     const Vector3 expected = (1 - share) * before.position + share * next->position;
-    forecast.clearance = std::min(forecast.clearance, world_.distance_to_ball(q, expected, hand.radius));
+    forecast.clearance = std::min(forecast.clearance, distance_to_ball(expected, hand.radius));
   }
   if (cost_.anyone()) forecast.cost = std::max(forecast.cost, cost_(q));
 }

@@ -8,6 +8,7 @@
 #include "common/collision/collision_world.hpp"
 #include "common/cost/human_cost.hpp"
 #include "common/messages/execution.hpp"
+#include "common/model/robot_capsules.hpp"
 
 namespace handsel::collision_checker {
 
@@ -38,6 +39,7 @@ class Forecaster {
   bool fits(const ActiveTrajectory& active) const;
   void remember_for(const ActiveTrajectory& active);
   void look(const Vector& q, double ahead, TrajectoryForecast& forecast);
+  double distance_to_ball(const Vector3& centre, double radius) const;
   CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
 
   const RobotModel& robot_;
@@ -60,6 +62,8 @@ class Forecaster {
     std::vector<HandAhead> way;  // from now on
   };
   std::vector<Hand> hands_;
+  std::vector<LinkCapsule> capsules_;
+  std::vector<Pose> links_;
 
   Vector rest_position_;  // where `rest_` was computed
   TrajectoryForecast rest_;

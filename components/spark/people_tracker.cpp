@@ -11,13 +11,12 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameId = 0.15;   // a body with the id they had is preferred by this [m]
-constexpr double kPause = 0.3;     // under another id a person comes back no farther than they walk in this time [s]
-constexpr double kFresh = 0.1;     // sights of joints this much apart are one body [s]
-constexpr double kFastest = 2.2;   // [m/s]
-constexpr double kSettled = 0.08;  // a body moves by this between two looks without a doubt [m]
-constexpr double kConfirmed =
-    0.15;  // one look does not show that a lost person is where it says: all they may have reached counts so long [s]
+constexpr double kSameId = 0.15;        // a body with the id they had is preferred by this [m]
+constexpr double kPause = 0.3;          // under another id a person comes back no farther than they walk in this time [s]
+constexpr double kFresh = 0.1;          // sights of joints this much apart are one body [s]
+constexpr double kFastest = 2.2;        // [m/s]
+constexpr double kSettled = 0.08;       // a body moves by this between two looks without a doubt [m]
+constexpr double kConfirmed = 0.15;     // where a lost person may have been counts so long after the first look [s]
 constexpr double kGapOfVelocity = 0.5;  // beyond this a velocity is found anew [s]
 constexpr double kLeastConfidence = 0.05;
 constexpr double kGuessed = 3;   // a joint that was not seen is this much noisier
@@ -32,6 +31,10 @@ const int kHead = index("head"), kTorso = index("torso");
 const std::array kHands = {index("l_hand"), index("r_hand")}, kWrists = {index("l_wrist"), index("r_wrist")},
                  kShoulders = {index("l_shoulder"), index("r_shoulder")};
 const std::array kTrunkMiddle = {index("neck"), index("torso"), index("waist"), index("l_shoulder"), index("r_shoulder")};
+const std::vector<const char*> kLimbs[] = {{"l_shoulder", "l_elbow", "l_wrist", "l_hand"},
+                                           {"r_shoulder", "r_elbow", "r_wrist", "r_hand"},
+                                           {"l_hip", "l_knee", "l_ankle"},
+                                           {"r_hip", "r_knee", "r_ankle"}};
 
 bool of_trunk(int joint) {
   static const std::array trunk = {index("neck"),       index("torso"), index("waist"), index("l_shoulder"),
@@ -97,6 +100,28 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation, T
   return of;
 }
 
+/// What was never seen of a body: as it hangs from what was, once that tells which way the body faces. The first look may have told it
+/// wrong.
+void PeopleTracker::guess_unseen(const Track& track, std::vector<BodyJoint>& body) const {
+  const auto seen = [&](const char* joint) { return track.joint_seen[static_cast<std::size_t>(index(joint))].has_value(); };
+  const auto at = [&](const std::vector<BodyJoint>& b, const char* joint) -> Vector3 {
+    return b[static_cast<std::size_t>(index(joint))].position;
+  };
+  const bool shoulders = seen("l_shoulder") && seen("r_shoulder");
+  if (!shoulders && !(seen("l_hip") && seen("r_hip"))) return;
+  const Vector3 left = shoulders ? at(body, "l_shoulder") - at(body, "r_shoulder") : at(body, "l_hip") - at(body, "r_hip");
+  const auto model = standing_body(Vector3::Zero(), std::atan2(-left.x(), left.y()), track.person.stature);
+  const Vector3 trunk = shoulders ? at(body, "l_shoulder") + at(body, "r_shoulder") - at(model, "l_shoulder") - at(model, "r_shoulder")
+                                  : at(body, "l_hip") + at(body, "r_hip") - at(model, "l_hip") - at(model, "r_hip");
+  for (const char* joint : {"head", "neck", "torso", "waist", "l_shoulder", "r_shoulder", "l_hip", "r_hip"})
+    if (!seen(joint)) body[static_cast<std::size_t>(index(joint))].position = at(model, joint) + trunk / 2;
+  for (const auto& limb : kLimbs) {
+    if (std::any_of(limb.begin() + 1, limb.end(), seen)) continue;
+    for (auto joint = limb.begin() + 1; joint != limb.end(); ++joint)
+      body[static_cast<std::size_t>(index(*joint))].position = at(body, limb.front()) + at(model, *joint) - at(model, limb.front());
+  }
+}
+
 void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const {
   if (body.has_gaze && (!track.gaze_seen || seen >= *track.gaze_seen)) {
     track.person.gaze_origin = body.gaze_origin;
@@ -132,9 +157,12 @@ void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint s
     merged.joints.push_back({kBodyJoints[i], person.joints[i].position + dt * person.joints[i].velocity, 0.5});
     lately[i] = true;
   }
+  track.size.see(body);
+  person.stature = track.size.stature();
   const Person previous = person;
   std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
   if (fitted.empty()) return;
+  guess_unseen(track, fitted);
   for (std::size_t i = 0; i < kJoints; ++i) {
     const double noise = settings_.joint_noise() * (told[i] ? 1.0 : kGuessed);
     const double since = known ? to_seconds(at - track.moved[i]) : 0.0;
@@ -179,7 +207,7 @@ void PeopleTracker::follow_hands(Track& track, const std::array<bool, kJoints>& 
   }
 }
 
-/// No farther from the shoulder than the arm is long.
+/// The balls reach no farther from the shoulder than the arm, wherever that may have gone.
 std::vector<HandPrediction> PeopleTracker::hands_ahead(const Track& track, const Person& person, TimePoint now) const {
   std::vector<HandPrediction> out;
   for (std::size_t side = 0; side < kHands.size(); ++side) {

@@ -11,6 +11,7 @@
 #include "common/config/spark.pb.h"
 #include "common/messages/world.hpp"
 #include "common/model/human_body.hpp"
+#include "components/spark/body_size.hpp"
 #include "components/spark/hand_predictor.hpp"
 #include "components/spark/joint_motion.hpp"
 #include "components/spark/sources.hpp"
@@ -53,7 +54,8 @@ class PeopleTracker {
     std::array<std::optional<TimePoint>, kJoints> joint_seen;
     std::array<JointMotion, kJoints> motion;
     std::array<TimePoint, kJoints> moved{};  // when the motion was last told
-    std::array<HandPredictor, 2> hands;      // left, right
+    BodySize size;
+    std::array<HandPredictor, 2> hands;  // left, right
     std::array<std::optional<TimePoint>, 2> hand_seen;
     double doubt{};  // [m], until doubted_until
     TimePoint doubted_until{};
@@ -74,6 +76,7 @@ class PeopleTracker {
   Track* comer(const Track& gone, TimePoint now);
   void erase(std::size_t index, Track* name_goes_to);
   void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const;
+  void guess_unseen(const Track& track, std::vector<BodyJoint>& body) const;
   void follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const;
   std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) const;
   void add(const ObservedPerson& body, const std::string& source, TimePoint seen);

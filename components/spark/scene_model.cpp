@@ -121,17 +121,19 @@ bool SceneModel::believes(Known& known, const ObservedObject& observed, const st
 
 void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
   locate_tool();
-  std::vector<ObservedObject> looks = observation.objects;
-  std::erase_if(looks, [&](ObservedObject& observed) {
-    if (known_shape(observed)) return false;
+  std::vector<ObservedObject> looks;
+  for (ObservedObject observed : observation.objects) {
+    if (known_shape(observed)) {
+      looks.push_back(std::move(observed));
+      continue;
+    }
     ++refused_;
     refused_at_ = seen;
     refusal_ = "object " + observed.id + " of source " + observation.source +
                (observed.model.empty() ? " has neither a model nor a primitive"
                                        : " is of model " + observed.model + ", which is not described, and has no primitive") +
                " with a size above 0";
-    return true;
-  });
+  }
   unswap(looks, seen);
   for (const ObservedObject& observed : looks) {
     Known& known = objects_[observed.id];

@@ -286,6 +286,27 @@ TEST_F(Doctor, finds_settings_no_component_would_start_with) {
   expect_finding(doctor("", home), 1, "bad", "settings", "spark.txtpb");
 }
 
+TEST_F(Doctor, finds_a_calibration_that_is_wrong_stale_or_not_what_comes) {
+  const std::string home = copied_home(), file = "deploy/config/calibration.txtpb";
+  folder.write(file, "sources { source: \"side\" speaks_in: CAMERA T_world_camera { rotation: [1, 0, 0, 0, 1, 0, 0, 0, -1] } }\n");
+  expect_finding(doctor("", home), 1, "bad", "calibration", "calibration.txtpb:1: source side has a rotation that mirrors");
+
+  folder.write(file,
+               "sources { source: \"side\" measured: \"2020-01-01\" } robots { robot: \"jido\" T_world_base { position { x: 0.2 } } } "
+               "valid_days: 180\n");
+  const Publishing<HumanObservation> people([](Stamp now) { return HumanObservation{.stamp = now, .source = "top"}; });
+  const Publishing<RobotState> robot([](Stamp now) {
+    RobotState state;
+    state.stamp = now;
+    state.robot = "jido";
+    return state;
+  });
+  const Diagnosis diagnosis = doctor("--perception", home);
+  for (const char* words : {"source side was measured", "source top is heard, and is not in", "source side of",
+                            "the base of jido is 0.200 m and 0.0 degrees from"})
+    EXPECT_FALSE(diagnosis.find("calibration", words).is_null()) << words << "\n" << diagnosis.all();
+}
+
 TEST_F(Doctor, finds_that_the_port_is_taken_and_by_whom) {
   const BoundPort taken(SOCK_STREAM, 0);
   const std::string port = std::to_string(taken.port());

@@ -1,6 +1,7 @@
 // The facts of simulated handovers beside the simulator's truth, in lock-step. HANDSEL_RUNS: how many seeds (3).
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <optional>
@@ -75,10 +76,70 @@ class Told {
   std::map<std::string, int> before_;
 };
 
+/// Hands as SPARK expected them, beside where they went.
+class Expected {
+ public:
+  void hear(const HumanState& people, double t) {
+    for (const Person& person : people.people)
+      for (const HandPrediction& hand : person.hands) {
+        const auto joint = static_cast<std::size_t>(body_joint_index(hand.joint));
+        for (const HandAhead& ahead : hand.ahead) open_.push_back({t + ahead.time, joint, ahead, person.joints.at(joint)});
+      }
+  }
+  void see(const GroundTruth& truth) {
+    const double t = truth.sim_time;
+    if (truth.person.size() != kBodyJoints.size()) return;
+    std::erase_if(open_, [&](const Open& one) {
+      if (one.due > t) return false;
+      if (one.due < before_ || last_.size() != truth.person.size()) return true;
+      const double share = (one.due - before_) / std::max(1e-9, t - before_);
+      const Vector3 is = (1 - share) * last_[one.joint].position + share * truth.person[one.joint].position;
+      const double error = (one.ahead.position - is).norm();
+      Sum& sum = sums_[static_cast<int>(std::lround(10 * one.ahead.time))];
+      ++sum.count;
+      sum.inside += error <= one.ahead.uncertainty;
+      sum.ours += error * error;
+      sum.stays += (one.now.position - is).squaredNorm();
+      sum.goes_on += (one.now.position + one.ahead.time * one.now.velocity - is).squaredNorm();
+      return true;
+    });
+    last_ = truth.person;
+    before_ = t;
+  }
+  void judge() const {
+    ASSERT_FALSE(sums_.empty());
+    for (const auto& [tenths, sum] : sums_) {
+      const auto rms = [&](double squares) { return 1e3 * std::sqrt(squares / sum.count); };
+      std::printf("hands %.1f s ahead: %.0f mm, stays %.0f, goes on %.0f; in the ball %.1f %% of %d\n", 0.1 * tenths, rms(sum.ours),
+                  rms(sum.stays), rms(sum.goes_on), 100.0 * sum.inside / sum.count, sum.count);
+      EXPECT_GE(sum.inside, 0.95 * sum.count) << tenths;
+      EXPECT_LT(sum.ours, sum.stays) << tenths;
+      EXPECT_LT(sum.ours, 1.1 * sum.goes_on) << tenths;
+    }
+  }
+
+ private:
+  struct Open {
+    double due;
+    std::size_t joint;
+    HandAhead ahead;
+    BodyJoint now;
+  };
+  struct Sum {
+    int count{}, inside{};
+    double ours{}, stays{}, goes_on{};
+  };
+  std::vector<Open> open_;
+  std::vector<BodyJoint> last_;
+  double before_{1e9};
+  std::map<int, Sum> sums_;
+};
+
 TEST(SimulatedHandovers, FactsAgreeWithTheTruth) {
   const char* asked = std::getenv("HANDSEL_RUNS");
   const int runs = asked ? std::atoi(asked) : 3;
   int handed_over = 0;
+  Expected hands;
   for (int seed = 1; seed <= runs; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     config::Scenario scenario;
@@ -87,13 +148,18 @@ TEST(SimulatedHandovers, FactsAgreeWithTheTruth) {
     Truth truth;
     Told told;
     double sim_time = 0;
+    TimePoint sim_at{};
     std::string object;
     system.seat().subscribe<GroundTruth>([&](const GroundTruth& sample, const Receipt&) {
       truth.see(sample);
       sim_time = sample.sim_time;
+      sim_at = system.now();
+      hands.see(sample);
       object = sample.object;
     });
     system.seat().subscribe<Facts>([&](const Facts& facts, const Receipt&) { told.hear(facts, sim_time, object); });
+    system.seat().subscribe<HumanState>(
+        [&](const HumanState& people, const Receipt&) { hands.hear(people, sim_time + to_seconds(system.now() - sim_at)); });
     bool ready = false;
     Performer performer(system.seat(), system.observer(), scenario, 0,
                         [&] { return ready = ready || not_ready(system.snapshot(), false).empty(); });
@@ -116,6 +182,7 @@ TEST(SimulatedHandovers, FactsAgreeWithTheTruth) {
     EXPECT_EQ(told.begun["held_by_human " + object + " anna"], 1) << "flicker";
     EXPECT_EQ(told.begun["released " + object + " robot"], 1) << "a false release, or flicker";
   }
+  hands.judge();
   EXPECT_GE(handed_over, runs * 9 / 10) << "too few handovers to judge facts by";
 }
 

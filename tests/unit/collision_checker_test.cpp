@@ -102,6 +102,30 @@ TEST_F(Forecast, a_path_that_grows_while_it_runs_is_judged_anew) {
   EXPECT_TRUE(forecaster_.forecast(active).collides) << "the same command, and what was put in line behind it";
 }
 
+TEST_F(Forecast, a_hand_counts_where_it_is_expected_when_the_robot_gets_there) {
+  Scene scene;
+  scene.robot_known = true;
+  scene.T_world_base = make_pose({0, 0, 1.2});
+  forecaster_.set_scene(scene);
+  HumanState people = person({3, 0, 0});
+  const ActiveTrajectory active = sweep(1.7, 1.0);  // it points to (1.1, 0) 0.3 s later
+  forecaster_.set_people(people);
+  const double stays = forecaster_.forecast(active).clearance;
+  ASSERT_GT(stays, 1.0);
+  const auto expected = [&](double first, double last) {
+    people.people[0].hands = {{"r_hand", {}}};
+    for (const double time : {0.1, 0.2, 0.3, 0.4, 0.5})
+      people.people[0].hands[0].ahead.push_back({time, time >= first && time <= last ? Vector3(1.1, 0, 1.2) : Vector3(3, 0, 1.2), 0.2});
+    forecaster_.set_people(people);
+    const TrajectoryForecast forecast = forecaster_.forecast(active);
+    EXPECT_FALSE(forecast.collides) << "the guard answers for hands";
+    return forecast.clearance;
+  };
+  EXPECT_LT(expected(0.3, 0.3), 0.0);
+  EXPECT_GT(expected(0.5, 0.5), 0.02) << "the arm is past by then";
+  EXPECT_NEAR(expected(0.6, 0.6), stays, 0.5);
+}
+
 TEST_F(Forecast, a_torso_in_the_way_is_a_collision_a_hand_only_lowers_the_clearance) {
   Scene scene;
   scene.robot_known = true;

@@ -363,6 +363,42 @@ TEST(PeopleTracker, ADartIsKnownWithinAFewLooks) {
   EXPECT_LT(state.people.at(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].velocity.x(), -1.2);
 }
 
+/// Any part of a body at 15 Hz with confidences, a gaze from elsewhere or none: a complete body, as tall as it is, near where it is.
+TEST(PeopleTracker, AnySubsetOfJointsMakesABodyOfItsOwnSize) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit(0, 1);
+    std::normal_distribution<double> noise(0, 0.01);
+    const double stature = 1.3 + 0.7 * unit(random), yaw = 6.28 * unit(random);
+    PeopleTracker tracker(settings());
+    for (int i = 0; i < 45; ++i) {
+      ObservedPerson body;
+      body.body = "7";
+      const auto truth = standing_body({1.0 + 0.02 * i, 0.5, 0}, yaw, stature);
+      for (const BodyJoint& joint : truth)
+        if (unit(random) < 0.5)
+          body.joints.push_back(
+              {joint.name, joint.position + Vector3(noise(random), noise(random), noise(random)), 0.2 + 0.8 * unit(random)});
+      tracker.observe(seen({body}), at(i / 15.0));
+      if (unit(random) < 0.5) {
+        ObservedPerson eyes;
+        eyes.body = "gaze";
+        eyes.has_gaze = true;
+        eyes.gaze_origin = truth[0].position;
+        HumanObservation gaze = seen({eyes}, {});
+        gaze.source = "eyes";
+        tracker.observe(gaze, at(i / 15.0 + 0.01));
+      }
+      const HumanState state = tracker.state(at(i / 15.0 + 0.01), kReach);
+      if (i < 10) continue;
+      ASSERT_EQ(state.people.size(), 1u) << i;
+      ASSERT_EQ(state.people[0].joints.size(), kBodyJoints.size());
+    }
+    EXPECT_NEAR(tracker.state(at(3), kReach).people[0].stature, stature, 0.06);
+  }
+}
+
 TEST(PeopleTracker, ABodyWithoutJointsIsNobody) {
   PeopleTracker tracker(settings());
   ObservedPerson empty;
