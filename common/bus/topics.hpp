@@ -49,7 +49,8 @@ struct TopicRow {
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller") \
   X(Facts, "facts", state, 20, 0.3, 98304, "spark", "supervisor attention") \
-  X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", "bridge") \
+  X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", \
+    "collision_checker path_planner trajectory_planner manipulation_planner") \
   X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor spark") \
   X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel") \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner") \

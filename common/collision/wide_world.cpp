@@ -12,17 +12,9 @@ namespace {
 
 constexpr double kRoundingShare = 2e-5;  // of the robot's reach: what single precision may put a sphere wrong [m/m]
 constexpr int kRowsFrom = 4;             // solids from which on they are also looked at side by side
-constexpr double kMostTurn = 45.0;       // positions beyond this are left to the exact check [rad]
-
-/// A rotation whose z is the axis.
-Eigen::Matrix3d along_z(const Vector3& axis) { return Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis).toRotationMatrix(); }
+constexpr double kMostTurn = WideChain::kMostTurn;
 
 bool primitive(const Shape& shape) { return !std::holds_alternative<MeshPtr>(shape); }
-
-void put(const Pose& T, float out[12]) {
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 4; ++k) out[4 * i + k] = static_cast<float>(T.matrix()(i, k));
-}
 
 }  // namespace
 
@@ -32,50 +24,6 @@ WideWorld::Floats WideWorld::floats(std::size_t count) {
   auto* memory = static_cast<float*>(::operator new[](std::max<std::size_t>(count, 16) * sizeof(float), std::align_val_t(64)));
   std::fill_n(memory, std::max<std::size_t>(count, 16), 0.0f);
   return Floats(memory);
-}
-
-/// Joints that move, with the links they carry rigidly in one frame each.
-void WideWorld::fold_joints(const std::vector<int>& axes, const Vector& q) {
-  row_of_dof_.assign(static_cast<std::size_t>(robot_.dof()), -1);
-  dof_of_row_ = axes;
-  for (std::size_t i = 0; i < axes.size(); ++i) row_of_dof_[static_cast<std::size_t>(axes[i])] = static_cast<int>(i);
-  joints_.clear();
-  T_parent_joint_.clear();
-  slide_.clear();
-  body_of_link_.assign(robot_.links().size(), 0);
-  T_body_link_.assign(robot_.links().size(), Pose::Identity());
-  for (const Joint& joint : robot_.joints()) {
-    const auto parent = static_cast<std::size_t>(joint.parent), child = static_cast<std::size_t>(joint.child);
-    Pose T = T_body_link_[parent] * joint.T_parent_joint;
-    const bool slides = joint.kind == JointKind::prismatic;
-    const int row = joint.kind == JointKind::fixed || joint.dof < 0 ? -1 : row_of_dof_[static_cast<std::size_t>(joint.dof)];
-    if (row < 0) {
-      const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;
-      if (joint.kind == JointKind::prismatic)
-        T.translation() += T.linear() * (value * joint.axis);
-      else if (joint.kind != JointKind::fixed)
-        T.linear() = T.linear() * Eigen::AngleAxisd(value, joint.axis).toRotationMatrix();
-      body_of_link_[child] = body_of_link_[parent];
-      T_body_link_[child] = T;
-      continue;
-    }
-    const Eigen::Matrix3d turned = along_z(joint.axis);
-    T.linear() = T.linear() * turned;
-    detail::WideJoint moving{};
-    put(T, moving.T);
-    moving.parent = body_of_link_[parent];
-    moving.row = row;
-    moving.factor = static_cast<float>(joint.mimic_factor);
-    moving.offset = static_cast<float>(joint.mimic_offset);
-    moving.slides = slides ? 1 : 0;
-    joints_.push_back(moving);
-    T_parent_joint_.push_back(T);
-    const double farthest = std::max(std::abs(joint.lower), std::abs(joint.upper));
-    slide_.push_back(!slides ? 0.0 : std::isfinite(farthest) ? farthest : 1e3);
-    body_of_link_[child] = static_cast<int>(joints_.size());
-    T_body_link_[child].linear() = turned.transpose();
-    T_body_link_[child].translation().setZero();
-  }
 }
 
 int WideWorld::add_tree(const SphereCover& cover, const Pose& T_body_shape, int body) {
@@ -122,7 +70,7 @@ void WideWorld::place_trees(const std::vector<Body>& bodies) {
   parts_.clear();
   std::map<std::pair<int, std::uint8_t>, std::size_t> part_of;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const int body = body_of_link_[static_cast<std::size_t>(bodies[i].link)];
+    const int body = chain_.body_of_link[static_cast<std::size_t>(bodies[i].link)];
     if (body == 0) continue;
     const auto [it, fresh] = part_of.try_emplace({body, bodies[i].what}, parts_.size());
     if (fresh) parts_.push_back({body, bodies[i].what, {}, 0});
@@ -133,7 +81,7 @@ void WideWorld::place_trees(const std::vector<Body>& bodies) {
 void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs) {
   std::vector<int> root_of(bodies.size(), -1);
   std::vector<int> part_of(bodies.size(), -1);
-  const auto place = [&](std::size_t i) { return T_body_link_[static_cast<std::size_t>(bodies[i].link)] * bodies[i].T_link_shape; };
+  const auto place = [&](std::size_t i) { return chain_.T_body_link[static_cast<std::size_t>(bodies[i].link)] * bodies[i].T_link_shape; };
   for (std::size_t p = 0; p < parts_.size(); ++p) {
     Part& part = parts_[p];
     std::vector<int> roots;
@@ -149,8 +97,8 @@ void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<st
   std::map<std::pair<int, int>, std::vector<int>> against_solid;  // part, body -> shapes of the part
   for (auto [a, b] : pairs) {
     auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-    const int body_i = body_of_link_[static_cast<std::size_t>(bodies[i].link)],
-              body_j = body_of_link_[static_cast<std::size_t>(bodies[j].link)];
+    const int body_i = chain_.body_of_link[static_cast<std::size_t>(bodies[i].link)],
+              body_j = chain_.body_of_link[static_cast<std::size_t>(bodies[j].link)];
     if (body_i == body_j) continue;
     if (body_i == 0) std::swap(i, j);
     if (body_i == 0 || body_j == 0) {
@@ -186,7 +134,7 @@ void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<st
 
 /// Upper bounds of how far sphere centres can be from the axes above them, whatever the configuration.
 void WideWorld::find_reach() {
-  const std::size_t n = joints_.size();
+  const std::size_t n = chain_.joints.size();
   std::vector<double> across(n + 1, 0.0), norm(n + 1, 0.0), largest(n + 1, 0.0);
   for (const detail::WideNode& node : nodes_) {
     const auto b = static_cast<std::size_t>(node.body);
@@ -198,14 +146,14 @@ void WideWorld::find_reach() {
   total_reach_ = 0;
   for (std::size_t b = 1; b <= n; ++b) {
     double bound = norm[b];  // of the centres from the origin of the frame reached
-    reach_[b * n + b - 1] = static_cast<float>(1.0001 * (joints_[b - 1].slides ? 1.0 : across[b]));
+    reach_[b * n + b - 1] = static_cast<float>(1.0001 * (chain_.joints[b - 1].slides ? 1.0 : across[b]));
     for (std::size_t at = b; at > 0;) {
-      const Vector3 t = T_parent_joint_[at - 1].translation();
-      const auto above = static_cast<std::size_t>(joints_[at - 1].parent);
-      const double below = bound + slide_[at - 1];
+      const Vector3 t = chain_.T_parent_joint[at - 1].translation();
+      const auto above = static_cast<std::size_t>(chain_.joints[at - 1].parent);
+      const double below = bound + chain_.slide[at - 1];
       if (above > 0) {
         const double perpendicular = std::hypot(t.x(), t.y()) + below;
-        reach_[b * n + above - 1] = static_cast<float>(1.0001 * (joints_[above - 1].slides ? 1.0 : perpendicular));
+        reach_[b * n + above - 1] = static_cast<float>(1.0001 * (chain_.joints[above - 1].slides ? 1.0 : perpendicular));
       }
       bound = t.norm() + below;
       at = above;
@@ -266,14 +214,14 @@ void WideWorld::set_robot(const std::vector<Body>& bodies, const std::vector<std
   searches_.clear();
   pairs_.clear();
   node_pairs_.clear();
-  fold_joints(axes, q);
+  chain_.fold(robot_, axes, q);
   place_trees(bodies);
   // Solids are cut at the robot's reach, which needs the trees; a first round finds it.
   total_reach_ = std::numeric_limits<double>::max() / 4;
   make_pairs(bodies, pairs);
   find_reach();
   for (detail::WideNode& node : nodes_) node.radius += static_cast<float>(rounding_);
-  const std::size_t n = joints_.size();
+  const std::size_t n = chain_.joints.size();
   pair_reach_.clear();
   for (const detail::WidePair& pair : pairs_) {
     const float* a = reach_.data() + static_cast<std::size_t>(nodes_[static_cast<std::size_t>(pair.a)].body) * n;
@@ -299,7 +247,7 @@ void WideWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_world
   node_list_.resize(own_node_list_);
   solid_list_.resize(own_solid_list_);
   node_pairs_.resize(own_node_pairs_);
-  pair_reach_.resize(own_pairs_ * joints_.size());
+  pair_reach_.resize(own_pairs_ * chain_.joints.size());
   solid_rows_.clear();
   const Pose T_base_world = T_world_base.inverse();
   std::vector<std::uint8_t> against;
@@ -318,8 +266,8 @@ void WideWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_world
       if ((part.what & solid.against) == 0) continue;
       pairs_.push_back({part.root, root, static_cast<std::int32_t>(node_pairs_.size()), 1});
       node_pairs_.push_back({part.root, root});
-      const float* reach = reach_.data() + static_cast<std::size_t>(part.body) * joints_.size();
-      pair_reach_.insert(pair_reach_.end(), reach, reach + joints_.size());
+      const float* reach = reach_.data() + static_cast<std::size_t>(part.body) * chain_.joints.size();
+      pair_reach_.insert(pair_reach_.end(), reach, reach + chain_.joints.size());
     }
   }
   // What is far out on the arm meets things first.
@@ -355,20 +303,20 @@ void WideWorld::put_in_rows(detail::WideSearch& search) {
 }
 
 void WideWorld::allocate() {
-  const std::size_t bodies = joints_.size() + 1;
+  const std::size_t bodies = chain_.joints.size() + 1;
   if (position_room_ < nodes_.size()) {
     position_room_ = nodes_.size() + nodes_.size() / 4;
     position_ = floats(3 * kStates * position_room_);
   }
   pose_ = floats(12 * kStates * bodies);
   margin_ = floats(kStates * bodies);
-  q_ = floats(kStates * dof_of_row_.size());
-  half_ = floats(kStates * dof_of_row_.size());
+  q_ = floats(kStates * chain_.dof_of_row.size());
+  half_ = floats(kStates * chain_.dof_of_row.size());
   stamp_.assign(nodes_.size(), 0);
   std::int32_t longest = 1;
   for (const detail::WideSearch& search : searches_) longest = std::max(longest, search.solids);
   lists_.assign(static_cast<std::size_t>(longest) * detail::kWideDepth, 0);
-  tables_.joints = joints_.data();
+  tables_.joints = chain_.joints.data();
   tables_.nodes = nodes_.data();
   tables_.solids = solids_.data();
   tables_.solid_rows = solid_rows_.data();
@@ -379,7 +327,7 @@ void WideWorld::allocate() {
   tables_.node_pairs = node_pairs_.data();
   tables_.reach = reach_.data();
   tables_.pair_reach = pair_reach_.data();
-  tables_.joint_count = static_cast<std::int32_t>(joints_.size());
+  tables_.joint_count = static_cast<std::int32_t>(chain_.joints.size());
   tables_.node_count = static_cast<std::int32_t>(nodes_.size());
   tables_.search_count = static_cast<std::int32_t>(searches_.size());
   tables_.pair_count = static_cast<std::int32_t>(pairs_.size());
@@ -397,9 +345,9 @@ std::uint32_t WideWorld::run(int count, bool swept) {
 }
 
 std::uint32_t WideWorld::unclear(const Vector* states, int count) {
-  for (std::size_t row = 0; row < dof_of_row_.size(); ++row)
+  for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row)
     for (int i = 0; i < count; ++i) {
-      const double value = states[i][dof_of_row_[row]];
+      const double value = states[i][chain_.dof_of_row[row]];
       if (!(std::abs(value) < kMostTurn)) return (1u << count) - 1u;
       q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(value);
     }
@@ -407,8 +355,8 @@ std::uint32_t WideWorld::unclear(const Vector* states, int count) {
 }
 
 std::uint32_t WideWorld::unclear_on_line(const Vector& from, const Vector& to, const double* at, int count) {
-  for (std::size_t row = 0; row < dof_of_row_.size(); ++row) {
-    const double start = from[dof_of_row_[row]], along = to[dof_of_row_[row]] - start;
+  for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row) {
+    const double start = from[chain_.dof_of_row[row]], along = to[chain_.dof_of_row[row]] - start;
     if (!(std::abs(start) + std::abs(along) < kMostTurn)) return (1u << count) - 1u;
     float* q = q_.get() + row * kStates;
     for (int i = 0; i < count; ++i) q[i] = static_cast<float>(start + at[i] * along);
@@ -421,8 +369,8 @@ const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const
   unclear_.clear();
   open_.clear();
   next_.clear();
-  for (std::size_t row = 0; row < dof_of_row_.size(); ++row)
-    if (!(std::abs(from[dof_of_row_[row]]) + std::abs(to[dof_of_row_[row]]) < kMostTurn)) {
+  for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row)
+    if (!(std::abs(from[chain_.dof_of_row[row]]) + std::abs(to[chain_.dof_of_row[row]]) < kMostTurn)) {
       unclear_.emplace_back(0.0, 1.0);
       return unclear_;
     }
@@ -432,8 +380,8 @@ const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const
       const int count = static_cast<int>(std::min<std::size_t>(kStates, open_.size() - first));
       std::uint32_t unclear = (1u << count) - 1u;
       if (blocks < most_blocks) {
-        for (std::size_t row = 0; row < dof_of_row_.size(); ++row) {
-          const double start = from[dof_of_row_[row]], along = to[dof_of_row_[row]] - start;
+        for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row) {
+          const double start = from[chain_.dof_of_row[row]], along = to[chain_.dof_of_row[row]] - start;
           for (int i = 0; i < count; ++i) {
             const auto [low, high] = open_[first + static_cast<std::size_t>(i)];
             q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(start + 0.5 * (low + high) * along);
@@ -457,12 +405,12 @@ const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const
 
 Pose WideWorld::link_pose(int link, int lane) const {
   const int width = kernels_->width;
-  const int body = body_of_link_[static_cast<std::size_t>(link)];
+  const int body = chain_.body_of_link[static_cast<std::size_t>(link)];
   Pose T = Pose::Identity();
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 4; ++k)
       T.matrix()(i, k) = pose_[static_cast<std::size_t>((body * 12 * kStates) + (4 * i + k) * width + lane % width)];
-  return T * T_body_link_[static_cast<std::size_t>(link)];
+  return T * chain_.T_body_link[static_cast<std::size_t>(link)];
 }
 
 }  // namespace handsel

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/collision/sphere_cover.hpp"
-#include "common/collision/wide_kernel.hpp"
+#include "common/collision/wide_chain.hpp"
 #include "common/model/robot_model.hpp"
 
 namespace handsel {
@@ -76,7 +76,6 @@ class WideWorld {
   using Floats = std::unique_ptr<float[], Free>;
   static Floats floats(std::size_t count);
 
-  void fold_joints(const std::vector<int>& axes, const Vector& q);
   void place_trees(const std::vector<Body>& bodies);
   void make_pairs(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs);
   void find_reach();
@@ -89,13 +88,7 @@ class WideWorld {
 
   const RobotModel& robot_;
   const detail::WideKernels* kernels_;
-  std::vector<int> row_of_dof_;  // -1: does not move
-  std::vector<int> dof_of_row_;
-  std::vector<int> body_of_link_;
-  std::vector<Pose> T_body_link_;
-  std::vector<detail::WideJoint> joints_;
-  std::vector<Pose> T_parent_joint_;
-  std::vector<double> slide_;  // most a joint slides [m]
+  WideChain chain_;
   std::vector<Part> parts_;
   std::vector<detail::WideNode> nodes_;
   std::vector<detail::WideSolid> solids_;

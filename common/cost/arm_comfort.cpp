@@ -79,13 +79,34 @@ double arm_comfort_cost(const ArmSize& arm, const Vector3& target) {
   return best;
 }
 
+std::optional<PlacedArm> placed_arm(const Person& person, Side side) {
+  const std::optional<ArmSize> size = arm_size(person, side);
+  if (!size) return std::nullopt;
+  PlacedArm arm{*size, find_joint(person, side == Side::left ? "l_shoulder" : "r_shoulder")->position, torso_axes(person).transpose()};
+  if (side == Side::right) arm.to_arm.row(1) *= -1;
+  return arm;
+}
+
+std::vector<PlacedArm> placed_arms(const Person& person) {
+  std::vector<PlacedArm> arms;
+  for (const Side side : {Side::left, Side::right})
+    if (const std::optional<PlacedArm> arm = placed_arm(person, side)) arms.push_back(*arm);
+  return arms;
+}
+
+double arm_comfort_cost(const CostGrid* layer, const std::vector<PlacedArm>& arms, const Vector3& p) {
+  if (layer != nullptr) {
+    const GridValue value = layer->value(p);
+    return value.inside && !value.forbidden ? value.cost : 1.0;
+  }
+  double best = 1.0;
+  for (const PlacedArm& arm : arms) best = std::min(best, arm_comfort_cost(arm.size, arm.to_arm * (p - arm.shoulder)));
+  return best;
+}
+
 double arm_comfort_cost(const Person& person, Side side, const Vector3& p) {
-  const std::optional<ArmSize> arm = arm_size(person, side);
-  if (!arm) return 1.0;
-  const Vector3& shoulder = find_joint(person, side == Side::left ? "l_shoulder" : "r_shoulder")->position;
-  Vector3 target = torso_axes(person).transpose() * (p - shoulder);
-  if (side == Side::right) target.y() = -target.y();  // second component is outward
-  return arm_comfort_cost(*arm, target);
+  const std::optional<PlacedArm> arm = placed_arm(person, side);
+  return arm ? arm_comfort_cost(arm->size, arm->to_arm * (p - arm->shoulder)) : 1.0;
 }
 
 double arm_comfort_cost(const Person& person, const Vector3& p) {

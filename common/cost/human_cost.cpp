@@ -5,10 +5,11 @@
 #include <limits>
 
 #include "common/collision/collision_world.hpp"
-#include "common/cost/person_frame.hpp"
 
 namespace handsel {
 namespace {
+
+constexpr double kProbeSpacing = 0.1;  // [m] between the points of a link at which outside layers are looked at
 
 double point_to_cylinder(const SimplifiedBody& body, const Vector3& p) {
   const Vector3 r = p - body.axis_bottom;
@@ -60,15 +61,16 @@ double safety_cost(double distance, double radius) {
   return (std::exp(std::min(penetration, 1.0) - 1.0) - std::exp(-1.0)) / (1.0 - std::exp(-1.0));
 }
 
-double visibility_cost(const Person& person, const Vector3& p, double cutoff) {
-  const BodyJoint* head = find_joint(person, "head");
-  if (!person.gaze_known && !head) return 0.0;
-  const Vector3 eyes = person.gaze_known ? person.gaze_origin : head->position;
-  const Vector3 gaze = person.gaze_known ? person.gaze_direction : Vector3(torso_axes(person).col(0));
-  const Vector3 to_p = p - eyes;
+double visibility_cost(const Sight& sight, const Vector3& p, double cutoff) {
+  const Vector3 to_p = p - sight.eyes;
   const double distance = to_p.norm();
   if (distance > cutoff || distance < 1e-9) return 0.0;
-  return std::acos(std::clamp(gaze.dot(to_p) / (distance * std::max(1e-12, gaze.norm())), -1.0, 1.0)) / M_PI;
+  return std::acos(std::clamp(sight.direction.dot(to_p) / distance, -1.0, 1.0)) / M_PI;
+}
+
+double visibility_cost(const Person& person, const Vector3& p, double cutoff) {
+  const std::optional<Sight> sight = sight_of(person);
+  return sight ? visibility_cost(*sight, p, cutoff) : 0.0;
 }
 
 double simplified_distance(const SimplifiedBody& body, const Vector3& a, const Vector3& b, double radius) {
@@ -84,17 +86,59 @@ HumanCost::HumanCost(const RobotModel& robot, CostSettings settings) : robot_(&r
   for (const LinkCapsule& capsule : robot_capsules(robot))
     if (moves[capsule.link]) capsules_.push_back(capsule);
   if (tool_ < 0) tool_ = static_cast<int>(robot.links().size()) - 1;
+  probes_.push_back({tool_, Vector3::Zero()});
+  for (const LinkCapsule& capsule : capsules_) {
+    const int parts = std::max(1, static_cast<int>(std::ceil((capsule.b - capsule.a).norm() / kProbeSpacing)));
+    for (int i = 0; i <= parts; ++i)
+      probes_.push_back({capsule.link, capsule.a + (capsule.b - capsule.a) * (static_cast<double>(i) / parts)});
+  }
 }
 
 void HumanCost::set_people(const HumanState& people) {
   people_ = people;
-  bodies_.clear();
-  for (const Person& person : people_.people) bodies_.push_back(simplified_body(person));
+  someone_.clear();
+  for (const Person& person : people_.people) someone_.push_back({simplified_body(person), sight_of(person), placed_arms(person), nullptr});
+  find_comfort_layers();
+  tell_wide();
+}
+
+void HumanCost::set_base(const Pose& T_world_base) {
+  T_world_base_ = T_world_base;
+  if (wide_) wide_->set_base(T_world_base);
+}
+
+void HumanCost::set_moving_axes(const std::vector<int>& axes) {
+  if (axes.empty()) {
+    wide_.reset();
+    return;
+  }
+  if (!wide_) wide_ = std::make_unique<WideCost>(*robot_, capsules_, probes_);
+  wide_->set_axes(axes);
+  wide_->set_base(T_world_base_);
+  tell_wide();
+}
+
+void HumanCost::tell_wide() {
+  if (!wide_) return;
+  std::vector<WideCost::Someone> people;
+  for (const Someone& one : someone_) people.push_back({one.body, one.sight});
+  wide_->set_people(std::move(people), settings_.safety_radius, settings_.visibility_cutoff);
+}
+
+void HumanCost::set_layers(LayersNow layers) {
+  layers_ = std::move(layers);
+  forbids_ = std::any_of(layers_.outside.begin(), layers_.outside.end(), [](const auto& grid) { return grid->forbids(); });
+  find_comfort_layers();
+}
+
+void HumanCost::find_comfort_layers() {
+  for (std::size_t i = 0; i < someone_.size(); ++i) someone_[i].comfort = layers_.comfort_of(people_.people[i].id);
 }
 
 double weighted_cost(const CostParts& parts, const CostSettings& settings) {
   const double sum = settings.w_safety + settings.w_visibility + settings.w_comfort;
-  return (settings.w_safety * parts.safety + settings.w_visibility * parts.visibility + settings.w_comfort * parts.comfort) / sum;
+  return (settings.w_safety * parts.safety + settings.w_visibility * parts.visibility + settings.w_comfort * parts.comfort) / sum +
+         parts.outside;
 }
 
 CostParts point_cost(const Person& person, const Vector3& p, const CostSettings& settings) {
@@ -127,35 +171,91 @@ double HumanCost::distance_to(const SimplifiedBody& body) const {
   return least;
 }
 
+template <class PointAt>
+double HumanCost::outside_cost(PointAt&& point_at) const {
+  double sum = 0;
+  for (const auto& grid : layers_.outside) {
+    double worst = 0;
+    for (std::size_t i = 0; i < probes_.size(); ++i) {
+      const GridValue value = grid->value(point_at(i));
+      worst = std::max(worst, value.forbidden ? 1.0 : value.cost);
+    }
+    sum += grid->weight() * worst;
+  }
+  return sum;
+}
+
+ForbiddenPlace HumanCost::forbidden(const Vector& q) const {
+  if (!forbids_) return {};
+  robot_->forward(q, links_);
+  for (const auto& grid : layers_.outside) {
+    if (!grid->forbids()) continue;
+    for (const LinkPoint& probe : probes_)
+      if (grid->value(T_world_base_ * (links_[probe.link] * probe.p_link)).forbidden) return {grid.get(), probe.link};
+  }
+  return {};
+}
+
 CostParts HumanCost::parts(const Vector& q) const {
   CostParts worst;
   worst.distance = std::numeric_limits<double>::infinity();
-  if (people_.people.empty()) return worst;
+  if (!concerned()) return worst;
   robot_->forward(q, links_);
+  const double outside = outside_cost([this](std::size_t i) { return T_world_base_ * (links_[probes_[i].link] * probes_[i].p_link); });
   const Vector3 p_tool = T_world_base_ * links_[tool_].translation();
   placed_.resize(capsules_.size());
-  for (std::size_t i = 0; i < capsules_.size(); ++i) {
+  for (std::size_t i = 0; anyone() && i < capsules_.size(); ++i) {
     const LinkCapsule& capsule = capsules_[i];
     const Pose& T_root_link = links_[capsule.link];
     placed_[i] = {T_world_base_ * (T_root_link * capsule.a), T_world_base_ * (T_root_link * capsule.b), capsule.radius};
   }
   double most = -1;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    const SimplifiedBody& body = bodies_[i];
-    const double least = distance_to(body);
+  for (const Someone& one : someone_) {
     CostParts now;
-    now.distance = least;
-    now.safety = safety_cost(least, settings_.safety_radius);
-    if (settings_.w_visibility > 0) now.visibility = visibility_cost(people_.people[i], p_tool, settings_.visibility_cutoff);
-    if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(people_.people[i], p_tool);
+    now.distance = distance_to(one.body);
+    now.safety = safety_cost(now.distance, settings_.safety_radius);
+    if (settings_.w_visibility > 0 && one.sight) now.visibility = visibility_cost(*one.sight, p_tool, settings_.visibility_cutoff);
+    if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(one.comfort, one.arms, p_tool);
     if (weighted_cost(now, settings_) > most) {
       most = weighted_cost(now, settings_);
       worst = now;
     }
   }
+  worst.outside = outside;
   return worst;
 }
 
-double HumanCost::operator()(const Vector& q) const { return people_.people.empty() ? 0.0 : weighted_cost(parts(q), settings_); }
+double HumanCost::operator()(const Vector& q) const {
+  constexpr double kHere = 0;
+  double cost = 0;
+  on_line(q, q, &kHere, 1, &cost);
+  return cost;
+}
+
+void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, int count, double* cost) const {
+  if (!concerned()) {
+    std::fill_n(cost, count, 0.0);
+    return;
+  }
+  for (int first = 0; first < count; first += WideCost::kStates) {
+    const int here = std::min(WideCost::kStates, count - first);
+    if (!wide_ || !wide_->run(from, to, at + first, here, layers_.outside.empty() ? 1 : probes_.size())) {
+      for (int i = first; i < first + here; ++i) cost[i] = weighted_cost(parts(from + at[i] * (to - from)), settings_);
+      continue;
+    }
+    for (int lane = 0; lane < here; ++lane) {
+      const Vector3 p_tool = wide_->point(0, lane);
+      double most = 0;
+      for (std::size_t k = 0; k < someone_.size(); ++k) {
+        CostParts now;
+        now.safety = wide_->safety(k, lane);
+        now.visibility = wide_->visibility(k, lane);
+        if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(someone_[k].comfort, someone_[k].arms, p_tool);
+        most = std::max(most, weighted_cost(now, settings_));
+      }
+      cost[first + lane] = most + outside_cost([&](std::size_t i) { return wide_->point(i, lane); });
+    }
+  }
+}
 
 }  // namespace handsel

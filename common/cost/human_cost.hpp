@@ -5,6 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "common/cost/cost_layers.hpp"
+#include "common/cost/person_frame.hpp"
+#include "common/cost/wide_cost.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/human_body.hpp"
 #include "common/model/robot_capsules.hpp"
@@ -20,6 +23,7 @@ struct CostSettings {
 /// 1 at contact, 0 from `radius` on, falling in between (ours, formulas of section 4.1.2).
 double safety_cost(double distance, double radius);
 /// angle(gaze, p - eyes)/pi; where the gaze is unknown the body's front stands in for it.
+double visibility_cost(const Sight&, const Vector3& p, double cutoff);
 double visibility_cost(const Person&, const Vector3& p, double cutoff);
 /// Marler's form on the person's arm reaching p with the more comfortable hand: joint displacement, raised mass, nearness to joint
 /// limits, weighted to [0, 1] (the arm's joints, limits and weights are ours); 1 when out of reach.
@@ -34,6 +38,19 @@ struct ArmSize {
 std::optional<ArmSize> arm_size(const Person&, Side side);
 /// arm_comfort_cost of an arm alone: p from the shoulder, along (forward, outward, up) of the torso [m].
 double arm_comfort_cost(const ArmSize& arm, const Vector3& p_arm);
+/// An arm where it is.
+struct PlacedArm {
+  ArmSize size;
+  Vector3 shoulder{Vector3::Zero()};                        ///< world [m]
+  Eigen::Matrix3d to_arm{Eigen::Matrix3d::Identity()};      ///< from the world to (forward, outward, up) of the torso
+  double length() const { return size.upper + size.fore; }  ///< shoulder to hand [m]
+};
+std::optional<PlacedArm> placed_arm(const Person&, Side side);
+/// Comfort cost of the better of these arms at p: from the layer where there is one (out of reach, or furniture in the way: 1), else
+/// arm_comfort_cost.
+double arm_comfort_cost(const CostGrid* layer, const std::vector<PlacedArm>& arms, const Vector3& p);
+/// Those of the person that are known.
+std::vector<PlacedArm> placed_arms(const Person&);
 /// Some arm reaches p with the torso where it is.
 bool within_reach(const Person&, const Vector3& p);
 /// Shoulder to hand, the longer arm [m].
@@ -43,35 +60,69 @@ double arm_length(const Person&);
 struct CostParts {
   double safety{}, visibility{}, comfort{};
   double distance{};  ///< robot to the simplified body [m]; +inf if nobody
+  double outside{};   ///< what outside layers add, weighted, each where the robot fares worst in it
 };
 
-/// The weighted sum, in [0, 1].
+/// The weighted sum of our three, in [0, 1], and what outside layers add.
 double weighted_cost(const CostParts&, const CostSettings&);
 /// The costs of a hand or object at p, as a point, for one person.
 CostParts point_cost(const Person&, const Vector3& p, const CostSettings&);
 
-/// Cost of a robot configuration for everyone in the scene, in [0, 1]; the largest over people. Safety looks at the links that axes move
-/// (a platform that stands still would hide what the arm does), visibility and comfort at the tool frame.
+/// What an outside layer forbids: which link is there.
+struct ForbiddenPlace {
+  const CostGrid* layer{};  ///< null: nowhere forbidden
+  int link{-1};
+};
+
+/// Cost of a robot configuration for everyone in the scene; the largest over people. Safety looks at the links that axes move (a platform
+/// that stands still would hide what the arm does), visibility and comfort at the tool frame, outside layers at points along those links
+/// and the tool frame.
 class HumanCost {
  public:
   HumanCost(const RobotModel& robot, CostSettings settings);
   void set_people(const HumanState& people);
-  void set_base(const Pose& T_world_base) { T_world_base_ = T_world_base; }
+  /// Arm comfort of the person it is about comes from the layer then (out of reach, or furniture in the way: 1), that of others and
+  /// without a layer from arm_comfort_cost.
+  void set_layers(LayersNow layers);
+  void set_base(const Pose& T_world_base);
+  /// From now on states that differ in these axes only are looked at many at once, in single precision: costs within 2e-4 of parts(). When
+  /// another axis differs, the robot is folded anew. Empty: one by one, as at the beginning.
+  void set_moving_axes(const std::vector<int>& axes);
   bool anyone() const { return !people_.people.empty(); }
-  double operator()(const Vector& q) const;  ///< all axes; 0 when nobody is there
+  /// Somebody is there, or somebody outside adds a layer; else every cost is 0.
+  bool concerned() const { return anyone() || !layers_.outside.empty(); }
+  double operator()(const Vector& q) const;  ///< all axes; in [0, 1] without outside layers
+  /// The costs of the states from + at[i] (to - from), i < count.
+  void on_line(const Vector& from, const Vector& to, const double* at, int count, double* cost) const;
   CostParts parts(const Vector& q) const;    ///< of the person it is worst for
+  bool forbids() const { return forbids_; }  ///< some outside layer forbids some place
+  ForbiddenPlace forbidden(const Vector& q) const;
 
  private:
   struct PlacedCapsule {
     Vector3 a, b;
     double radius{};
   };
+  struct Someone {
+    SimplifiedBody body;
+    std::optional<Sight> sight;
+    std::vector<PlacedArm> arms;
+    const CostGrid* comfort{};
+  };
+  void find_comfort_layers();
+  template <class PointAt>
+  double outside_cost(PointAt&& point_at) const;
+  void tell_wide();
   double distance_to(const SimplifiedBody&) const;
   const RobotModel* robot_;
   CostSettings settings_;
   std::vector<LinkCapsule> capsules_;
   HumanState people_;
-  std::vector<SimplifiedBody> bodies_;
+  LayersNow layers_;
+  bool forbids_{false};
+  std::vector<Someone> someone_;
+  std::vector<LinkPoint> probes_;  // at which outside layers are looked at; the tool first
+  std::unique_ptr<WideCost> wide_;
   Pose T_world_base_{Pose::Identity()};
   int tool_{-1};
   mutable std::vector<Pose> links_;

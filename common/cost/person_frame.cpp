@@ -27,4 +27,11 @@ Eigen::Matrix3d torso_axes(const Person& person) {
   return axes;
 }
 
+std::optional<Sight> sight_of(const Person& person) {
+  if (person.gaze_known) return Sight{person.gaze_origin, person.gaze_direction.normalized()};
+  const BodyJoint* head = find_joint(person, "head");
+  if (head == nullptr) return std::nullopt;
+  return Sight{head->position, torso_axes(person).col(0)};
+}
+
 }  // namespace handsel

@@ -1,5 +1,7 @@
-// Where a person's front is.
+// Where a person's front is, and where they look.
 #pragma once
+
+#include <optional>
 
 #include "common/messages/world.hpp"
 
@@ -10,5 +12,12 @@ const BodyJoint* find_joint(const Person&, const char* name);
 
 /// Torso axes as columns in the world: forward, left, up. Upright facing +x where the shoulders are not known.
 Eigen::Matrix3d torso_axes(const Person&);
+
+struct Sight {
+  Vector3 eyes{Vector3::Zero()};        ///< world [m]
+  Vector3 direction{Vector3::UnitX()};  ///< unit
+};
+/// The person's gaze; where it is unknown the body's front as seen from the head stands in for it; nullopt: not even a head is known.
+std::optional<Sight> sight_of(const Person&);
 
 }  // namespace handsel

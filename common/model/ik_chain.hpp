@@ -15,6 +15,15 @@ using Axes = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxAxes, 1>;
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, kMaxAxes>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+/// From one pose to another: translation [m] and turn [rad] in the axes both are given in.
+inline Vector6 error_of(const Pose& target, const Pose& now) {
+  Vector6 e;
+  e.head<3>() = target.translation() - now.translation();
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(target.linear() * now.linear().transpose()));
+  e.tail<3>() = turn.angle() * turn.axis();
+  return e;
+}
+
 struct Element {
   Pose T_before;
   Vector3 axis;

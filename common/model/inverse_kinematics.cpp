@@ -20,17 +20,10 @@ constexpr int kPatience = 15;  // iterations without 5 % progress
 
 using ik::Axes;
 using ik::Chain;
+using ik::error_of;
 using ik::Jacobian;
 using ik::kMaxAxes;
 using ik::Vector6;
-
-Vector6 error_of(const Pose& target, const Pose& now) {
-  Vector6 e;
-  e.head<3>() = target.translation() - now.translation();
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(target.linear() * now.linear().transpose()));
-  e.tail<3>() = turn.angle() * turn.axis();
-  return e;
-}
 
 /// One step; joints that would leave their range are put on the limit and the others make up for it.
 Axes step_of(const Chain& chain, const Axes& q, const Jacobian& J, const Vector6& error, double damping, double pull) {

@@ -86,8 +86,8 @@ double SrsArm::axis_cost(const Problem& problem, int axis, double& angle) const 
          kViolation * std::max({low - angle, angle - high, 0.0});
 }
 
-/// Splits R into turns about three axes from `first`; of the two ways the cheaper one goes into the candidate.
-void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const {
+/// The two ways to split R into turns about three axes from `first`; one, twice, when they are in line.
+SrsArm::Ways SrsArm::ways(const Eigen::Matrix3d& R, int first, double first_when_in_line) const {
   const Eigen::Matrix3d& B = basis_[first / 4];
   const Eigen::Matrix3d Z = B.transpose() * R * B;
   const double sine = std::hypot(Z(0, 2), Z(1, 2)), middle = std::atan2(sine, Z(2, 2));
@@ -96,15 +96,19 @@ void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first,
     q0 = std::atan2(Z(1, 2), Z(0, 2));
     q2 = std::atan2(Z(2, 1), -Z(2, 0));
   } else {
-    q0 = problem.seed[first];
+    q0 = first_when_in_line;
     const double both = std::atan2(Z(1, 0), Z(1, 1));
     q2 = Z(2, 2) > 0 ? both - q0 : q0 - std::atan2(-Z(1, 0), Z(1, 1));
   }
+  const double other = sine > 1e-9 ? M_PI : 0.0, sign = last_sign_[first / 4];
+  return {{{q0, middle, sign * q2}, {q0 + other, -middle, sign * (q2 + other)}}};
+}
+
+/// Of the two ways the cheaper one goes into the candidate.
+void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const {
   double best = std::numeric_limits<double>::infinity();
   std::array<double, 3> chosen{};
-  for (const double side : {1.0, -1.0}) {
-    const double half_turn = side > 0 || sine <= 1e-9 ? 0.0 : M_PI;
-    std::array<double, 3> q{q0 + half_turn, side * middle, last_sign_[first / 4] * (q2 + half_turn)};
+  for (std::array<double, 3> q : ways(R, first, problem.seed[first])) {
     double cost = 0;
     for (int i = 0; i < 3; ++i) cost += axis_cost(problem, first + i, q[i]);
     if (cost < best) best = cost, chosen = q;
@@ -144,30 +148,83 @@ SrsArm::Candidate SrsArm::refine(const Problem& problem, double centre) const {
   return best;
 }
 
+/// How far the elbow is turned; nullopt when the wrist is out of reach.
+std::optional<double> SrsArm::set_target(const Pose& T_root_tip, Problem& problem) const {
+  problem.R_tip = T_root_tip.linear() * R_zero_.transpose();
+  problem.to_target = T_root_tip * p_tip_wrist_ - shoulder_;
+  const double upper = to_elbow_.norm(), fore = to_wrist_.norm(), d = problem.to_target.norm();
+  const double cosine = (d * d - upper * upper - fore * fore) / (2 * upper * fore);
+  if (!(d >= 1e-6 && std::abs(cosine) <= 1)) return std::nullopt;
+  problem.circle_axis = problem.to_target / d;
+  // Turned by this much from straight; the arm may be folded back on itself when all joints are 0.
+  return to_elbow_.dot(to_wrist_) > 0 ? std::acos(cosine) : M_PI - std::acos(cosine);
+}
+
+void SrsArm::bend(Problem& problem) const {
+  const Eigen::Matrix3d R_elbow = Eigen::AngleAxisd(problem.elbow, axis_[3]).toRotationMatrix();
+  problem.R_elbow_t = R_elbow.transpose();
+  problem.R_start = Eigen::Quaterniond::FromTwoVectors(to_elbow_ + R_elbow * to_wrist_, problem.to_target).toRotationMatrix();
+}
+
+double SrsArm::angle_of(const Vector3& to_elbow, const Vector3& to_wrist) const {
+  const Vector3 line = to_wrist.normalized();
+  Vector3 up = axis_[0] - line * line.dot(axis_[0]);
+  if (up.norm() < 1e-6) up = line.unitOrthogonal();
+  up.normalize();
+  const Vector3 across = line.cross(up);
+  return to_elbow.dot(across) == 0 && to_elbow.dot(up) == 0 ? 0.0 : std::atan2(to_elbow.dot(across), to_elbow.dot(up));
+}
+
+double SrsArm::elbow_angle(const Axes& q) const {
+  const auto turn = [&](int i) { return Eigen::AngleAxisd(q[i], axis_[i]); };
+  const Eigen::Quaterniond shoulder = turn(0) * turn(1) * turn(2);
+  return angle_of(shoulder * to_elbow_, shoulder * (to_elbow_ + turn(3) * to_wrist_));
+}
+
+/// One step onto the pose: a chain from a file is square and parallel to the digits of the file only.
+Axes SrsArm::polished(const Pose& T_root_tip, const Axes& q) const {
+  Jacobian J;
+  const Vector6 error = error_of(T_root_tip, chain_->forward(q, &J));
+  const Eigen::Matrix<double, 6, 6> JJ = J * J.transpose() + 1e-12 * Eigen::Matrix<double, 6, 6>::Identity();
+  const Axes better = q + J.transpose() * JJ.ldlt().solve(error);
+  return error_of(T_root_tip, chain_->forward(better, nullptr)).norm() < error.norm() ? better : q;
+}
+
+std::vector<Axes> SrsArm::branches(const Pose& T_root_tip, double elbow_angle) const {
+  Problem problem;
+  const std::optional<double> bent = set_target(T_root_tip, problem);
+  if (!bent) return {};
+  std::vector<Axes> out;
+  for (const double side : {1.0, -1.0}) {
+    problem.elbow = side * *bent;
+    bend(problem);
+    const double circle = elbow_angle - angle_of(problem.R_start * to_elbow_, problem.to_target);
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
+    for (const auto& shoulder : ways(R, 0, 0.0))
+      for (const auto& wrist : ways(problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, 0.0)) {
+        Axes q(7);
+        q << shoulder[0], shoulder[1], shoulder[2], problem.elbow, wrist[0], wrist[1], wrist[2];
+        out.push_back(polished(T_root_tip, q));
+      }
+  }
+  return out;
+}
+
 double SrsArm::outside(const Axes& q) const { return std::max({0.0, (chain_->lower() - q).maxCoeff(), (q - chain_->upper()).maxCoeff()}); }
 
 std::optional<SrsArm::Solution> SrsArm::solve(const Pose& T_root_tip, const Axes& seed) const {
   Problem problem;
   problem.seed = seed;
-  problem.R_tip = T_root_tip.linear() * R_zero_.transpose();
-  problem.to_target = T_root_tip * p_tip_wrist_ - shoulder_;
-  const double upper = to_elbow_.norm(), fore = to_wrist_.norm(), d = problem.to_target.norm();
-  const double cosine = (d * d - upper * upper - fore * fore) / (2 * upper * fore);
-  if (d < 1e-6 || std::abs(cosine) > 1) return std::nullopt;
-  problem.circle_axis = problem.to_target / d;
-  // Turned by this much from straight; the arm may be folded back on itself when all joints are 0.
-  const double bend = to_elbow_.dot(to_wrist_) > 0 ? std::acos(cosine) : M_PI - std::acos(cosine);
-
+  const std::optional<double> bent = set_target(T_root_tip, problem);
+  if (!bent) return std::nullopt;
   Candidate best{std::numeric_limits<double>::infinity(), Axes::Zero(7)};
   const auto keep = [&best](const Candidate& c) {
     if (c.cost < best.cost) best = c;
   };
   for (const double side : {1.0, -1.0}) {
-    problem.elbow = side * bend;
+    problem.elbow = side * *bent;
     problem.elbow_cost = axis_cost(problem, 3, problem.elbow);
-    const Eigen::Matrix3d R_elbow = Eigen::AngleAxisd(problem.elbow, axis_[3]).toRotationMatrix();
-    problem.R_elbow_t = R_elbow.transpose();
-    problem.R_start = Eigen::Quaterniond::FromTwoVectors(to_elbow_ + R_elbow * to_wrist_, problem.to_target).toRotationMatrix();
+    bend(problem);
     std::array<double, kCircleSamples> cost;
     int least = 0;
     for (int i = 0; i < kCircleSamples; ++i) {

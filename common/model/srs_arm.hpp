@@ -23,15 +23,29 @@ class SrsArm {
   };
   std::optional<Solution> solve(const Pose& T_root_tip, const Axes& seed) const;
 
+  /// Every way to reach the pose with the elbow at this angle on its circle about the line from shoulder to wrist; 0 is where it is
+  /// farthest along axis 1 from the shoulder. Elbow bent either way, times two of the shoulder, times two of the wrist; limits are not
+  /// looked at, angles are in (-2 pi, 2 pi]. Empty when the wrist is out of reach. Where three axes of shoulder or wrist are in line their
+  /// two ways are one, given twice.
+  std::vector<Axes> branches(const Pose& T_root_tip, double elbow_angle) const;
+  /// Where the elbow is on its circle [rad], in (-pi, pi]; 0 for a straight arm.
+  double elbow_angle(const Axes& q) const;
+
  private:
   struct Candidate {
     double cost;
     Axes q;
   };
   struct Problem;
+  using Ways = std::array<std::array<double, 3>, 2>;
 
   explicit SrsArm(const Chain& chain) : chain_(&chain) {}
   double axis_cost(const Problem& problem, int axis, double& angle) const;
+  std::optional<double> set_target(const Pose& T_root_tip, Problem& problem) const;
+  void bend(Problem& problem) const;
+  Ways ways(const Eigen::Matrix3d& R, int first, double first_when_in_line) const;
+  double angle_of(const Vector3& to_elbow, const Vector3& to_wrist) const;
+  Axes polished(const Pose& T_root_tip, const Axes& q) const;
   void choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const;
   Candidate at(const Problem& problem, double circle) const;
   Candidate refine(const Problem& problem, double centre) const;

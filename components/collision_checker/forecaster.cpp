@@ -62,6 +62,11 @@ void Forecaster::set_people(const HumanState& people) {
   rest_known_ = false;
 }
 
+void Forecaster::set_layers(LayersNow layers) {
+  cost_.set_layers(std::move(layers));
+  rest_known_ = false;
+}
+
 bool Forecaster::fits(const ActiveTrajectory& active) const {
   if (active.position.size() != robot_.dof()) return false;
   if (static_cast<int>(active.axes.size()) != active.rest.size()) return false;
@@ -119,7 +124,7 @@ void Forecaster::look(const Vector& q, double ahead, TrajectoryForecast& forecas
     const Vector3 expected = (1 - share) * before.position + share * next->position;
     forecast.clearance = std::min(forecast.clearance, distance_to_ball(expected, hand.radius));
   }
-  if (cost_.anyone()) forecast.cost = std::max(forecast.cost, cost_(q));
+  if (cost_.concerned()) forecast.cost = std::clamp(cost_(q), forecast.cost, 1.0);
 }
 
 TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
@@ -182,6 +187,7 @@ StateVerdict judge(const RobotModel& robot, CollisionWorld& world, const StateQu
   StateVerdict verdict;
   verdict.id = query.id;
   verdict.clearance = kInfinity;
+  if (query.states.empty()) verdict.reason = "the query has no states";
   world.set_attachment(query.attachment, query.allowed_contacts);
   for (const Vector& q : query.states) {
     CollisionVerdict one;

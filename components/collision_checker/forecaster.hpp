@@ -27,6 +27,7 @@ class Forecaster {
 
   void set_scene(const Scene& scene);
   void set_people(const HumanState& people);
+  void set_layers(LayersNow layers);
 
   /// At rest: no contact is reported, clearance and cost of where the robot stands. A trajectory that does not fit the robot is reported as
   /// a collision now, with the reason.

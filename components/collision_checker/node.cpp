@@ -7,6 +7,8 @@
 namespace handsel::collision_checker {
 namespace {
 
+constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
+
 config::CollisionCheckerSettings load(const NodeContext& context) {
   config::CollisionCheckerSettings s;
   load_text_proto(context.settings / "collision_checker.txtpb", s);
@@ -39,17 +41,22 @@ Node::Node(Bus& bus, const NodeContext& context)
     people_ = std::make_shared<HumanState>(people);
     forecaster_.set_people(people);
   });
+  bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
+    layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
+    forecaster_.set_layers(layers_.at(receipt.arrival));
+  });
+  bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
   bus.every(from_seconds(settings.period()), [this](TimePoint) { forecast(); });
 }
 
 void Node::forecast() {
-  const char* missing = bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
-                        : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
-                        : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
-                                                                : "";
-  bus_.set_degraded(missing);
-  if (*missing != '\0') return;
+  const std::string missing = bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
+                              : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
+                              : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
+                                                                      : "";
+  bus_.set_degraded(missing.empty() ? layers_.complaint(bus_.now()) : missing);
+  if (!missing.empty()) return;
   forecast_out_->publish(forecaster_.forecast(active_));
 }
 

@@ -31,6 +31,7 @@ class Node {
   ActiveTrajectory active_;
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
+  CostLayers layers_;
 };
 
 }  // namespace handsel::collision_checker

@@ -1,6 +1,5 @@
 #include "components/costmap/comfort_volume.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace handsel::costmap {
@@ -10,10 +9,13 @@ ComfortVolume::ComfortVolume(const ArmSize& arm, double resolution)
       resolution_(resolution),
       half_(static_cast<int>(std::ceil((arm.upper + arm.fore) / resolution)) + 1),
       size_(2 * half_ + 1) {
-  values_.reserve(static_cast<std::size_t>(size_) * size_ * size_);
+  points_.reserve(static_cast<std::size_t>(size_) * size_ * size_);
   for (int k = -half_; k <= half_; ++k)
     for (int j = -half_; j <= half_; ++j)
-      for (int i = -half_; i <= half_; ++i) values_.push_back(static_cast<float>(arm_comfort_cost(arm, resolution * Vector3(i, j, k))));
+      for (int i = -half_; i <= half_; ++i) {
+        const auto cost = static_cast<float>(arm_comfort_cost(arm, resolution * Vector3(i, j, k)));
+        points_.push_back(cost < 1 ? Point{cost, 1} : Point{0, 0});
+      }
 }
 
 bool ComfortVolume::suits(const ArmSize& arm, double tolerance) const {
@@ -21,22 +23,17 @@ bool ComfortVolume::suits(const ArmSize& arm, double tolerance) const {
 }
 
 double ComfortVolume::cost(const Vector3& p_arm) const {
-  const Vector3 cell = p_arm / resolution_ + Vector3::Constant(half_);
-  const Eigen::Vector3i low = cell.array().floor().cast<int>();
-  if ((low.array() < 0).any() || (low.array() >= size_ - 1).any()) return 1.0;
-  const Vector3 f = cell - low.cast<double>();
-  double sum = 0, weight = 0;
-  int reachable = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const int a = corner & 1, b = (corner >> 1) & 1, c = corner >> 2;
-    const float value = at(low.x() + a, low.y() + b, low.z() + c);
-    if (value >= 1.0F) continue;
-    const double w = (a ? f.x() : 1 - f.x()) * (b ? f.y() : 1 - f.y()) * (c ? f.z() : 1 - f.z());
-    ++reachable;
-    weight += w;
-    sum += w * value;
-  }
-  return weight > 0.5 && reachable > 0 ? sum / weight : 1.0;
+  const Eigen::Array3f cell = (p_arm / resolution_).cast<float>().array() + static_cast<float>(half_);
+  if (!((cell >= 0).all() && (cell < static_cast<float>(size_ - 1)).all())) return 1.0;
+  const Eigen::Array3i low = cell.cast<int>();
+  const Eigen::Array3f f = cell - low.cast<float>();
+  const Point* first = points_.data() + (static_cast<std::size_t>(low.z()) * size_ + low.y()) * size_ + low.x();
+  const auto pair = [&](std::size_t offset) { return Eigen::Map<const Eigen::Array4f>(&first[offset].cost); };  // along x
+  const std::size_t row = size_, plane = row * row;
+  const Eigen::Array4f lower = (1 - f.y()) * pair(0) + f.y() * pair(row), upper = (1 - f.y()) * pair(plane) + f.y() * pair(plane + row);
+  const Eigen::Array4f both = (1 - f.z()) * lower + f.z() * upper;
+  const float sum = (1 - f.x()) * both[0] + f.x() * both[2], weight = (1 - f.x()) * both[1] + f.x() * both[3];
+  return weight > 0.5f ? sum / weight : 1.0;
 }
 
 }  // namespace handsel::costmap

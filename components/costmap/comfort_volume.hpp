@@ -19,11 +19,13 @@ class ComfortVolume {
   double cost(const Vector3& p_arm) const;
 
  private:
-  float at(int i, int j, int k) const { return values_[static_cast<std::size_t>((k * size_ + j) * size_ + i)]; }
+  struct Point {
+    float cost, reachable;  // 0, 0 out of reach
+  };
   ArmSize arm_;
   double resolution_{1};
   int half_{0}, size_{0};
-  std::vector<float> values_;
+  std::vector<Point> points_;
 };
 
 }  // namespace handsel::costmap

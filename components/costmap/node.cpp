@@ -2,6 +2,7 @@
 
 #include "common/config/costmap.pb.h"
 #include "common/config/resources.hpp"
+#include "common/cost/cost_settings.hpp"
 
 namespace handsel::costmap {
 namespace {
@@ -16,6 +17,7 @@ config::CostmapSettings load(const NodeContext& context) {
   if (s.clearance() < 0) throw ConfigError("costmap.txtpb: clearance must be >= 0");
   if (s.reach() / s.resolution() > 49)
     throw ConfigError("costmap.txtpb: reach / resolution must be at most 49, else the map outgrows its message");
+  if (s.repeat() > 0.8) throw ConfigError("costmap.txtpb: repeat must be at most 0.8, readers leave out layers older than a second");
   return s;
 }
 
@@ -25,7 +27,7 @@ Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       repeat_(from_seconds(load(context).repeat())),
       cell_time_(load(context).cell_time()),
-      maker_({load(context).resolution(), load(context).reach(), load(context).clearance()}),
+      maker_({load(context).resolution(), load(context).reach(), load(context).clearance(), load_cost_settings(context.settings)}),
       watch_(load(context).moved(), load(context).turned()),
       map_out_(bus.advertise<Costmap>()) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene; });
@@ -39,38 +41,50 @@ void Node::step(TimePoint now) {
   if (!current || making_) return;
   const Person* person = nearest_person(people_, scene_->T_world_base.translation());
   if (person == nullptr) {
-    map_ = {};
-    return;
-  }
-  if (watch_.changed(*person, scene_->boxes)) {
-    make(now, *person);
-  } else if (!map_.values.empty() && now - sent_ >= repeat_) {
-    map_.stamp = {};
-    map_out_->publish(map_);
-    sent_ = now;
+    made_ = nullptr;
+  } else if (watch_.changed(*person, scene_->boxes) || made_ == nullptr) {
+    make(*person);
+  } else {
+    publish(now);
   }
 }
 
-void Node::make(TimePoint now, const Person& person) {
+void Node::make(const Person& person) {
   struct Work {
     Person person;
     std::vector<SceneBox> boxes;
-    Costmap map;
+    const Layers* layers{};
   };
-  auto work = std::make_shared<Work>(Work{person, scene_->boxes, {}});
+  auto work = std::make_shared<Work>(Work{person, scene_->boxes});
   making_ = true;
-  sent_ = now;
   bus_.run_job(
       [this, work](const CancelToken&) {
-        work->map = maker_.make(work->person, work->boxes);
-        return from_seconds(cell_time_ * static_cast<double>(work->map.values.size()));
+        work->layers = &maker_.make(work->person, work->boxes);
+        return from_seconds(cell_time_ * static_cast<double>(work->layers->front().values.size()));
       },
       [this, work] {
         making_ = false;
-        map_ = std::move(work->map);
-        map_.revision = ++revision_;
-        map_out_->publish(map_);
+        made_ = work->layers;
+        ++revision_;
+        publish(bus_.now());
       });
+}
+
+/// Each layer that is not what was sent last, or was sent long ago.
+void Node::publish(TimePoint now) {
+  if (made_ == nullptr) return;
+  for (std::size_t i = 0; i < made_->size(); ++i) {
+    const Costmap& layer = (*made_)[i];
+    Sent& sent = sent_[i];
+    const bool same = layer.person == sent.map.person && layer.origin == sent.map.origin && layer.values == sent.map.values;
+    if (same && now - sent.time < repeat_) continue;
+    if (!same) {
+      sent.map = layer;
+      sent.map.revision = revision_;
+    }
+    sent.time = now;
+    map_out_->publish(sent.map);
+  }
 }
 
 }  // namespace handsel::costmap

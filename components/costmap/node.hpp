@@ -7,7 +7,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/messages/world.hpp"
-#include "components/costmap/comfort_map.hpp"
+#include "components/costmap/layers.hpp"
 
 namespace handsel::costmap {
 
@@ -17,7 +17,8 @@ class Node {
 
  private:
   void step(TimePoint now);
-  void make(TimePoint now, const Person& person);
+  void make(const Person& person);
+  void publish(TimePoint now);
 
   Bus& bus_;
   Duration repeat_{};
@@ -27,8 +28,12 @@ class Node {
   std::unique_ptr<Publisher<Costmap>> map_out_;
   std::optional<Scene> scene_;
   HumanState people_;
-  Costmap map_;
-  TimePoint sent_{};
+  const Layers* made_{};  // by the last job; null: nobody is there
+  struct Sent {
+    Costmap map;
+    TimePoint time{};
+  };
+  std::array<Sent, std::size(kOwnLayers)> sent_;
   std::uint64_t revision_{0};
   bool making_{false};
 };

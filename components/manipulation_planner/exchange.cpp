@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/cost/reach_check.hpp"
 #include "common/model/human_body.hpp"
 
 namespace handsel::manipulation_planner {
@@ -34,7 +35,7 @@ double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
 
 }  // namespace
 
-ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q,
+ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
                              const Pose& T_world_object_now, const Pose& T_tool_object,
                              const config::ManipulationPlannerSettings& settings) {
   ExchangeSearch out;
@@ -51,25 +52,33 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
   const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
   const SimplifiedBody body = simplified_body(person);
   const Vector3 palm_to_object = T_tool_object.translation();
+  const ReachCheck furniture(person, scene.boxes);
+  const std::vector<PlacedArm> arms = placed_arms(person);
 
   std::vector<Place> places;
-  int out_of_reach = 0, blocked = 0;
+  int out_of_reach = 0, blocked = 0, forbidden = 0;
   for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74, 0.82}) {
     for (const double aside : {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36}) {
       for (const double below : {0.05, 0.15, 0.25, 0.35, 0.45, 0.55}) {
         Vector3 p = torso + ahead * toward_robot + aside * across;
         p.z() = shoulder_z - below;
-        if (!within_reach(person, p)) {
-          ++out_of_reach;
-          continue;
-        }
-        if (inside_box(scene, p, 0.12)) {
+        if (furniture.blocked_by(p) != nullptr || inside_box(scene, p, 0.12)) {
           ++blocked;
           continue;
         }
-        const double base_cost =
-            settings.w_comfort() * arm_comfort_cost(person, p) + settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
-            settings.w_visibility() * visibility_cost(person, p, 3.0) + settings.w_effort() * (p - T_world_object_now.translation()).norm();
+        const double comfort = arm_comfort_cost(layers.comfort_of(person.id), arms, p);
+        if (comfort >= 1) {
+          ++out_of_reach;
+          continue;
+        }
+        const OutsideCost outside = layers.outside_cost(p);
+        if (outside.forbidden_by != nullptr) {
+          ++forbidden;
+          continue;
+        }
+        const double base_cost = settings.w_comfort() * comfort + settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
+                                 settings.w_visibility() * visibility_cost(person, p, 3.0) +
+                                 settings.w_effort() * (p - T_world_object_now.translation()).norm() + outside.cost;
         for (int k = 0; k < kHeadings; ++k) {
           const double yaw = 2 * std::numbers::pi * k / kHeadings;
           Pose T = T_world_object_now;
@@ -104,8 +113,9 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
   }
   if (out.poses.empty())
     out.reason = "no exchange point with " + person.id + ": " + std::to_string(out_of_reach) + " places beyond their reach, " +
-                 std::to_string(blocked) + " inside furniture, " + std::to_string(unreachable) + " of " + std::to_string(out.tried) +
-                 " poses beyond the robot's reach";
+                 std::to_string(blocked) + " in, under or behind furniture, " +
+                 (forbidden > 0 ? std::to_string(forbidden) + " forbidden by a cost layer, " : "") + std::to_string(unreachable) + " of " +
+                 std::to_string(out.tried) + " poses beyond the robot's reach";
   return out;
 }
 

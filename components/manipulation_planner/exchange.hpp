@@ -26,8 +26,8 @@ struct ExchangeSearch {
 };
 
 /// `q`: all axes, near which postures are sought; `T_world_object_now`: where the object is. The object keeps its tilt; only its place and
-/// heading change.
-ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const Vector& q,
+/// heading change. Places in, under or behind furniture as the person sees it, and those an outside layer forbids, are none.
+ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
                              const Pose& T_world_object_now, const Pose& T_tool_object,
                              const config::ManipulationPlannerSettings& settings);
 

@@ -47,6 +47,8 @@ class ManipulationPlanner {
   void on(const ActionGoal& goal);
   void on(const Scene& scene) { scene_ = scene; }
   void on(const HumanState& people) { people_ = people; }
+  /// `sent`: when its writer sent the layer.
+  void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
   void on(const ExecutionStatus& status);
   void on(const ActiveTrajectory& active);
   void on(const GraspReply& reply);
@@ -56,6 +58,7 @@ class ManipulationPlanner {
 
   void step(TimePoint now, Outbox& out);
   const ActionStatus& status() const { return status_; }
+  std::string complaint(TimePoint now) { return layers_.complaint(now); }  ///< about layers left out; empty: none
 
  private:
   struct Motion {
@@ -130,6 +133,7 @@ class ManipulationPlanner {
 
   Scene scene_;
   HumanState people_;
+  CostLayers layers_;
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;
   TimePoint free_at_{};

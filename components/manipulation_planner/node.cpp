@@ -43,6 +43,8 @@ Node::Node(Bus& bus, const NodeContext& context)
   feed<ActionGoal>();
   feed<Scene>();
   feed<HumanState>();
+  bus.subscribe<Costmap>(
+      [this](const Costmap& layer, const Receipt& receipt) { core_.on(layer, receipt.arrival - receipt.age, receipt.arrival); });
   feed<ExecutionStatus>();
   feed<ActiveTrajectory>();
   feed<GraspReply>();
@@ -73,6 +75,7 @@ void Node::step(TimePoint now) {
         },
         [this] { core_.job_done(); });
   }
+  bus_.set_degraded(core_.complaint(now));
   publish_status(now);
 }
 

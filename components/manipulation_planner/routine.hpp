@@ -78,6 +78,7 @@ class Waiting {
   }
   void clear() { handle_ = {}; }
   void set_now(TimePoint now) { now_ = now; }
+  TimePoint now() const { return now_; }
 
   /// Lives in the waiting routine's frame. Conditions capture by reference or trivially: g++ 12 may copy the operands of co_await bitwise.
   template <class Condition>

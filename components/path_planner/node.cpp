@@ -11,6 +11,8 @@
 namespace handsel::path_planner {
 namespace {
 
+constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
+
 config::PathPlannerSettings load(const NodeContext& context) {
   config::PathPlannerSettings s;
   load_text_proto(context.settings / "path_planner.txtpb", s);
@@ -65,6 +67,9 @@ Node::Node(Bus& bus, const NodeContext& context)
   timing_ = {file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())};
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
+  bus.subscribe<Costmap>(
+      [this](const Costmap& layer, const Receipt& receipt) { layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival); });
+  bus.every(kLayerWatch, [this](TimePoint now) { bus_.set_degraded(layers_.complaint(now)); });
   bus.subscribe<PathRequest>([this](const PathRequest& request, const Receipt&) { on_request(request); });
 }
 
@@ -106,12 +111,14 @@ void Node::start(const PathRequest& request) {
     Problem problem;
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const HumanState> people;
+    LayersNow layers;
     Result result;
   };
   auto work = std::make_shared<Work>();
   work->request = request;
   work->scene = scene_;
   work->people = people_;
+  work->layers = layers_.at(bus_.now());
   Problem& problem = work->problem;
   problem.axes = robot_->group(request.group)->axes;
   problem.start = request.start;
@@ -127,6 +134,7 @@ void Node::start(const PathRequest& request) {
     world_.set_people(*work->people);
     world_.set_attachment(work->request.attachment, work->request.allowed_contacts);
     cost_.set_people(*work->people);
+    cost_.set_layers(work->layers);
     cost_.set_base(work->scene->T_world_base);
     const Hooks hooks{[&token] { return token.cancelled(); }, {}};
     work->result = plan(*robot_, world_, cost_, work->problem, settings_, hooks);

@@ -36,6 +36,7 @@ class Node {
   std::unique_ptr<Publisher<PathReply>> reply_out_;
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
+  CostLayers layers_;
   RequestDesk desk_;
   std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>> running_;  // client, number
 

@@ -249,12 +249,13 @@ class Planning {
 
 }  // namespace
 
-Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem, const Settings& settings,
+Result plan(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem, const Settings& settings,
             const Hooks& hooks) {
   Result result;
   result.reason = contradiction(robot, problem);
   if (!result.reason.empty()) return result;
   world.set_moving_axes(problem.axes);
+  cost.set_moving_axes(problem.axes);
   SearchSpace space(robot, world, cost, problem, settings, hooks);
   result = Planning(space, problem, settings).run();
   result.checks = space.checks();

@@ -6,6 +6,12 @@
 
 namespace handsel::path_planner {
 
+namespace {
+
+constexpr double kForbiddenStep = 0.01;  // [rad] a meter away that is less than half a cell of our own grids
+
+}  // namespace
+
 SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem,
                          const Settings& settings, const Hooks& hooks)
     : robot_(robot),
@@ -20,7 +26,8 @@ SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const H
       all_to_(problem.start),
       checks_before_(world.checks()),
       limit_(problem.budget),
-      step_(settings.step) {
+      step_(settings.step),
+      bound_(cost.forbids() && cost.forbidden(problem.start).layer == nullptr) {
   for (int i = 0; i < size(); ++i) {
     const Axis& axis = robot.axes()[problem.axes[i]];
     const double center = problem.start[problem.axes[i]];
@@ -54,38 +61,61 @@ std::string SearchSpace::outside_limits(const Vector& q) const {
 
 bool SearchSpace::inside(const Vector& q) const { return (q.array() >= lower_.array()).all() && (q.array() <= upper_.array()).all(); }
 
-CollisionVerdict SearchSpace::verdict(const Vector& q) { return world_.check(whole(q)); }
-bool SearchSpace::free(const Vector& q) { return world_.is_free(whole(q)); }
+CollisionVerdict SearchSpace::permitted(const Vector& all) const {
+  const ForbiddenPlace place = cost_.forbidden(all);
+  if (place.layer == nullptr) return {};
+  return {false,
+          "link " + robot_.links()[static_cast<std::size_t>(place.link)].name,
+          "what cost layer " + place.layer->layer() + " forbids",
+          {}};
+}
+
+CollisionVerdict SearchSpace::verdict(const Vector& q) {
+  CollisionVerdict verdict = world_.check(whole(q));
+  return verdict.free && bound_ ? permitted(all_) : verdict;
+}
+
+bool SearchSpace::free(const Vector& q) { return world_.is_free(whole(q)) && !(bound_ && cost_.forbidden(all_).layer != nullptr); }
 
 CollisionVerdict SearchSpace::motion_verdict(const Vector& from, const Vector& to, double step) {
   all_to_ = whole(to);
-  return world_.check_motion(whole(from), all_to_, step);
+  CollisionVerdict verdict = world_.check_motion(whole(from), all_to_, step);
+  if (!verdict.free || !bound_) return verdict;
+  const Vector begin = all_;
+  const int states = motion_states(begin, all_to_, std::max(step, kForbiddenStep));
+  for (int i = 0; i < states && verdict.free; ++i)
+    verdict = permitted(begin + (static_cast<double>(i) / std::max(1, states - 1)) * (all_to_ - begin));
+  return verdict;
 }
 
-double SearchSpace::cost(const Vector& q) const { return cost_.anyone() ? cost_(whole(q)) : 0.0; }
+double SearchSpace::cost(const Vector& q) const { return cost_.concerned() ? cost_(whole(q)) : 0.0; }
 
-template <class F>
-void SearchSpace::along(const Vector& from, const Vector& to, F&& visit) const {
-  const double length = (to - from).norm();
-  const int pieces = std::max(1, static_cast<int>(std::ceil(length / settings_.cost_step)));
-  for (int i = 0; i < pieces; ++i) visit((i + 0.5) / pieces, length / pieces);
+/// Of the middles of equal pieces of the motion.
+const std::vector<double>& SearchSpace::costs_along(const Vector& from, const Vector& to) const {
+  const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / settings_.cost_step)));
+  at_.resize(static_cast<std::size_t>(pieces));
+  costs_.resize(static_cast<std::size_t>(pieces));
+  for (int i = 0; i < pieces; ++i) at_[static_cast<std::size_t>(i)] = (i + 0.5) / pieces;
+  all_to_ = whole(to);
+  cost_.on_line(whole(from), all_to_, at_.data(), pieces, costs_.data());
+  return costs_;
 }
 
 double SearchSpace::integral_cost(const Vector& from, const Vector& to) const {
-  if (!cost_.anyone()) return 0.0;
+  if (!cost_.concerned()) return 0.0;
   double sum = 0;
-  along(from, to, [&](double t, double ds) { sum += ds * cost(from + t * (to - from)); });
-  return sum;
+  for (double cost : costs_along(from, to)) sum += cost;
+  return sum * (to - from).norm() / static_cast<double>(costs_.size());
 }
 
 double SearchSpace::work(const Vector& from, const Vector& to) const {
-  if (!cost_.anyone()) return 0.0;
+  if (!cost_.concerned()) return 0.0;
   double sum = 0, last = cost(from);
   const auto rise = [&](double now) {
     sum += std::max(0.0, now - last);
     last = now;
   };
-  along(from, to, [&](double t, double) { rise(cost(from + t * (to - from))); });
+  for (double cost : costs_along(from, to)) rise(cost);
   rise(cost(to));
   return sum;
 }

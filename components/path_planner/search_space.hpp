@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "common/collision/collision_world.hpp"
 #include "common/cost/human_cost.hpp"
@@ -22,7 +23,7 @@ class SearchSpace {
   const Problem& problem() const { return problem_; }
   const Settings& settings() const { return settings_; }
   Vector start() const { return part(problem_.start); }
-  bool concerns_people() const { return cost_.anyone(); }
+  bool concerns_people() const { return cost_.concerned(); }
 
   /// Empty when inside the position limits, else which axis is not and by how much.
   std::string outside_limits(const Vector& q) const;
@@ -51,10 +52,10 @@ class SearchSpace {
   }
 
  private:
+  CollisionVerdict permitted(const Vector& all) const;
   Vector part(const Vector& all) const;
   const Vector& whole(const Vector& q) const;
-  template <class F>
-  void along(const Vector& from, const Vector& to, F&& visit) const;
+  const std::vector<double>& costs_along(const Vector& from, const Vector& to) const;
 
   const RobotModel& robot_;
   CollisionWorld& world_;
@@ -64,8 +65,10 @@ class SearchSpace {
   const Hooks& hooks_;
   Vector lower_, upper_;
   mutable Vector all_, all_to_;
+  mutable std::vector<double> at_, costs_;
   std::uint64_t checks_before_{}, limit_{}, charged_{};
   double step_{};
+  bool bound_{};  // by what outside layers forbid: not when it starts there, the arm must be able to leave
 };
 
 /// Euclidean length of a broken line [rad].

@@ -19,6 +19,7 @@ config::TrajectoryPlannerSettings load(const NodeContext& context) {
   return s;
 }
 
+constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 constexpr Duration kLeastModelled = std::chrono::milliseconds(2);
 
 }  // namespace
@@ -35,6 +36,9 @@ Node::Node(Bus& bus, const NodeContext& context)
   check_time_ = from_seconds(file.check_time());
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
+  bus.subscribe<Costmap>(
+      [this](const Costmap& layer, const Receipt& receipt) { layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival); });
+  bus.every(kLayerWatch, [this](TimePoint now) { bus_.set_degraded(layers_.complaint(now)); });
   bus.subscribe<TrajectoryRequest>([this](const TrajectoryRequest& request, const Receipt&) { on_request(request); });
 }
 
@@ -66,15 +70,17 @@ void Node::start(const TrajectoryRequest& request) {
     TrajectoryRequest request;
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const HumanState> people;
+    LayersNow layers;
     Result result;
   };
-  auto work = std::make_shared<Work>(Work{request, scene_, people_, {}});
+  auto work = std::make_shared<Work>(Work{request, scene_, people_, layers_.at(bus_.now()), {}});
   bus_.run_job(
       [this, work](const CancelToken&) {
         world_.set_scene(*work->scene);
         world_.set_people(*work->people);
         world_.set_attachment(work->request.attachment, work->request.allowed_contacts);
         cost_.set_people(*work->people);
+        cost_.set_layers(work->layers);
         cost_.set_base(work->scene->T_world_base);
         work->result = plan(*robot_, world_, cost_, work->request, settings_);
         return kLeastModelled + check_time_ * static_cast<Duration::rep>(work->result.checks);

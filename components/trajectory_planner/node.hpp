@@ -29,6 +29,7 @@ class Node {
   std::unique_ptr<Publisher<TrajectoryReply>> reply_out_;
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
+  CostLayers layers_;
   RequestDesk desk_;
 
   // Used by jobs only, which run one after the other.

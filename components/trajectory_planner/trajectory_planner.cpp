@@ -35,7 +35,7 @@ KinematicLimits comfort_limits(const RobotModel& robot, const Group& group, doub
 }
 
 double largest_cost(const HumanCost& cost, const TrajectoryRequest& request, const Group& group, double step) {
-  if (!cost.anyone()) return 0;
+  if (!cost.concerned()) return 0;
   double worst = 0;
   for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
     const Vector &a = request.nodes[k], &b = request.nodes[k + 1];
@@ -50,8 +50,14 @@ double largest_cost(const HumanCost& cost, const TrajectoryRequest& request, con
 /// Judges corners: position limits on the exact extremes, collisions along the way.
 class CornerJudge {
  public:
-  CornerJudge(const RobotModel& robot, const Group& group, CollisionWorld& world, const Vector& start, double step)
-      : robot_(robot), group_(group), world_(world), start_(start), step_(step) {}
+  CornerJudge(const RobotModel& robot, const Group& group, CollisionWorld& world, const HumanCost& cost, const Vector& start, double step)
+      : robot_(robot),
+        group_(group),
+        world_(world),
+        cost_(cost),
+        start_(start),
+        step_(step),
+        bound_(cost.forbidden(start).layer == nullptr) {}
 
   bool operator()(const Trajectory& corner) {
     double rate = 0;
@@ -69,7 +75,8 @@ class CornerJudge {
     for (int k = 0; k <= parts; ++k) {
       table.evaluate(table.duration() * k / parts, cursor, state);
       ++checks_;
-      if (!world_.is_free(RobotModel::with(start_, group_, state.position))) return false;
+      const Vector q = RobotModel::with(start_, group_, state.position);
+      if (!world_.is_free(q) || (bound_ && cost_.forbidden(q).layer != nullptr)) return false;
     }
     return true;
   }
@@ -79,8 +86,10 @@ class CornerJudge {
   const RobotModel& robot_;
   const Group& group_;
   CollisionWorld& world_;
+  const HumanCost& cost_;
   const Vector& start_;
   double step_;
+  bool bound_;  // by what outside layers forbid: not when it starts there
   std::uint64_t checks_{};
 };
 
@@ -96,7 +105,7 @@ Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cos
   result.cost = largest_cost(cost, request, group, settings.cost_step);
   result.speed_factor = request.speed_scale * (1 - (1 - settings.least_speed_factor) * result.cost);
   const KinematicLimits limits = comfort_limits(robot, group, result.speed_factor);
-  CornerJudge judge(robot, group, world, request.start, settings.corner_step);
+  CornerJudge judge(robot, group, world, cost, request.start, settings.corner_step);
   SmoothSettings smoothing;
   smoothing.allowed_excess = settings.allowed_excess;
   SmoothResult smoothed = smooth(request.nodes, limits, smoothing, [&judge](const Trajectory& corner) { return judge(corner); });

@@ -1,14 +1,18 @@
 // The nodes of path planner, collision checker and cost map on LocalBus.
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <optional>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/bus/local_bus.hpp"
+#include "common/messages/system.hpp"
 #include "components/collision_checker/node.hpp"
 #include "components/costmap/node.hpp"
 #include "components/path_planner/node.hpp"
+#include "tests/support/cost_layer.hpp"
 #include "tests/support/planar_arm.hpp"
 
 namespace handsel {
@@ -136,6 +140,123 @@ TEST_F(PathNode, an_older_request_than_one_already_asked_is_superseded) {
   EXPECT_THAT(heard_.messages[1].reason, HasSubstr("superseded"));
 }
 
+/// The way of the arm's end from one side to the other, and somebody outside who would rather it did not go straight.
+class PathNodeAndOutsider : public PathNode {
+ protected:
+  PathNodeAndOutsider() {
+    scene_.boxes.clear();
+    Bus& outsider = network_.add("crowd_estimator");
+    layer_out_ = outsider.advertise<Costmap>();
+    outsider.every(milliseconds(100), [this](TimePoint) {
+      if (layer_) layer_out_->publish(*layer_);
+    });
+    health_.listen(network_.add("supervisor"));
+  }
+  PathReply ask(std::uint64_t number) {
+    const std::size_t before = heard_.messages.size();
+    request_out_->publish(request(number));
+    EXPECT_TRUE(wait(before + 1));
+    return heard_.messages.back();
+  }
+  /// Highest at full stretch straight ahead, nothing half a meter away.
+  static Costmap hill() {
+    Costmap map = crowd(0);
+    for (std::size_t i = 0; i < map.values.size(); ++i) {
+      const double x = static_cast<double>(i % map.nx), y = static_cast<double>(i / map.nx % map.ny);
+      const double away = (map.origin + map.resolution * Vector3(x, y, 0) - Vector3(1.2, 0, -0.3)).head<2>().norm();
+      map.values[i] = static_cast<std::uint8_t>(254 * std::max(0.0, 1 - away / 0.5));
+    }
+    return map;
+  }
+  static Costmap crowd(std::uint8_t value) {
+    return test::box_layer("crowd", {0, -1.4, -0.3}, {1.4, 1.4, 0.3}, {0.9, -0.25, -0.3}, {1.4, 0.25, 0.3}, value, 3.0);
+  }
+  /// The layer's cost along a path [rad], and whether it forbids a place of it.
+  std::pair<double, bool> along(const PathReply& reply, const Costmap& layer) const {
+    HumanCost cost(*context_.robot, {});
+    LayersNow layers;
+    layers.outside.push_back(std::make_shared<const CostGrid>(layer));
+    cost.set_layers(layers);
+    double sum = 0;
+    bool forbidden = false;
+    for (std::size_t k = 0; k + 1 < reply.path.size(); ++k)
+      for (int i = 0; i <= 200; ++i) {
+        const Vector q = reply.path[k] + (reply.path[k + 1] - reply.path[k]) * (i / 200.0);
+        sum += cost(q) * (reply.path[k + 1] - reply.path[k]).norm() / 201;
+        forbidden = forbidden || cost.forbidden(q).layer != nullptr;
+      }
+    return {sum, forbidden};
+  }
+  std::string complaint() const {
+    for (auto it = health_.messages.rbegin(); it != health_.messages.rend(); ++it)
+      if (it->component == "path_planner") return it->reason;
+    return "silent";
+  }
+  std::optional<Costmap> layer_;
+  std::unique_ptr<Publisher<Costmap>> layer_out_;
+  Heard<ComponentHealth> health_;
+};
+
+TEST_F(PathNodeAndOutsider, a_layer_published_from_outside_bends_the_path) {
+  network_.run_for(milliseconds(300));
+  const PathReply straight = ask(1);
+  ASSERT_TRUE(straight.solved) << straight.reason;
+  EXPECT_EQ(straight.path.size(), 2u);
+  EXPECT_EQ(straight.cost, 0.0);
+  const double through = along(straight, hill()).first;
+  EXPECT_GT(through, 0.5);
+
+  layer_ = hill();
+  network_.run_for(milliseconds(300));
+  const PathReply bent = ask(2);
+  ASSERT_TRUE(bent.solved) << bent.reason;
+  EXPECT_LT(along(bent, *layer_).first, 0.5 * through);
+  EXPECT_NEAR(along(bent, *layer_).first, bent.cost, 0.1);
+  EXPECT_GT(bent.length, straight.length + 0.1);
+  EXPECT_EQ(complaint(), "");
+}
+
+TEST_F(PathNodeAndOutsider, what_it_forbids_is_kept_off_and_a_goal_there_is_refused) {
+  layer_ = crowd(255);
+  network_.run_for(milliseconds(300));
+  const PathReply around = ask(1);
+  ASSERT_TRUE(around.solved) << around.reason;
+  EXPECT_FALSE(along(around, *layer_).second);
+  PathRequest into = request(2);
+  into.goals = {Vector3(0, 0, 0)};
+  request_out_->publish(into);
+  ASSERT_TRUE(wait(2));
+  EXPECT_FALSE(heard_.messages[1].solved);
+  EXPECT_THAT(heard_.messages[1].reason, HasSubstr("cost layer crowd forbids"));
+  PathRequest out_of = request(3);
+  out_of.start = Vector3(0, 0, 0);
+  request_out_->publish(out_of);
+  ASSERT_TRUE(wait(3));
+  EXPECT_TRUE(heard_.messages[2].solved) << "the arm may leave: " << heard_.messages[2].reason;
+}
+
+TEST_F(PathNodeAndOutsider, a_layer_that_falls_silent_is_named_and_counts_no_more) {
+  layer_ = crowd(254);
+  network_.run_for(milliseconds(300));
+  layer_.reset();
+  network_.run_for(milliseconds(1500));
+  EXPECT_THAT(complaint(), HasSubstr("cost layer \"crowd\""));
+  EXPECT_EQ(ask(1).path.size(), 2u);
+  layer_ = crowd(254);
+  network_.run_for(milliseconds(500));
+  EXPECT_EQ(complaint(), "");
+  EXPECT_GT(ask(2).path.size(), 2u);
+}
+
+TEST_F(PathNodeAndOutsider, a_layer_of_the_wrong_size_never_gets_in) {
+  layer_ = crowd(254);
+  layer_->nz = 1;
+  layer_->values.resize(std::size_t{layer_->nx} * layer_->ny);
+  network_.run_for(milliseconds(500));
+  EXPECT_THAT(complaint(), HasSubstr("two points along each axis"));
+  EXPECT_EQ(ask(1).path.size(), 2u);
+}
+
 class CheckerNode : public Nodes {
  protected:
   CheckerNode() {
@@ -196,26 +317,91 @@ TEST_F(CheckerNode, answers_queries) {
   EXPECT_EQ(verdicts.messages[0].free, (std::vector<std::uint8_t>{0, 1}));
 }
 
-TEST_F(Nodes, the_cost_map_follows_the_person_and_no_faster_than_its_period) {
+TEST_F(CheckerNode, a_layer_from_outside_raises_the_cost_ahead) {
+  active_.trajectory = 3;
+  active_.speed_factor = 1;
+  active_.axes = {0};
+  active_.rest.axes = {{{-0.5, 0.5, 0}, {{2.0, 0.0}}}};
+  scene_.boxes.clear();
+  network_.run_for(milliseconds(300));
+  ASSERT_FALSE(forecasts_.messages.empty());
+  EXPECT_EQ(forecasts_.messages.back().cost, 0.0);
+  Bus& outsider = network_.add("crowd_estimator");
+  const auto layer_out = outsider.advertise<Costmap>();
+  layer_out->publish(test::box_layer("crowd", {0, -1.4, -0.3}, {1.4, 1.4, 0.3}, {0.9, -0.25, -0.3}, {1.4, 0.25, 0.3}, 254, 0.5));
+  network_.run_for(milliseconds(300));
+  EXPECT_NEAR(forecasts_.messages.back().cost, 0.5, 1e-6);
+  network_.run_for(milliseconds(1500));
+  EXPECT_EQ(forecasts_.messages.back().cost, 0.0) << "not sent again within a second";
+}
+
+TEST_F(CheckerNode, a_large_batch_is_answered_in_order_and_a_query_that_makes_no_sense_with_a_reason) {
+  Bus& client = network_.add("handsel");
+  auto query_out = client.advertise<StateQuery>();
+  Heard<StateVerdict> verdicts;
+  verdicts.listen(client);
+  network_.run_for(milliseconds(200));
+  StateQuery query;
+  query.id = {4, 4};
+  for (int i = 0; i < 2000; ++i) query.states.push_back(Vector3(-1.5 + 0.0015 * i, 0, 0));
+  query_out->publish(query);
+  ASSERT_TRUE(network_.run_until([&] { return !verdicts.messages.empty(); }, network_.now() + seconds(5)));
+  const StateVerdict& batch = verdicts.messages[0];
+  ASSERT_EQ(batch.free.size(), query.states.size());
+  for (std::size_t i = 0; i < query.states.size(); ++i) {
+    const double turn = std::abs(query.states[i][0]);
+    if (turn < 0.1 || turn > 0.3) {
+      EXPECT_EQ(batch.free[i] != 0, turn > 0.3) << i;
+    }
+  }
+  EXPECT_THAT(batch.reason, HasSubstr("box wall"));
+
+  query.id = {4, 5};
+  query.states = {Vector::Zero(7), Vector::Zero(7)};
+  query_out->publish(query);
+  query.id = {4, 6};
+  query.states.clear();
+  query_out->publish(query);
+  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 3; }, network_.now() + seconds(5)));
+  EXPECT_EQ(verdicts.messages[1].free, (std::vector<std::uint8_t>{0, 0}));
+  EXPECT_THAT(verdicts.messages[1].reason, HasSubstr("7 axes"));
+  EXPECT_TRUE(verdicts.messages[2].free.empty());
+  EXPECT_THAT(verdicts.messages[2].reason, HasSubstr("no states"));
+}
+
+TEST_F(Nodes, the_cost_map_follows_the_person_ten_times_a_second) {
   costmap::Node node(network_.add("costmap"), context_);
   Bus& reader = network_.add("path_planner");
-  Heard<Costmap> maps;
-  maps.listen(reader);
-  network_.run_for(seconds(2));
-  EXPECT_TRUE(maps.messages.empty()) << "nobody is there";
+  std::map<std::string, std::vector<Costmap>> maps;
+  reader.subscribe<Costmap>([&](const Costmap& map, const Receipt&) { maps[map.layer].push_back(map); });
+  network_.run_for(seconds(1));
+  EXPECT_TRUE(maps.empty()) << "nobody is there";
   put_person({1.5, 0, 0});
-  network_.run_for(milliseconds(1500));
-  ASSERT_FALSE(maps.messages.empty());
-  EXPECT_EQ(maps.messages[0].person, "anna");
-  EXPECT_LE(maps.messages.size(), 3u) << "a still person needs no new maps";
-  const std::uint64_t revision = maps.messages.back().revision;
-  maps.messages.clear();
-  for (int i = 1; i <= 20; ++i) {
-    put_person({1.5 + 0.04 * i, 0, 0});
+  network_.run_for(milliseconds(1700));
+  for (const char* layer : kOwnLayers) {
+    ASSERT_FALSE(maps[layer].empty()) << layer;
+    EXPECT_EQ(maps[layer][0].person, "anna");
+    EXPECT_LE(maps[layer].size(), 4u) << "a still person needs no new maps, but repeats for who comes late";
+    EXPECT_EQ(maps[layer].back().revision, maps[layer].front().revision);
+  }
+  maps.clear();
+  for (int i = 1; i <= 40; ++i) {
+    put_person({1.5 + 0.02 * i, 0, 0});
     network_.run_for(milliseconds(50));
   }
-  EXPECT_GT(maps.messages.back().revision, revision);
-  EXPECT_LE(maps.messages.size(), 11u);
+  for (const char* layer : kOwnLayers) {
+    EXPECT_GE(maps[layer].size(), 20u) << "two seconds";
+    EXPECT_GT(maps[layer].back().revision, maps[layer].front().revision);
+    EXPECT_NEAR(maps[layer].back().origin.x() - maps[layer].front().origin.x(), 0.75, 0.08);
+  }
+  people_.people.clear();
+  network_.run_for(milliseconds(300));
+  maps.clear();
+  network_.run_for(seconds(1));
+  EXPECT_TRUE(maps.empty()) << "they left";
+  put_person({1.5 + 0.02 * 40, 0, 0});
+  network_.run_for(milliseconds(500));
+  EXPECT_FALSE(maps["arm_comfort"].empty()) << "and are back where they were";
 }
 
 }  // namespace

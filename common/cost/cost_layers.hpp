@@ -1,0 +1,59 @@
+// The layers of the cost map that count now, as their writers send them. Pure.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/cost/cost_grid.hpp"
+
+namespace handsel {
+
+struct OutsideCost {
+  double cost{};                   ///< weighted sum over the layers; what a layer forbids costs 1 there
+  const CostGrid* forbidden_by{};  ///< null: by none
+};
+
+struct LayersNow {
+  std::shared_ptr<const CostGrid> comfort;               ///< arm comfort of comfort->person(), validated against the furniture; or null
+  std::vector<std::shared_ptr<const CostGrid>> outside;  ///< what others add, in the order of their names
+
+  const CostGrid* comfort_of(const std::string& person) const { return comfort && comfort->person() == person ? comfort.get() : nullptr; }
+  /// What outside layers say about a place in the world.
+  OutsideCost outside_cost(const Vector3& p) const;
+};
+
+/// Keeps the newest "arm_comfort" and every outside layer. What cannot be used is left out, counted and named.
+class CostLayers {
+ public:
+  /// `stale`: a layer last sent longer ago counts no more.
+  explicit CostLayers(Duration stale = std::chrono::seconds(1)) : stale_(stale) {}
+
+  /// `sent`: when its writer sent it, on the clock of `now`.
+  void put(const Costmap& map, TimePoint sent, TimePoint now);
+  LayersNow at(TimePoint now);
+
+  std::uint64_t left_out() const { return left_out_; }  ///< samples with a fault or sent too long ago, and layers that fell silent
+  /// What was left out last, one sentence; empty when that layer came again since, or ten seconds have passed.
+  std::string complaint(TimePoint now);
+
+ private:
+  struct Kept {
+    std::shared_ptr<const CostGrid> grid;
+    TimePoint sent;
+  };
+  void leave_out(const std::string& layer, const std::string& why, TimePoint now);
+  void forget_stale(TimePoint now);
+  std::string too_old(const std::string& layer) const;
+
+  Duration stale_;
+  std::map<std::string, Kept> kept_;
+  std::uint64_t left_out_{0};
+  std::string complaint_, complained_about_;
+  TimePoint complained_{};
+};
+
+}  // namespace handsel

@@ -1,0 +1,74 @@
+// Safety and visibility of up to sixteen states of a robot at once; HumanCost asks it where it is told which axes move. Ours.
+#pragma once
+
+#include <memory>
+#include <new>
+#include <optional>
+#include <vector>
+
+#include "common/collision/wide_chain.hpp"
+#include "common/cost/person_frame.hpp"
+#include "common/cost/wide_cost_kernel.hpp"
+#include "common/model/robot_capsules.hpp"
+
+namespace handsel {
+
+/// A point that moves with a link.
+struct LinkPoint {
+  int link{};
+  Vector3 p_link{Vector3::Zero()};  ///< [m]
+};
+
+class WideCost {
+ public:
+  static constexpr int kStates = detail::kWideStates;
+
+  /// `points`: visibility is that of the first.
+  WideCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points);
+
+  /// States in which only `axes` differ are asked about; when another one does, the robot is folded anew. Empty: nothing is answered.
+  void set_axes(const std::vector<int>& axes);
+  void set_base(const Pose& T_world_base);
+  struct Someone {
+    SimplifiedBody body;
+    std::optional<Sight> sight;
+  };
+  void set_people(std::vector<Someone> people, double safety_radius, double visibility_cutoff);
+
+  /// The states from + at[i] (to - from), i < count <= kStates, with the first `points` of the points. False: not for this path.
+  bool run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points);
+  double safety(std::size_t person, int lane) const { return safety_[person * kStates + static_cast<std::size_t>(lane)]; }
+  double visibility(std::size_t person, int lane) const { return visibility_[person * kStates + static_cast<std::size_t>(lane)]; }
+  Vector3 point(std::size_t i, int lane) const {  ///< world [m]
+    const float* p = point_.get() + 3 * i * kStates + lane;
+    return base_.translation() + Vector3(p[0], p[kStates], p[2 * kStates]);
+  }
+  /// Another width than the widest, for tests and measurements.
+  void set_kernel(const detail::CostKernel& kernel) { kernel_ = &kernel; }
+
+ private:
+  struct Free {
+    void operator()(float* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  using Floats = std::unique_ptr<float[], Free>;
+  static Floats rows(std::size_t count);
+  bool fold(const Vector& from, const Vector& to);
+  void place_people();
+
+  const RobotModel& robot_;
+  const detail::CostKernel* kernel_;
+  std::vector<LinkCapsule> link_capsules_;
+  std::vector<LinkPoint> link_points_;
+  std::vector<int> axes_;
+  Vector folded_;  // the state the chain was folded at; empty: not yet
+  WideChain chain_;
+  Pose base_{Pose::Identity()};
+  std::vector<detail::CostCapsule> capsules_;
+  std::vector<detail::CostPoint> points_;
+  std::vector<detail::CostPerson> people_;
+  std::vector<Someone> someone_;
+  double safety_radius_{1}, visibility_cutoff_{1};
+  Floats pose_, ends_, safety_, visibility_, point_, q_;
+};
+
+}  // namespace handsel
