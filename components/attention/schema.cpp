@@ -171,6 +171,9 @@ class Avoid : public Schema {
         factor_ = motor_.recoil_factor;
         reason_ = "recoil: a person closes in";
       }
+    } else if (s.distance < motor_.avoid_stop && closing > motor_.recoil_speed) {
+      factor_ = motor_.recoil_factor;
+      reason_ = "recoil: a person closes in on the resting arm";
     }
     return stimulus;
   }

@@ -16,6 +16,7 @@ namespace {
 constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
 constexpr double kLeastLook = 0.6;    // speed factor looked ahead with at least: who goes on must also be able to stop
 constexpr double kBackward = 0.02;    // it runs back
+constexpr int kYieldEvery = 10;       // cycles
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
@@ -77,7 +78,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   set_point_ = rest_state(Vector::Zero(n));
   effort_ = Vector::Zero(n);
   next_ = set_point_;
-  full_velocity_ = full_acceleration_ = posture_ = yield_from_ = Vector::Zero(n);
+  full_velocity_ = full_acceleration_ = posture_ = yield_from_ = away_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
@@ -185,12 +186,15 @@ void Controller::run_guard(TimePoint now) noexcept {
   if (arm_ != Arm::running || runner_.finished()) {
     verdict_now_ = verdict_near_ = verdict_far_ = {};
     verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
-    if (cycles_ % 50 != 0) {  // at rest only the distance and the end of an exchange are of interest
+    // At rest only the distance and the end of an exchange are of interest, and whether it may draw back.
+    if (cycles_ % (retreating_ ? kYieldEvery : 50) != 0) {
       guard_verdict_ = verdict_now_;
+      if (retreating_) guard_verdict_.forward = retreat_share_;
       return;
     }
     full_velocity_.setZero();
     full_acceleration_.setZero();
+    if (retreating_) full_velocity_ = settings_.yield_speed * away_;
   }
   // In turn where the path is and where it will be a little later, the one or the other; where it is as soon as people have just been seen.
   turn_ = new_people_ || arm_ != Arm::running ? 0 : (turn_ + 1) % 4;
@@ -204,6 +208,7 @@ void Controller::run_guard(TimePoint now) noexcept {
   if (here) nearest_ = verdict_now_;
   new_people_ = false;
   merge_verdicts();
+  retreat_share_ = guard_verdict_.forward;
   if (here && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
     exchanging_.clear();
     for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
@@ -250,10 +255,14 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
                   robot_->stop_limits(), crowd_, settings_.walls, std::max(0.0, human_seen_.age(now)), speed_factor());
 }
 
+bool Controller::attention_silent(TimePoint now) const noexcept {
+  const double age = advice_seen_.age(now);
+  return age < 0 || age > settings_.timeouts.attention;
+}
+
 double Controller::wanted_factor(TimePoint now) const noexcept {
   if (verdict_.mode >= Mode::hold || cancelled_) return 0.0;
-  const double attention_age = advice_seen_.age(now);
-  const bool silent = attention_age < 0 || attention_age > settings_.timeouts.attention;
+  const bool silent = attention_silent(now);
   double wanted = std::min({go_.override_factor, guard_verdict_.forward, silent ? settings_.attention_lost_factor : advice_.speed_factor});
   wanted = std::min(wanted, cost_share());
   if (forecast_.collides && forecast_.trajectory == piece().id) {
@@ -448,9 +457,28 @@ void Controller::step_head() noexcept {
   head_paused_ = !may_move;
 }
 
-/// At rest the arm gives way to who pushes it, axis by axis, until the push ends.
-void Controller::step_yield() noexcept {
-  constexpr int kEvery = 10;      // cycles
+/// How the axes move the point nearest to a person straight away from them.
+void Controller::aim_away() noexcept {
+  constexpr double kLeast = 0.05;  // [m] of lever
+  away_.setZero();
+  const Vector3 way = nearest_.on_robot - nearest_.on_person;
+  if (nearest_.link < 0 || !(way.norm() > 1e-6)) return;
+  const auto link = static_cast<std::size_t>(nearest_.link);
+  const Vector3 toward = state_.T_world_base.linear().transpose() * way.normalized();
+  robot_->forward(set_point_.position, links_);
+  const Vector3 lever = state_.T_world_base.inverse() * nearest_.on_robot - links_[link].translation();
+  for (int axis : arm_axes_) {
+    full_velocity_.setZero();
+    full_velocity_[axis] = 1.0;
+    link_twists(*robot_, full_velocity_, links_, twists_);
+    away_[axis] = (twists_[link].linear + twists_[link].angular.cross(lever)).dot(toward);
+  }
+  const double most = away_.cwiseAbs().maxCoeff();
+  away_ *= most > kLeast ? 1.0 / most : 0.0;
+}
+
+/// At rest the arm gives way to who pushes it, axis by axis, until the push ends; and draws back from who comes too near.
+void Controller::step_yield(TimePoint now) noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
   const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && exchanging_.empty() &&
                    state_.mode == DriveMode::enabled && hand_.state() != HandState::moving && settings_.yield_speed > 0.0;
@@ -459,7 +487,13 @@ void Controller::step_yield() noexcept {
   held_before_ = verdict_.mode >= Mode::hold;
   if (at_rest()) yield_waits_ = false;
   const bool pushed = may && !yield_waits_ && contact_.pushed() && (verdict_.causes & (bit(Cause::robot_state_silent))) == 0;
-  if (pushed && !yielding_ && at_rest()) {
+  constexpr double kLeastShare = 0.1;  // that the guard must allow
+  retreating_ = may && !pushed && verdict_.mode < Mode::hold && settings_.retreat_reach > 0.0 && !attention_silent(now) &&
+                advice_.speed_factor < 0.0 && nearest_.link >= 0;
+  if (retreating_ && cycles_ % kYieldEvery == 0) aim_away();
+  const double share = retreating_ && retreat_share_ >= kLeastShare ? retreat_share_ : 0.0;
+  const bool wanted = pushed || share > 0.0;
+  if (wanted && !yielding_ && at_rest()) {
     yield_from_ = set_point_.position;
     yielding_ = true;
   }
@@ -468,22 +502,23 @@ void Controller::step_yield() noexcept {
   for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
     const int axis = arm_axes_[i];
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    const double push = pushed ? contact_.push(i) : 0.0;
-    if (arm_ == Arm::standing && push == 0.0) {
+    const double push = pushed ? contact_.push(i) : 0.0, beyond = std::abs(push) / settings_.contact.yield_torque - 1.0;
+    const double wish = pushed ? std::copysign(std::clamp(beyond, 0.0, 1.0), push) : share * away_[axis];
+    if (arm_ == Arm::standing && wish == 0.0) {
       if (!mover.at_rest()) mover.stop(limits_of(robot_->stop_limits(), axis));
-    } else if (arm_ == Arm::standing && cycles_ % kEvery == 0) {
-      const double speed = settings_.yield_speed * std::min(1.0, std::abs(push) / settings_.contact.yield_torque - 1.0);
+    } else if (arm_ == Arm::standing && cycles_ % kYieldEvery == 0) {
+      const double reach = pushed ? settings_.yield_reach : settings_.retreat_reach;
       AxisLimits limits = limits_of(robot_->comfort_limits(), axis);
-      limits.velocity = std::clamp(speed, 1e-3, limits.velocity);
+      limits.velocity = std::clamp(settings_.yield_speed * std::abs(wish), 1e-3, limits.velocity);
       const Axis& bounds = robot_->axes()[static_cast<std::size_t>(axis)];
-      double target = std::clamp(mover.state().position + std::copysign(kAhead * limits.velocity, push),
-                                 yield_from_[axis] - settings_.yield_reach, yield_from_[axis] + settings_.yield_reach);
+      double target = std::clamp(mover.state().position + std::copysign(kAhead * limits.velocity, wish), yield_from_[axis] - reach,
+                                 yield_from_[axis] + reach);
       if (bounds.lower < bounds.upper) target = std::clamp(target, bounds.lower, bounds.upper);
       mover.go_to(target, limits, limits_of(robot_->stop_limits(), axis));
     }
     resting = resting && mover.at_rest();
   }
-  if (!pushed && resting) yielding_ = false;
+  if (!wanted && resting) yielding_ = false;
 }
 
 void Controller::resync(TimePoint now) noexcept {
@@ -555,7 +590,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   }
   next_ = set_point_;
   resync(now);
-  step_yield();
+  step_yield(now);
   step_arm(now);
   const HandState held = hand_.state();
   step_hand(now);

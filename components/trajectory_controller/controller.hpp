@@ -30,6 +30,7 @@ struct ControllerSettings {
   double switch_reach{0.3};           ///< in motion, a trajectory is joined at most this far from where the one before is left [rad]
   double yield_speed{0.2};            ///< fastest giving way to a push at rest [rad/s]
   double yield_reach{0.3};            ///< farthest, each axis [rad]
+  double retreat_reach{0.15};         ///< likewise, drawing back from a person at rest, when attention asks for recoil; 0: never [rad]
   bool dry_run{};                     ///< everything but the output: the robot does not follow, and need not
   double tracking_tolerance{0.3};     ///< measured beyond this from the set-point (hand left out): Fault [rad]
   double tracking_time{0.1};          ///< for this long [s]
@@ -145,7 +146,9 @@ class Controller {
   void step_hand(TimePoint now) noexcept;
   void note_hold(HandState before) noexcept;
   void step_head() noexcept;
-  void step_yield() noexcept;
+  void step_yield(TimePoint now) noexcept;
+  void aim_away() noexcept;
+  bool attention_silent(TimePoint now) const noexcept;
   void check_last() noexcept;
   AxisState sent(int axis) const noexcept;
   bool at_rest() const noexcept { return set_point_.velocity.isZero(0.0) && set_point_.acceleration.isZero(0.0); }
@@ -206,8 +209,9 @@ class Controller {
 
   // Judging.
   ContactWatch contact_;
-  bool yielding_{}, yield_waits_{}, held_before_{};
-  Vector yield_from_;
+  bool yielding_{}, yield_waits_{}, held_before_{}, retreating_{};
+  double retreat_share_{};    // of its speed that the guard allows
+  Vector yield_from_, away_;  // away_: motion of the axes that leads away from the nearest person, largest 1
   ModeMachine modes_;
   ModeVerdict verdict_;
   GuardVerdict guard_verdict_, verdict_now_, verdict_near_, verdict_far_, nearest_;

@@ -109,18 +109,27 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
 
   const int present = std::clamp(static_cast<int>(std::ceil(std::abs(factor) * kGrid - 1e-9)), 0, kGrid);
   int high = kGrid;  // of the factors still in question
+  double quickest_person = 0.0, oldest = 0.0;
+  for (const CrowdCapsule& part : crowd.capsules) {
+    quickest_person = std::max(quickest_person, fastest(part, settings));
+    oldest = std::max(oldest, part.age);
+  }
   for (const LinkCapsule& link : robot) {
     const MovingCapsule r = placed(link, motion, T_world_base);
     const Vector3 way = r.b - r.a, centre = 0.5 * (r.a + r.b);
     const double length2 = way.squaredNorm(), reach = 0.5 * std::sqrt(length2) + r.radius;
     const double quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
+    const double farthest =
+        std::max(settings.exchange_range, needed(quickest_person, quickest, high, reaction + oldest, margin)) + reach;  // that may matter
     for (const CrowdCapsule& part : crowd.capsules) {
       // What is farther than this changes nothing: rough first, then exactly.
+      const double apart2 = (part.centre - centre).squaredNorm(), far = std::max(farthest, verdict.distance + reach) + part.reach;
+      if (apart2 > far * far) continue;
       const double matters = part.excepted       ? settings.exchange_range
                              : quickest < kStill ? 0.0
                                                  : needed(fastest(part, settings), quickest, high, reaction + part.age, margin);
       const double rough = (part.excepted ? matters : std::max(matters, verdict.distance)) + reach + part.reach;
-      if ((part.centre - centre).squaredNorm() > rough * rough) continue;
+      if (apart2 > rough * rough) continue;
       Vector3 on_robot, on_person;
       const double axes_apart = std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
       const double distance = axes_apart - r.radius - part.radius;
@@ -131,6 +140,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       const double closing = (r.va + share * (r.vb - r.va)).dot(toward);  // at factor 1; backwards it is the negative
       if (nearest) {
         verdict.distance = distance;
+        verdict.link = link.link;
         verdict.on_robot = on_robot;
         verdict.on_person = on_person;
         verdict.needed = needed(directed_speed(part, -toward, settings), std::max(0.0, std::copysign(closing, closing * factor)), present,

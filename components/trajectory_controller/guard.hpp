@@ -46,6 +46,7 @@ struct GuardVerdict {
   double backward{-1.0};                                          ///< least allowed (running back), [-1, 0]
   double distance{1e9};                                           ///< to the nearest person, excepted parts left out [m]
   double needed{};                                                ///< distance the rule asks for there at the present factor [m]
+  int link{-1};                                                   ///< of the robot, that is nearest; -1: nobody
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< on the axes of the two nearest capsules, world [m]
   bool separation{};                                              ///< the separation rule made it less than 1
   bool wall{};                                                    ///< a wall made it less than 1

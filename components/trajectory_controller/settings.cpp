@@ -38,6 +38,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.cost_factor = read(in.cost_factor(), "cost_factor", kTiny, 1);
   s.yield_speed = read(in.yield_speed(), "yield_speed", 0, 2);
   s.yield_reach = read(in.yield_reach(), "yield_reach", 0, 2);
+  s.retreat_reach = read(in.retreat_reach(), "retreat_reach", 0, 2);
   s.dry_run = in.dry_run();
   s.switch_reach = read(in.switch_reach(), "switch_reach", 0, 10);
   s.tracking_tolerance = read(in.tracking_tolerance(), "tracking_tolerance", kTiny, 10);

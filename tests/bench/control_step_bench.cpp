@@ -1,4 +1,5 @@
-// Time of one control step of Jido (22 axes) while it works beside a person: p50, p99, p99.9 and the share of each part of the story.
+// Time of one control step of Jido (22 axes) while it works beside a person: p50, p99, p99.9 and the share of each part of the story; of
+// accepting a trajectory, which happens between two steps; and of judging all of the path still to come against a person just seen.
 // Prints; judges nothing (times are the machine's). Usage: bench_control_step [steps] [repeats]
 #include <algorithm>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include "common/config/resources.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/solve.hpp"
+#include "components/collision_checker/forecaster.hpp"
 #include "components/trajectory_controller/controller.hpp"
 
 namespace {
@@ -17,9 +19,13 @@ using namespace handsel;
 using namespace handsel::trajectory_controller;
 
 struct Run {
-  std::vector<double> all, standing, full, changing;  // [us]: at rest, constant factor, factor that changes
+  std::vector<double> all, standing, full, changing, accepting;  // [us]: at rest, constant factor, factor that changes; accept()
   std::uint64_t trajectories{};
 };
+
+double since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+}
 
 double at(const std::vector<double>& times, double share) {
   if (times.empty()) return 0.0;
@@ -79,15 +85,50 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
       for (Eigen::Index i = 0; i < goal.size(); ++i) goal[i] += (c.id % 2 ? 0.4 : -0.2) * (i % 2 ? 1 : -1);
       for (int axis : arm.axes) c.axes.push_back(static_cast<std::uint32_t>(axis));
       c.trajectory = solve(rest_state(of_arm(core.set_point().position)), rest_state(goal), comfort).trajectory;
+      const auto begin = std::chrono::steady_clock::now();
       if (const std::string why = core.accept(c, Duration(0), now); !why.empty()) std::printf("refused: %s\n", why.c_str());
+      out.accepting.push_back(since(begin));
     }
     const double before = core.speed_factor();
     const auto begin = std::chrono::steady_clock::now();
     core.step(now, false);
-    const double us = std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - begin).count();
+    const double us = since(begin);
     out.all.push_back(us);
     const bool moving = core.status_key().motion == MotionState::running;
     (!moving ? out.standing : core.speed_factor() == before ? out.full : out.changing).push_back(us);
+  }
+  return out;
+}
+
+/// A person walks past while the arm sweeps: each sample judges all of the path within the horizon.
+std::vector<double> judge_paths(const RobotModel& robot, int times) {
+  collision_checker::Forecaster forecaster(robot, {}, {}, {});
+  const Group& arm = robot.require_group("arm");
+  const auto of_arm = [&](const Vector& v) { return RobotModel::part(v, arm); };
+  ActiveTrajectory active;
+  active.robot = robot.name();
+  active.trajectory = 1;
+  active.speed_factor = 1.0;
+  active.position = robot.rest_posture();
+  active.velocity = active.acceleration = Vector::Zero(robot.dof());
+  active.axes.assign(arm.axes.begin(), arm.axes.end());
+  const Vector from = of_arm(robot.rest_posture());
+  active.rest =
+      solve(rest_state(from), rest_state(from + Vector::Constant(from.size(), 0.4)),
+            {of_arm(robot.comfort_limits().velocity), of_arm(robot.comfort_limits().acceleration), of_arm(robot.comfort_limits().jerk)})
+          .trajectory;
+  HumanState people;
+  people.covered = true;
+  Person person;
+  person.id = "anna";
+  std::vector<double> out;
+  for (int k = 0; k < times; ++k) {
+    person.joints = standing_body(Vector3(1.6, -1.0 + 2.0 * k / times, 0), M_PI, 1.75);
+    people.people = {person};
+    const auto begin = std::chrono::steady_clock::now();
+    forecaster.set_people(people);
+    forecaster.forecast(active);
+    out.push_back(since(begin));
   }
   return out;
 }
@@ -109,7 +150,11 @@ int main(int argc, char** argv) {
     print("standing", r.standing);
     print("constant", r.full);
     print("changing", r.changing);
+    print("accepting", r.accepting);
   }
   std::printf("least of %d runs, step by step (the algorithm without the machine):\n", repeats);
   print("all", least);
+  std::vector<double> judged = judge_paths(*robot, 2000);
+  std::printf("all of the path within 1.5 s against a person just seen:\n");
+  print("judging", judged);
 }

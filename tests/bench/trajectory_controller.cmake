@@ -1,5 +1,5 @@
 add_executable(bench_control_step ${CMAKE_CURRENT_LIST_DIR}/control_step_bench.cpp)
-target_link_libraries(bench_control_step PRIVATE handsel_trajectory_controller_core handsel_config)
+target_link_libraries(bench_control_step PRIVATE handsel_trajectory_controller_core handsel_collision_checker_core handsel_config)
 add_executable(bench_reaction ${CMAKE_CURRENT_LIST_DIR}/reaction_bench.cpp)
 target_link_libraries(bench_reaction PRIVATE handsel_bus handsel_model handsel_trajectory handsel_config)
 target_compile_definitions(bench_reaction PRIVATE HANDSEL_CONTROLLER="$<TARGET_FILE:handsel_trajectory_controller_process>")

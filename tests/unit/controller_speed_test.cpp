@@ -78,5 +78,46 @@ TEST(Controller, a_trajectory_that_comes_while_somebody_runs_in_begins_with_no_m
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
 }
 
+TEST(Controller, at_rest_it_draws_back_from_who_comes_too_near_as_far_as_it_may) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(test::goal(), 1), "");
+  b.run(6);
+  ASSERT_EQ(b.core.status().motion, MotionState::finished);
+  const Vector stood = b.core.set_point().position;
+  b.people.people = {b.standing(1.0, 0.5)};
+  b.run(0.5);
+  const double near = b.core.status().separation;
+  EXPECT_TRUE(b.at_rest()) << "nobody asked for it";
+  b.advice.speed_factor = -0.5;
+  b.run(4.0);
+  EXPECT_GT(b.core.status().separation, near + 0.03);
+  const double moved = (b.core.set_point().position - stood).cwiseAbs().maxCoeff();
+  EXPECT_GT(moved, 0.05);
+  EXPECT_LE(moved, b.settings.retreat_reach + 1e-9);
+  b.advice.speed_factor = 1.0;
+  b.run(1.0);
+  EXPECT_TRUE(b.at_rest());
+  ASSERT_EQ(b.go_to(ControllerBench::arm(0, 0, 0), 2), "") << "and is ready for the next";
+  expect_smooth(b);
+}
+
+TEST(Controller, it_does_not_draw_back_without_permission_nor_where_that_is_switched_off) {
+  for (const bool allowed : {true, false}) {
+    ControllerSettings s;
+    if (allowed) s.retreat_reach = 0.0;
+    ControllerBench b(s);
+    b.start();
+    ASSERT_EQ(b.go_to(test::goal(), 1), "");
+    b.run(6);
+    const Vector stood = b.core.set_point().position;
+    b.people.people = {b.standing(1.0, 0.5)};
+    b.advice.speed_factor = -1.0;
+    b.go.allowed = allowed;
+    b.run(3.0);
+    EXPECT_EQ(b.core.set_point().position, stood);
+  }
+}
+
 }  // namespace
 }  // namespace handsel::trajectory_controller
