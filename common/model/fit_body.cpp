@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "common/model/body_index.hpp"
@@ -54,24 +55,6 @@ void place(Points& body, const Points& points, const Seen& seen, const ObservedP
   for (auto& p : body) p = to + R * (p - from);
 }
 
-int steps_up(int i) {
-  int n = 0;
-  for (; kParent[i] >= 0; i = kParent[i]) ++n;
-  return n;
-}
-
-int tree_distance(int a, int b) {
-  int n = 0, da = steps_up(a), db = steps_up(b);
-  while (a != b) {
-    if (da >= db)
-      a = kParent[a], --da;
-    else
-      b = kParent[b], --db;
-    ++n;
-  }
-  return n;
-}
-
 }  // namespace
 
 std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* previous, double stature) {
@@ -100,24 +83,25 @@ std::vector<BodyJoint> fit_body(const ObservedPerson& observed, const Person* pr
   }
   if (any) {
     place(body, points, seen, observed);
-    Points fitted;
+    Points fitted = body;
+    std::array<bool, kCount> done{};
     for (int i = 0; i < kCount; ++i) {
-      if (seen[i] > 0) {
-        fitted[i] = points[i];
-        continue;
-      }
-      int nearest = kCount, count = 0;
-      Vector3 shift = Vector3::Zero();
-      for (int k = 0; k < kCount; ++k) {
-        if (seen[k] <= 0) continue;
-        const int d = tree_distance(i, k);
-        if (d > nearest) continue;
-        if (d < nearest) nearest = d, count = 0, shift.setZero();
-        shift += points[k] - body[k];
-        ++count;
-      }
-      fitted[i] = body[i] + shift / count;
+      done[i] = seen[i] > 0;
+      if (done[i]) fitted[i] = points[i];
     }
+    // From the seen joints outward: in the direction of where the body as a whole has it, a bone's length away.
+    for (auto before = done; !std::all_of(done.begin(), done.end(), [](bool d) { return d; }); before = done)
+      for (int i = 0; i < kCount; ++i) {
+        if (before[i]) continue;
+        int from = kParent[i] >= 0 && before[kParent[i]] ? kParent[i] : -1;
+        for (int k = 0; from < 0 && k < kCount; ++k)
+          if (kParent[k] == i && before[k]) from = k;
+        if (from < 0) continue;
+        const Vector3 way = body[i] - fitted[from];
+        const double length = from == kParent[i] ? bone[i] : bone[from];
+        if (way.norm() > 1e-6) fitted[i] = fitted[from] + length * way.normalized();
+        done[i] = true;
+      }
     for (const int arm : {0, r_shoulder - l_shoulder}) {
       const int shoulder = l_shoulder + arm, elbow = l_elbow + arm, wrist = l_wrist + arm, hand = l_hand + arm;
       if (seen[wrist] <= 0 && seen[hand] > 0) {

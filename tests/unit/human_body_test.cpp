@@ -107,7 +107,9 @@ TEST(FitBody, UnseenElbowBendsBySizeAndUnseenHandFollowsTheForearm) {
 
 TEST(FitBody, PreviousBodyKeepsWhatIsNoLongerSeen) {
   Person previous = person_at({0, 0, 0}, 0);
-  previous.joints[body_joint_index("r_wrist")].position += Vector3(0.4, 0, 0.3);
+  const Vector3 elbow = previous.joints[body_joint_index("r_elbow")].position;
+  Vector3& wrist = previous.joints[body_joint_index("r_wrist")].position;
+  wrist = elbow + (wrist - elbow).norm() * Vector3(0.8, 0, 0.6);
   Person now = previous;
   for (auto& joint : now.joints) joint.position += Vector3(0.1, 0, 0);
   const auto fitted = fit_body(observe(now, {"head", "torso", "l_shoulder", "r_shoulder"}), &previous, 1.75);

@@ -372,6 +372,7 @@ TEST(PeopleTracker, AnySubsetOfJointsMakesABodyOfItsOwnSize) {
     std::normal_distribution<double> noise(0, 0.01);
     const double stature = 1.3 + 0.7 * unit(random), yaw = 6.28 * unit(random);
     PeopleTracker tracker(settings());
+    std::vector<double> off;
     for (int i = 0; i < 45; ++i) {
       ObservedPerson body;
       body.body = "7";
@@ -394,7 +395,14 @@ TEST(PeopleTracker, AnySubsetOfJointsMakesABodyOfItsOwnSize) {
       if (i < 10) continue;
       ASSERT_EQ(state.people.size(), 1u) << i;
       ASSERT_EQ(state.people[0].joints.size(), kBodyJoints.size());
+      for (std::size_t k = 0; k < truth.size(); ++k) {
+        off.push_back((state.people[0].joints[k].position - truth[k].position).norm());
+      }
     }
+    std::sort(off.begin(), off.end());
+    EXPECT_LT(off[off.size() / 2], 0.05) << "joints seen or not";
+    EXPECT_LT(off[off.size() * 99 / 100], 0.35);
+    EXPECT_LT(off.back(), 0.7) << "no farther than a limb is long";
     EXPECT_NEAR(tracker.state(at(3), kReach).people[0].stature, stature, 0.06);
   }
 }
