@@ -32,6 +32,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
     if (m.robot == context_.robot->name()) world_->command(m, r.writer);
   });
+  if (world_->follows()) bus.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
   bus.every(from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
 }

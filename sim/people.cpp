@@ -80,6 +80,19 @@ void People::build(const StartPerson& start, const SimSettings& settings, int nu
   people_.push_back(std::move(person));
 }
 
+void People::follow(const HumanObservation& seen) {
+  for (Body& person : people_) {
+    if (person.model.source() != seen.source || seen.people.empty()) continue;
+    const auto named =
+        std::find_if(seen.people.begin(), seen.people.end(), [&](const ObservedPerson& p) { return p.body == person.model.id(); });
+    person.model.follow(named == seen.people.end() ? seen.people.front() : *named);
+  }
+}
+
+bool People::follow_somebody() const {
+  return std::any_of(people_.begin(), people_.end(), [](const Body& person) { return !person.model.source().empty(); });
+}
+
 void People::move(double dt, const BodyState& robot_hand, int gripped) {
   for (Body& person : people_) {
     look(person, dt, robot_hand, gripped);

@@ -34,6 +34,9 @@ class People {
   const PersonModel& model(std::size_t i) const { return people_.at(i).model; }
   const std::vector<BodyCapsule>& capsules(std::size_t i) const { return people_[i].capsules; }
 
+  /// Moves those who follow this source: the body named as they are, else the first seen.
+  void follow(const HumanObservation&);
+  bool follow_somebody() const;
   /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1: none.
   void move(double dt, const BodyState& robot_hand, int gripped);
 

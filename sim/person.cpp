@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/object_surface.hpp"
+#include "sim/person_parts.hpp"
 
 namespace handsel::sim {
 
@@ -10,23 +11,10 @@ namespace {
 
 constexpr double kStill = 0.05;      // an object slower than this is offered [m/s]
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
-constexpr double kSoreForce = 30.0;  // beyond this the person lets go [N]
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
 constexpr double kStepBack = 0.2;    // with what it took [m]
 constexpr double kStep = 0.3;        // a recorded body is moved on the floor by no more than this before contact [m]
 constexpr double kWalkSpeed = 0.6;   // mean [m/s]
-
-double min_jerk(double s) {
-  s = std::clamp(s, 0.0, 1.0);
-  return s * s * s * (10 + s * (-15 + 6 * s));
-}
-
-const int kShoulder[2] = {body_joint_index("l_shoulder"), body_joint_index("r_shoulder")};
-const int kElbow[2] = {body_joint_index("l_elbow"), body_joint_index("r_elbow")};
-const int kWrist[2] = {body_joint_index("l_wrist"), body_joint_index("r_wrist")};
-const int kHand[2] = {body_joint_index("l_hand"), body_joint_index("r_hand")};
-const int kHead = body_joint_index("head"), kTorso = body_joint_index("torso"), kWaist = body_joint_index("waist"),
-          kNeck = body_joint_index("neck");
 
 }  // namespace
 
@@ -64,6 +52,10 @@ PersonModel::PersonModel(const PersonSettings& settings)
     place_base();
     for (std::size_t i = 0; i < points_.size(); ++i) body_.joints[i].position = points_[i];
     hand_target_ = comfortable_reach(body_, side_);
+  }
+  if (settings_.kind == PersonKind::external) {
+    place_base();
+    followed_.emplace(points_, settings_.stature);
   }
   step(0, PersonView{});
 }
@@ -103,10 +95,14 @@ void PersonModel::leave() {
 void PersonModel::step(double dt, const PersonView& view) {
   if (!frozen_ && dt > 0) {
     clock_ += dt;
-    if (settings_.kind != PersonKind::still) act(dt, view);
+    if (settings_.kind == PersonKind::external) {
+      accompany(dt, view);
+    } else if (settings_.kind != PersonKind::still) {
+      act(dt, view);
+    }
     const bool away = refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker;
     const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_);
-    look_at(away ? Vector3(points_[kHead] + forward()) : interesting ? object_centre(view) : view.robot_hand, dt);
+    if (!followed_) look_at(away ? Vector3(points_[kHead] + forward()) : interesting ? object_centre(view) : view.robot_hand, dt);
   }
   place_base();
   if (hand_active_) {
@@ -195,9 +191,9 @@ void PersonModel::act(double dt, const PersonView& view) {
   }
 }
 
-bool PersonModel::offered(const PersonView& view) const {
+bool PersonModel::offered(const PersonView& view, int side) const {
   if (refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > kStill) return false;
-  return (object_centre(view) - shoulder(index())).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
+  return (object_centre(view) - shoulder(side)).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
 }
 
 // The better hand, unless the other is clearly nearer or the only one that reaches.
@@ -214,7 +210,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
   cooldown_ = std::max(0.0, cooldown_ - dt);
   const bool takes = settings_.kind == PersonKind::taker || settings_.kind == PersonKind::recording;
   if (offer_time_ <= 0) choose_hand(view);
-  offer_time_ = takes && cooldown_ <= 0 && offered(view) ? offer_time_ + dt : 0;
+  offer_time_ = takes && cooldown_ <= 0 && offered(view, index()) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
   offer_time_ = 0;
   const Vector3 centre = object_centre(view);
@@ -387,6 +383,12 @@ Vector3 PersonModel::grasp_point(const PersonView& view) const {
 }
 
 void PersonModel::place_base() {
+  if (followed_) {
+    followed_->sample(clock_, points_);
+    const Vector3 left = points_[kShoulder[0]] - points_[kShoulder[1]];
+    yaw_ = std::atan2(-left.x(), left.y());
+    return;
+  }
   const Eigen::Matrix3d R = Eigen::AngleAxisd(yaw_, Vector3::UnitZ()).toRotationMatrix();
   BodyPoints own = template_;
   if (settings_.recording) {

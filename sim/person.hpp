@@ -4,18 +4,20 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "common/messages/world.hpp"
 #include "common/model/human_body.hpp"
 #include "common/model/object_model.hpp"
+#include "sim/followed_body.hpp"
 #include "sim/grip.hpp"
 #include "sim/recording.hpp"
 
 namespace handsel::sim {
 
-enum class PersonKind { taker, still, walker, recording, giver };
+enum class PersonKind { taker, still, walker, recording, giver, external };
 
 struct PersonSettings {
   std::string id;
@@ -28,8 +30,10 @@ struct PersonSettings {
   double pull{8.0};        ///< when taking [N]
   bool left_handed{};
   std::shared_ptr<const Recording> recording;
-  double max_warp{0.10};  ///< a recorded hand is moved by no more than this [m]
-  double warp_time{0.5};  ///< over the last part before contact [s]
+  std::string external;     ///< source of the body an external person follows
+  double correction{0.15};  ///< an external person's hand is led to what is offered from this near [m]
+  double max_warp{0.10};    ///< a recorded hand is moved by no more than this [m]
+  double warp_time{0.5};    ///< over the last part before contact [s]
 };
 
 /// What the person sees and feels.
@@ -53,11 +57,14 @@ class PersonModel {
   explicit PersonModel(const PersonSettings&);
 
   void step(double dt, const PersonView&);
+  /// Where an external person is now, as told from outside; others do not listen.
+  void follow(const ObservedPerson&);
   void freeze(bool on) { frozen_ = on; }
   void dart(double speed);  ///< the hand shoots toward the robot's hand [m/s]
   void leave();
   void refuse() { refusing_ = true; }
 
+  const std::string& source() const { return settings_.external; }
   const std::string& id() const { return settings_.id; }
   PersonPhase phase() const { return phase_; }
   const Person& body() const { return body_; }  ///< the truth, velocities included
@@ -84,7 +91,10 @@ class PersonModel {
   void retract(double dt);
   void dart_on(double dt, const PersonView&);
   void give_up();
-  bool offered(const PersonView&) const;
+  void accompany(double dt, const PersonView&);
+  void pull_after(const Vector3& would_be, double dt, const PersonView&);
+  void let_go();
+  bool offered(const PersonView&, int side) const;
   void choose_hand(const PersonView&);
   Vector3 grasp_point(const PersonView&) const;
   Vector3 nearest_hold(const PersonView&, const Vector3& from) const;
@@ -109,6 +119,8 @@ class PersonModel {
   double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, walk_direction_{1};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
       warp_{Vector3::Zero()}, step_{Vector3::Zero()};
+  std::optional<FollowedBody> followed_;  // of an external person
+  Vector3 led_{Vector3::Zero()};          // of its hand from where it is told to be
   Vector3 gaze_{Vector3::UnitX()};
   Person body_;
   std::array<BodyState, 2> hands_;

@@ -105,14 +105,6 @@ std::vector<Pose> read_poses(const std::filesystem::path& file) {
   return poses;
 }
 
-/// The unit in which a stature is one of a person: factor to metres and its name; 0 when there is none.
-std::pair<double, const char*> unit_of(double stature) {
-  constexpr std::pair<double, const char*> kUnits[] = {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}};
-  for (const auto& unit : kUnits)
-    if (stature * unit.first >= 1.1 && stature * unit.first <= 2.3) return unit;
-  return {0, ""};
-}
-
 double trunk_stature(const BodyPoints& p) { return (p[kHead] - p[kWaist]).norm() / kTrunk; }
 
 /// Positions must be in metres and z up; said of the first frame, which stands at `line`.
@@ -290,6 +282,13 @@ void Recording::sample(double t, BodyPoints& out) const {
   const std::size_t i = std::min(static_cast<std::size_t>(at), frames.size() - 2);
   const double part = at - static_cast<double>(i);
   for (std::size_t k = 0; k < out.size(); ++k) out[k] = (1 - part) * frames[i][k] + part * frames[i + 1][k];
+}
+
+std::pair<double, const char*> unit_of(double stature) {
+  constexpr std::pair<double, const char*> kUnits[] = {{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"}, {0.0254, "inches"}};
+  for (const auto& unit : kUnits)
+    if (stature * unit.first >= 1.1 && stature * unit.first <= 2.3) return unit;
+  return {0, ""};
 }
 
 Recording parse_body_csv(std::string_view text, const std::string& name) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/pose.hpp"
@@ -35,6 +36,9 @@ Recording load_recording(const std::filesystem::path& path);
 
 /// A relative path is below `data_root`. Throws MissingError when it is relative and there is no such folder.
 std::filesystem::path resolve_recording(const std::filesystem::path& recording, const std::filesystem::path& data_root);
+
+/// The unit in which this is a person's stature: its factor to metres and its name; a factor of 0 when there is none.
+std::pair<double, const char*> unit_of(double stature);
 
 /// Body points over time: the first line names the columns, `time` [s] and <joint>.x <joint>.y <joint>.z [m], z up, for REP-155 joints: at
 /// least head, waist, both shoulders and one elbow and wrist. Throws ConfigError "name:line: what".

@@ -24,6 +24,8 @@ PersonKind kind_of(config::PersonBehaviour behaviour) {
       return PersonKind::recording;
     case config::GIVER:
       return PersonKind::giver;
+    case config::EXTERNAL:
+      return PersonKind::external;
     default:
       return PersonKind::taker;
   }
@@ -119,6 +121,15 @@ class Reader {
       if (person.stature() > 0) recording = retarget(recording, s.stature);
       s.stature = recording.stature;
       s.recording = std::make_shared<const Recording>(std::move(recording));
+    }
+    if (s.kind == PersonKind::external) {
+      if (person.external().empty()) fail("person " + s.id + " is moved from outside but `external` names no source");
+      for (const auto& sensor : scenario_.human_sensors())
+        if (sensor.source() == person.external()) fail("person " + s.id + " would follow the simulator's own sensor " + sensor.source());
+      s.external = person.external();
+      if (person.correction() < 0 || person.correction() > 1)
+        fail("correction of " + s.id + " is " + std::to_string(person.correction()) + ", must be between 0 and 1");
+      if (person.correction() > 0) s.correction = person.correction();
     }
     if (s.kind == PersonKind::giver) {
       p.holds = person.object();

@@ -297,6 +297,8 @@ struct SimWorld::Impl {
       bool any = false;
       for (std::size_t p = 0; p < people->size(); ++p) {
         if (!c.subject.empty() && people->model(p).id() != c.subject) continue;
+        const bool any_may = c.action == SimAction::person_freeze || c.action == SimAction::person_unfreeze;
+        if (!any_may && !people->model(p).source().empty()) continue;
         act(people->model(p));
         any = true;
       }
@@ -394,6 +396,9 @@ void SimWorld::command(const JointCommand& command, std::uint64_t writer) {
   impl_->limits.observe(command, writer, impl_->now(), impl_->robot->position());
   impl_->side.command(command, impl_->now());
 }
+
+void SimWorld::observe(const HumanObservation& seen) { impl_->people->follow(seen); }
+bool SimWorld::follows() const { return impl_->people->follow_somebody(); }
 
 std::string SimWorld::control(const SimControl& c) { return impl_->control(c); }
 

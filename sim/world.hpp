@@ -27,6 +27,10 @@ class SimWorld {
 
   /// A set-point as received; `writer` tells its writers apart.
   void command(const JointCommand&, std::uint64_t writer = 1);
+  /// What a source outside says of people; moves those who follow it.
+  void observe(const HumanObservation&);
+  /// Does somebody follow a source outside?
+  bool follows() const;
   /// Everything but pause, resume and reset, which are the caller's. Returns a sentence when it names nobody.
   std::string control(const SimControl&);
 

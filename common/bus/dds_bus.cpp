@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <mutex>
 #include <random>
 #include <vector>
@@ -18,6 +19,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/bus/executor.hpp"
+#include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/bus/look_around.hpp"
 #include "common/bus/qos.hpp"
@@ -91,6 +93,7 @@ struct DdsBus::Impl {
   TimePoint start;
   dds_entity_t participant{0};
   dds_entity_t topic_entities[std::size(kTopics)]{};
+  std::map<const MessageType*, dds_entity_t> foreign_topics;
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
@@ -104,14 +107,14 @@ struct DdsBus::Impl {
 
   void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str()); }
   dds_entity_t topic(const MessageType& type) {
-    const std::size_t i = static_cast<std::size_t>(&type.row() - kTopics);
-    if (topic_entities[i] == 0) {
+    dds_entity_t& entity = in_table(type.row()) ? topic_entities[&type.row() - kTopics] : foreign_topics[&type];
+    if (entity == 0) {
       const Qos qos = topic_qos(type.row());
-      topic_entities[i] = need(dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()),
-                                                type.row().topic, qos.get(), nullptr),
-                               std::string("topic ") + type.row().topic);
+      entity = need(dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), type.row().topic,
+                                     qos.get(), nullptr),
+                    std::string("topic ") + type.row().topic);
     }
-    return topic_entities[i];
+    return entity;
   }
   void mark(Reader& reader);
   void drain();

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "common/bus/look_around.hpp"
+#include "common/bus/qos.hpp"
 #include "common/bus/topics.hpp"
 #include "common/messages/robot.hpp"
 
@@ -59,10 +60,22 @@ DomainView look_around(dds_entity_t participant) {
   });
   DomainView view;
   for (const auto& [key, one] : known) view.participants.push_back(one);
-  each<dds_builtintopic_endpoint_t>(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, [&](const dds_builtintopic_endpoint_t& sample) {
-    if (std::strcmp(sample.topic_name, TopicOf<JointCommand>::row.topic) == 0)
-      view.commanders.push_back(known[key_of(sample.participant_key)]);
-  });
+  dds_guid_t self{};
+  dds_get_guid(participant, &self);
+  for (const bool writes : {true, false}) {
+    const dds_entity_t topic = writes ? DDS_BUILTIN_TOPIC_DCPSPUBLICATION : DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION;
+    each<dds_builtintopic_endpoint_t>(participant, topic, [&](const dds_builtintopic_endpoint_t& sample) {
+      if (writes && std::strcmp(sample.topic_name, TopicOf<JointCommand>::row.topic) == 0)
+        view.commanders.push_back(known[key_of(sample.participant_key)]);
+      if (key_of(sample.participant_key) == key_of(self)) return;
+      DomainEndpoint endpoint{writes, sample.topic_name, sample.type_name, known[key_of(sample.participant_key)], {}};
+      if (const TopicRow* row = find_topic(sample.topic_name)) {
+        const Qos ours = writes ? reader_qos(*row) : writer_qos(*row, 0);
+        endpoint.unmatched = writes ? why_unmatched(sample.qos, ours.get()) : why_unmatched(ours.get(), sample.qos);
+      }
+      view.endpoints.push_back(std::move(endpoint));
+    });
+  }
   return view;
 }
 

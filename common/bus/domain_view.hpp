@@ -12,9 +12,18 @@ struct DomainParticipant {
   int pid{0};  ///< on its host; 0: not told
 };
 
+/// Somebody's writer or reader of a topic.
+struct DomainEndpoint {
+  bool writes{};
+  std::string topic, type;  ///< as the transport names them
+  DomainParticipant owner;
+  std::vector<std::string> unmatched;  ///< of a topic of the table: policies for which it does not match the components', one sentence each
+};
+
 struct DomainView {
   std::vector<DomainParticipant> participants;  ///< all discovered so far, the asking one included
   std::vector<DomainParticipant> commanders;    ///< one for each living writer of set-points
+  std::vector<DomainEndpoint> endpoints;        ///< of others than the asking one, without the transport's own
 };
 
 }  // namespace handsel

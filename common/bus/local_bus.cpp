@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/messages/system.hpp"
 
@@ -98,8 +99,9 @@ struct LocalNetwork::Impl {
   std::vector<Event> events;
   std::vector<std::unique_ptr<LocalBus>> buses;
   std::vector<std::shared_ptr<Writer>> writers;
-  std::vector<Subscription*> subscriptions[std::size(kTopics)];
-  std::vector<Sample> pools[std::size(kTopics)];
+  std::deque<std::vector<Subscription*>> subscriptions{std::size(kTopics)};  // in the order of the table, then foreign ones
+  std::deque<std::vector<Sample>> pools{std::size(kTopics)};
+  std::map<std::string, std::size_t, std::less<>> foreign;  // topic -> index
 
   explicit Impl(const LocalNetworkSettings& s) : settings(s), random(mix(s.seed)) {}
 
@@ -108,7 +110,15 @@ struct LocalNetwork::Impl {
     return static_cast<double>(random >> 11) * 0x1.0p-53;
   }
   Duration delay() { return from_seconds(settings.delay_min + (settings.delay_max - settings.delay_min) * uniform()); }
-  static std::size_t index(const MessageType& type) { return static_cast<std::size_t>(&type.row() - kTopics); }
+  std::size_t index(const MessageType& type) {
+    if (in_table(type.row())) return static_cast<std::size_t>(&type.row() - kTopics);
+    const auto [at, fresh] = foreign.emplace(type.row().topic, subscriptions.size());
+    if (fresh) {
+      subscriptions.emplace_back();
+      pools.emplace_back();
+    }
+    return at->second;
+  }
 
   void schedule(TimePoint at, LocalBus* owner, std::function<void()> run) {
     events.push_back({at, order++, owner, std::move(run)});
@@ -317,7 +327,7 @@ std::unique_ptr<AnyPublisher> LocalBus::advertise_any(const MessageType& type, i
   writer->type = &type;
   writer->bus = this;
   writer->strength = strength;
-  const auto& readers = net_.subscriptions[LocalNetwork::Impl::index(type)];
+  const auto& readers = net_.subscriptions[net_.index(type)];
   writer->readers = static_cast<int>(readers.size());
   for (Subscription* s : readers) ++s->intake.status().writers;
   net_.writers.push_back(writer);
@@ -330,7 +340,7 @@ const SubscriptionStatus& LocalBus::subscribe_any(const MessageType& type, std::
       std::make_unique<Subscription>(type, std::move(on_sample), options.period, [this](const std::string& what) { log(what); }));
   Subscription* subscription = subscriptions_.back().get();
   subscription->bus = this;
-  net_.subscriptions[LocalNetwork::Impl::index(type)].push_back(subscription);
+  net_.subscriptions[net_.index(type)].push_back(subscription);
   for (const auto& writer : net_.writers) {
     if (!writer->alive || writer->type != &type) continue;
     ++subscription->intake.status().writers;

@@ -1,6 +1,9 @@
 #include "common/bus/qos.hpp"
 
 #include <cmath>
+#include <cstdio>
+
+#include "common/bus/foreign.hpp"
 
 namespace handsel {
 namespace {
@@ -58,11 +61,74 @@ Qos common(const TopicRow& row) {
   return qos;
 }
 
+std::string in_seconds(dds_duration_t d) {
+  if (d == DDS_INFINITY) return "none";
+  char text[40];
+  std::snprintf(text, sizeof text, "%g s", static_cast<double>(d) * 1e-9);
+  return text;
+}
+
+std::vector<std::string> partitions(const dds_qos_t* qos) {
+  std::vector<std::string> out;
+  std::uint32_t n = 0;
+  char** names = nullptr;
+  if (!dds_qget_partition(qos, &n, &names)) return out;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (names[i][0] != '\0') out.emplace_back(names[i]);
+    dds_free(names[i]);
+  }
+  dds_free(names);
+  return out;
+}
+
 }  // namespace
+
+std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested) {
+  std::vector<std::string> out;
+  const auto text = [&](const char* policy, const std::string& has, const std::string& wants) {
+    out.push_back(std::string(policy) + " is " + has + ", asked for is " + wants);
+  };
+  dds_reliability_kind_t r_offered = DDS_RELIABILITY_RELIABLE, r_requested = DDS_RELIABILITY_BEST_EFFORT;
+  dds_qget_reliability(offered, &r_offered, nullptr);
+  dds_qget_reliability(requested, &r_requested, nullptr);
+  if (r_offered < r_requested) text("RELIABILITY", "best effort", "reliable");
+  dds_durability_kind_t d_offered = DDS_DURABILITY_VOLATILE, d_requested = DDS_DURABILITY_VOLATILE;
+  dds_qget_durability(offered, &d_offered);
+  dds_qget_durability(requested, &d_requested);
+  if (d_offered < d_requested) text("DURABILITY", "volatile", "transient local");
+  dds_duration_t offered_time = DDS_INFINITY, requested_time = DDS_INFINITY;
+  dds_qget_deadline(offered, &offered_time);
+  dds_qget_deadline(requested, &requested_time);
+  if (offered_time > requested_time) text("DEADLINE", in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
+  offered_time = requested_time = 0;
+  dds_qget_latency_budget(offered, &offered_time);
+  dds_qget_latency_budget(requested, &requested_time);
+  if (offered_time > requested_time) text("LATENCY_BUDGET", in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
+  dds_ownership_kind_t o_offered = DDS_OWNERSHIP_SHARED, o_requested = DDS_OWNERSHIP_SHARED;
+  dds_qget_ownership(offered, &o_offered);
+  dds_qget_ownership(requested, &o_requested);
+  const auto owner = [](dds_ownership_kind_t kind) { return kind == DDS_OWNERSHIP_SHARED ? "shared" : "exclusive"; };
+  if (o_offered != o_requested) text("OWNERSHIP", owner(o_offered), owner(o_requested));
+  dds_liveliness_kind_t l_offered = DDS_LIVELINESS_AUTOMATIC, l_requested = DDS_LIVELINESS_AUTOMATIC;
+  offered_time = requested_time = DDS_INFINITY;
+  dds_qget_liveliness(offered, &l_offered, &offered_time);
+  dds_qget_liveliness(requested, &l_requested, &requested_time);
+  if (l_offered < l_requested) text("LIVELINESS", "automatic", "manual");
+  if (offered_time > requested_time)
+    text("LIVELINESS", "a lease of " + in_seconds(offered_time), in_seconds(requested_time) + " or shorter");
+  dds_destination_order_kind_t s_offered = DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP, s_requested = s_offered;
+  dds_qget_destination_order(offered, &s_offered);
+  dds_qget_destination_order(requested, &s_requested);
+  if (s_offered < s_requested) text("DESTINATION_ORDER", "by reception", "by source");
+  const auto ours = partitions(requested), theirs = partitions(offered);
+  if (ours != theirs)
+    text("PARTITION", theirs.empty() ? "none" : "\"" + theirs.front() + "\"", ours.empty() ? "none" : "\"" + ours.front() + "\"");
+  return out;
+}
 
 Qos reader_qos(const TopicRow& row) {
   Qos qos = common(row);
-  dds_qset_type_consistency(qos.get(), DDS_TYPE_CONSISTENCY_DISALLOW_TYPE_COERCION, false, false, false, false, true);
+  if (in_table(row)) dds_qset_type_consistency(qos.get(), DDS_TYPE_CONSISTENCY_DISALLOW_TYPE_COERCION, false, false, false, false, true);
   return qos;
 }
 

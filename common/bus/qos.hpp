@@ -4,6 +4,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include <dds/dds.h>
 
@@ -22,5 +24,8 @@ Qos observer_qos(const TopicRow& row);
 /// `strength` is used on topics with exclusive ownership.
 Qos writer_qos(const TopicRow& row, int strength);
 Qos topic_qos(const TopicRow& row);
+/// Each policy for which a writer that offers this is not matched with a reader that requests that: "DEADLINE is none, asked for is 0.2 s
+/// or shorter".
+std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested);
 
 }  // namespace handsel

@@ -36,6 +36,11 @@ double arm_length(const RobotModel& robot) {
   return std::max(length, 0.5);
 }
 
+Coverage around(const Vector3& centre, double arm) {
+  const double r = arm + 0.3;
+  return {{centre.x() - r, centre.y() - r, 0.1}, {centre.x() + r, centre.y() + r, 1.9}};
+}
+
 bool differs(const Scene& a, const Scene& b) {
   if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() || a.robot_known != b.robot_known) return true;
   for (std::size_t i = 0; i < a.objects.size(); ++i) {
@@ -348,14 +353,9 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
   return out;
 }
 
-Coverage SceneModel::reach() const {
-  const Vector3 centre = T_world_base_.translation();
-  const double r = arm_length_ + 0.3;
-  Coverage box;
-  box.low = Vector3(centre.x() - r, centre.y() - r, 0.1);
-  box.high = Vector3(centre.x() + r, centre.y() + r, 1.9);
-  return box;
-}
+Coverage SceneModel::reach() const { return around(T_world_base_.translation(), arm_length_); }
+
+Coverage reach_of(const RobotModel& robot, const Vector3& base) { return around(base, arm_length(robot)); }
 
 const Obstacles& SceneModel::obstacles() {
   locate_tool();

@@ -19,6 +19,9 @@
 
 namespace handsel::spark {
 
+/// Where a robot at `base` could reach, and some more: the room in which people must be watched [m].
+Coverage reach_of(const RobotModel& robot, const Vector3& base);
+
 /// An object stays when nobody sees it: `uncertainty` grows from then on, faster where somebody's hand could reach it, until it is seen
 /// again. In a hand out of sight it moves with the hand, and leaves with the person. Of several sources that see it one is believed as long
 /// as it tells; what another says makes the place more uncertain when it differs. Two things of a kind that change places faster than

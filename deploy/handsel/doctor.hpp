@@ -26,9 +26,10 @@ struct DoctorOptions {
   int domain{0};
   std::string robot;  ///< empty: the scenario's
   std::string scenario{"give_mug"};
-  int web_port{-1};        ///< -1: as the bridge will choose it
-  bool perception{false};  ///< a source of people and objects is meant to run here
-  bool driver{false};      ///< a robot is meant to be connected here
+  int web_port{-1};         ///< -1: as the bridge will choose it
+  bool perception{false};   ///< a source of people and objects is meant to run here
+  bool inputs_only{false};  ///< nothing but perception is looked at
+  bool driver{false};       ///< a robot is meant to be connected here
 };
 
 /// Processors, memory, real-time permission, room for logs, the programs and their versions.
@@ -40,5 +41,9 @@ std::vector<Finding> check_occupation(const DoctorOptions&);
 /// The DDS configuration in use, whether as many processes as a system has find each other under it, and what is on the domain now.
 /// Works in processes of its own, so that nothing the transport does can harm the caller.
 std::vector<Finding> check_domain(const DoctorOptions&);
+
+/// Whether what perception processes publish can be heard and is right: names, QoS, rate, ages, frame, values. Works in a process of its
+/// own.
+std::vector<Finding> check_perception(const DoctorOptions&);
 
 }  // namespace handsel

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/errors.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/doctor.hpp"
 #include "deploy/handsel/session.hpp"
@@ -41,9 +42,12 @@ void print(const Finding& finding, bool json) {
 int examine(const DoctorOptions& options, bool json) {
   catch_interrupts();
   Verdict worst = Verdict::good;
-  for (const auto& check :
-       {+[](const DoctorOptions&) { return check_machine(); }, +[](const DoctorOptions& o) { return check_descriptions(o); },
-        +[](const DoctorOptions& o) { return check_occupation(o); }, +[](const DoctorOptions& o) { return check_domain(o); }}) {
+  using Check = std::vector<Finding> (*)(const DoctorOptions&);
+  std::vector<Check> checks;
+  if (!options.inputs_only)
+    checks = {[](const DoctorOptions&) { return check_machine(); }, &check_descriptions, &check_occupation, &check_domain};
+  if (options.perception) checks.push_back(&check_perception);
+  for (const Check check : checks) {
     for (const Finding& finding : check(options)) {
       print(finding, json);
       worst = std::max(worst, finding.verdict);
@@ -68,10 +72,14 @@ void add_doctor_command(CLI::App& app, int& exit_code) {
   command->add_option("--scenario", options->doctor.scenario, "scenario whose descriptions are read")->capture_default_str();
   command->add_option("--port", options->doctor.web_port, "of the page (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
-  command->add_flag("--perception", options->doctor.perception, "people and objects must be measured on the domain");
+  command->add_flag("--perception", options->doctor.perception, "people and objects must be measured on the domain, and rightly");
+  command->add_flag("--inputs-only", options->doctor.inputs_only, "with --perception: look at nothing else (3 s)");
   command->add_flag("--driver", options->doctor.driver, "a robot must be connected on the domain");
   command->add_flag("--json", options->json, "print JSON Lines");
-  command->callback([options, &exit_code] { exit_code = examine(options->doctor, json_wanted(options->json)); });
+  command->callback([options, &exit_code] {
+    if (options->doctor.inputs_only && !options->doctor.perception) throw ConfigError("--inputs-only goes with --perception");
+    exit_code = examine(options->doctor, json_wanted(options->json));
+  });
 }
 
 }  // namespace handsel

@@ -254,6 +254,11 @@ Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const
           "look whether a firewall drops UDP on the interface, and whether the peers name this machine"};
 }
 
+/// check_perception looks closer at people and objects.
+bool left_to_perception(const DoctorOptions& options, const std::string& topic) {
+  return options.perception && topic != TopicOf<RobotState>::row.topic;
+}
+
 void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   const double jump = seen["jump"];
   if (std::abs(jump) > kJump) {
@@ -270,7 +275,7 @@ void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Fi
                    "run chrony or PTP on both hosts"});
   }
   for (const Json& input : seen["inputs"]) {
-    if (input["least"].is_null()) continue;
+    if (input["least"].is_null() || left_to_perception(options, input["topic"])) continue;
     const double by = input["least"];
     if (by >= -kFuture && by <= kOld) continue;
     out.push_back({"clocks", Verdict::bad,
@@ -291,13 +296,13 @@ void judge_inputs(const DoctorOptions& options, const Json& seen, std::vector<Fi
   for (const Json& input : seen["inputs"]) {
     const std::string what = input["what"], topic = input["topic"];
     const double rate = input["rate"], wanted = input["wanted"];
+    if (left_to_perception(options, topic)) continue;
     if (input["rejected"].get<std::uint64_t>() > 0) {
       out.push_back({"inputs", Verdict::bad, "malformed samples on " + topic + ": " + input["last_rejection"].get<std::string>(),
                      "correct the program that sends them; idl/ says what each field means"});
       continue;
     }
-    const bool asked = topic == TopicOf<RobotState>::row.topic ? options.driver : options.perception;
-    if (!asked) continue;
+    if (!options.driver || topic != TopicOf<RobotState>::row.topic) continue;
     if (rate == 0.0) {
       out.push_back({"inputs", Verdict::missing, "nothing comes on " + topic + " of " + where(options.domain),
                      "start the program that measures " + what + " on this domain"});

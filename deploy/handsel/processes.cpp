@@ -30,8 +30,10 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
   const std::string robot = robot_of(options);
   std::vector<ProcessSpec> specs;
-  for (const char* process : kProcesses) {
-    const std::filesystem::path binary = folder / ("handsel_" + std::string(process));
+  std::vector<std::string> processes(kProcesses.begin(), kProcesses.end());
+  if (options.ros2) processes.emplace_back("ros2_lane");
+  for (const std::string& process : processes) {
+    const std::filesystem::path binary = folder / ("handsel_" + process);
     if (!std::filesystem::exists(binary))
       throw MissingError("the process " + binary.string() + " is not there; build it with ./run --build-only");
     ProcessSpec spec{process,

@@ -45,6 +45,18 @@ class Background {
     pid_ = -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
+  /// Waits for its end and returns its exit code; -1 when it has not ended within `seconds`.
+  int wait(int seconds) {
+    int status = 0;
+    for (int i = 0; i < 100 * seconds; ++i) {
+      if (waitpid(pid_, &status, WNOHANG) == pid_) {
+        pid_ = -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      }
+      usleep(10000);
+    }
+    return -1;
+  }
   /// What it has said on stderr so far.
   std::string said() const { return text_of(log_); }
   /// And on stdout; also after its end.

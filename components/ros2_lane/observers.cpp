@@ -1,0 +1,88 @@
+#include "components/ros2_lane/observers.hpp"
+
+#include <algorithm>
+
+#include "common/model/description_parts.hpp"
+#include "common/model/human_body.hpp"
+
+namespace handsel::ros2_lane {
+namespace {
+
+constexpr std::size_t kMostBodies = 16;
+constexpr std::size_t kFewestJoints = 3;  // frames of robots may be called alike: "head_tilt" alone is no body
+constexpr double kListAge = 2.0;          // [s] a list of tracked bodies counts
+
+}  // namespace
+
+std::optional<BodyFrame> body_frame(const std::string& frame) {
+  for (const char* joint : kBodyJoints) {
+    const std::string begin = std::string(joint) + "_";
+    if (frame.starts_with(begin) && frame.size() > begin.size()) return BodyFrame{joint, frame.substr(begin.size())};
+  }
+  return std::nullopt;
+}
+
+void PeopleObserver::on(const ros2::Transform& transform) {
+  const auto frame = body_frame(transform.child);
+  if (!frame || frame->body.size() > 64) return;
+  if (bodies_.size() >= kMostBodies && !bodies_.contains(frame->body)) return;
+  bodies_[frame->body].insert(frame->joint);
+}
+
+void PeopleObserver::on(const ros2::Ids& ids, TimePoint arrival) {
+  tracked_ = std::set<std::string>(ids.ids.begin(), ids.ids.end());
+  tracked_at_ = arrival;
+}
+
+std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, TimePoint now) {
+  HumanObservation out;
+  out.source = settings_.people_source();
+  out.coverage = {to_vector(settings_.coverage_low()), to_vector(settings_.coverage_high())};
+  const Duration age = from_seconds(settings_.people_age());
+  const bool listed = tracked_ && to_seconds(now - tracked_at_) <= kListAge;
+  for (auto body = bodies_.begin(); body != bodies_.end();) {
+    const auto& [id, joints] = *body;
+    ObservedPerson person;
+    person.body = id;
+    bool fresh = false;
+    for (const std::string& joint : joints) {
+      const auto place = tree.find(joint + "_" + id, settings_.world_frame());
+      if (!place || now - place->arrival > age) continue;
+      fresh = true;
+      const bool shoulders = joint == "torso";  // of ROS4HRI
+      if (shoulders && joints.contains("neck")) continue;
+      person.joints.push_back({shoulders ? "neck" : joint, place->T_root_frame.translation(), 1.0});
+      out.stamp = std::max(out.stamp, place->stamp);
+    }
+    if (!fresh) {
+      body = bodies_.erase(body);
+      continue;
+    }
+    if (joints.size() >= kFewestJoints && (!listed || tracked_->contains(id))) out.people.push_back(std::move(person));
+    ++body;
+  }
+  if (out.people.empty() && !(listed && tracked_->empty())) return std::nullopt;
+  if (!out.people.empty() && out.stamp <= told_) return std::nullopt;
+  told_ = std::max(told_, out.stamp);
+  return out;
+}
+
+std::optional<ObjectObservation> ObjectsObserver::observe(const TfTree& tree, TimePoint now) const {
+  ObjectObservation out;
+  out.source = settings_.objects_source();
+  for (const config::ObjectFrame& frame : settings_.objects()) {
+    const auto place = tree.find(frame.frame(), settings_.world_frame());
+    if (!place || now - place->arrival > from_seconds(settings_.people_age())) continue;
+    ObservedObject object;
+    object.id = frame.id().empty() ? frame.frame() : frame.id();
+    object.model = frame.model();
+    object.T_world_object = place->T_root_frame;
+    object.confidence = 1;
+    out.objects.push_back(std::move(object));
+    out.stamp = std::max(out.stamp, place->stamp);
+  }
+  if (out.objects.empty()) return std::nullopt;
+  return out;
+}
+
+}  // namespace handsel::ros2_lane

@@ -1,0 +1,50 @@
+// From TF to what sensors say: people by their joints' frames, objects by their own. Pure.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/config/ros2_lane.pb.h"
+#include "common/messages/perception.hpp"
+#include "components/ros2_lane/tf_tree.hpp"
+
+namespace handsel::ros2_lane {
+
+/// "r_wrist_7f" -> {"r_wrist", "7f"}: a joint of a body as ROS4HRI names its frames. `torso` of ROS4HRI is between the shoulders: it is
+/// told as our neck. Nullopt for other frames.
+struct BodyFrame {
+  std::string joint, body;
+};
+std::optional<BodyFrame> body_frame(const std::string& frame);
+
+/// Bodies are those with frames lately; where a list of tracked ids has come, those on it.
+class PeopleObserver {
+ public:
+  explicit PeopleObserver(const config::Ros2LaneSettings& settings) : settings_(settings) {}
+
+  void on(const ros2::Transform&);
+  void on(const ros2::Ids&, TimePoint arrival);
+  /// What there is to tell: nullopt while nothing new came, or when it is not known whether somebody is there.
+  std::optional<HumanObservation> observe(const TfTree& tree, TimePoint now);
+
+ private:
+  config::Ros2LaneSettings settings_;
+  std::map<std::string, std::set<std::string>> bodies_;  // id -> joints that have a frame
+  std::optional<std::set<std::string>> tracked_;
+  TimePoint tracked_at_{};
+  Stamp told_{0};
+};
+
+class ObjectsObserver {
+ public:
+  explicit ObjectsObserver(const config::Ros2LaneSettings& settings) : settings_(settings) {}
+  std::optional<ObjectObservation> observe(const TfTree& tree, TimePoint now) const;
+
+ private:
+  config::Ros2LaneSettings settings_;
+};
+
+}  // namespace handsel::ros2_lane

@@ -1,0 +1,44 @@
+// Between joints by name, as ROS has them, and axes in order, as we have them. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/messages/robot.hpp"
+#include "common/messages/ros2.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel::ros2_lane {
+
+ros2::JointState joint_state_of(const RobotModel& robot, const RobotState& state);
+
+/// The robot's links below its root, which is below `world`, at this posture.
+void add_links(const RobotModel& robot, const RobotState& state, const std::string& world, std::vector<ros2::Transform>& out);
+
+/// Gathers a robot's state from JointState messages, each of some of the joints. A velocity that is not told is taken from the last two
+/// positions. Forces are not known to it.
+class JointGatherer {
+ public:
+  JointGatherer(const RobotModel& robot, double max_age);
+
+  void on(const ros2::JointState& message, TimePoint arrival);
+  /// Nullopt while an axis is not known or its news is too old.
+  std::optional<RobotState> state(TimePoint now);
+  /// The axes that are missing now, for people; empty: none.
+  std::string missing(TimePoint now) const;
+
+ private:
+  struct Told {
+    double position{}, velocity{};
+    Stamp stamp{};
+    std::optional<TimePoint> arrival;
+  };
+  const RobotModel& robot_;
+  Duration max_age_;
+  std::vector<Told> axes_;
+  std::uint64_t sequence_{0};
+  Stamp stamp_{0};
+};
+
+}  // namespace handsel::ros2_lane

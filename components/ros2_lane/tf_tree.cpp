@@ -1,0 +1,34 @@
+#include "components/ros2_lane/tf_tree.hpp"
+
+#include <algorithm>
+
+namespace handsel::ros2_lane {
+namespace {
+constexpr std::size_t kMostFrames = 4096;
+constexpr int kLongestWay = 64;
+}  // namespace
+
+bool TfTree::set(const ros2::Transform& transform, TimePoint arrival, bool is_static) {
+  if (frames_.size() >= kMostFrames && !frames_.contains(transform.child)) return false;
+  frames_[transform.child] = {transform, arrival, is_static};
+  return true;
+}
+
+std::optional<TfTree::Place> TfTree::find(const std::string& frame, const std::string& root) const {
+  Place place;
+  place.arrival = TimePoint::max();
+  std::string at = frame;
+  for (int i = 0; i < kLongestWay; ++i) {
+    if (at == root) return place;
+    const auto found = frames_.find(at);
+    if (found == frames_.end()) return std::nullopt;
+    const Frame& step = found->second;
+    place.T_root_frame = step.transform.T_parent_child * place.T_root_frame;
+    if (i == 0 && !step.is_static) place.stamp = step.transform.stamp;
+    if (!step.is_static) place.arrival = std::min(place.arrival, step.arrival);
+    at = step.transform.parent;
+  }
+  return std::nullopt;
+}
+
+}  // namespace handsel::ros2_lane

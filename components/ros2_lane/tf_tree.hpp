@@ -1,0 +1,35 @@
+// Frames of TF as they were told last. Pure.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/base/time.hpp"
+#include "common/messages/ros2.hpp"
+
+namespace handsel::ros2_lane {
+
+class TfTree {
+ public:
+  /// A static frame does not grow old. Frames beyond 4096 are not taken: false.
+  bool set(const ros2::Transform&, TimePoint arrival, bool is_static);
+
+  struct Place {
+    Pose T_root_frame{Pose::Identity()};
+    Stamp stamp{};        ///< of the frame itself; 0: static
+    TimePoint arrival{};  ///< of the oldest part of the way to the root that is not static; max when all is
+  };
+  /// Nullopt when no way leads from the frame to the root within 64 steps.
+  std::optional<Place> find(const std::string& frame, const std::string& root) const;
+
+ private:
+  struct Frame {
+    ros2::Transform transform;
+    TimePoint arrival{};
+    bool is_static{};
+  };
+  std::map<std::string, Frame> frames_;  // by child
+};
+
+}  // namespace handsel::ros2_lane

@@ -1,0 +1,30 @@
+#include "sim/followed_body.hpp"
+
+#include <algorithm>
+
+namespace handsel::sim {
+namespace {
+constexpr double kShortest = 0.005, kLongest = 0.1;  // [s] between samples; after a longer silence it catches up within this
+}  // namespace
+
+FollowedBody::FollowedBody(const BodyPoints& start, double stature) : from_(start), to_(start) { fitted_.stature = stature; }
+
+void FollowedBody::observe(const ObservedPerson& seen, double now) {
+  std::vector<BodyJoint> joints = fit_body(seen, seen_ ? &fitted_ : nullptr, fitted_.stature);
+  if (joints.size() != to_.size()) return;
+  fitted_.joints = std::move(joints);
+  BodyPoints here;
+  sample(now, here);
+  for (std::size_t i = 0; i < to_.size(); ++i) to_[i] = fitted_.joints[i].position;
+  from_ = seen_ ? here : to_;
+  lasts_ = seen_ ? std::clamp(now - begun_, kShortest, kLongest) : kShortest;
+  begun_ = now;
+  seen_ = true;
+}
+
+void FollowedBody::sample(double now, BodyPoints& out) const {
+  const double part = lasts_ > 0 ? std::clamp((now - begun_) / lasts_, 0.0, 1.0) : 1.0;
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = (1 - part) * from_[i] + part * to_[i];
+}
+
+}  // namespace handsel::sim

@@ -1,0 +1,5 @@
+handsel_test(ros2 SOURCES ${CMAKE_CURRENT_LIST_DIR}/ros2_test.cpp LINK handsel_bus handsel_ros2_idl LABEL system)
+target_compile_definitions(test_ros2 PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+target_compile_options(test_ros2 PRIVATE -Wno-missing-field-initializers)
+add_dependencies(test_ros2 product)
+set_tests_properties(ros2 PROPERTIES RUN_SERIAL TRUE TIMEOUT 120)
