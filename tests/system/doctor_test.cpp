@@ -299,6 +299,7 @@ TEST_F(Doctor, finds_a_calibration_that_is_wrong_stale_or_not_what_comes) {
     RobotState state;
     state.stamp = now;
     state.robot = "jido";
+    state.position = state.velocity = Vector::Zero(7);
     return state;
   });
   const Diagnosis diagnosis = doctor("--perception", home);
