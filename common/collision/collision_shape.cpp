@@ -208,13 +208,48 @@ bool touch(const CollisionShape& a, const Pose& T_world_a, const CollisionShape&
   return false;
 }
 
-double gap(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b) {
-  if (!a.is_mesh() && !b.is_mesh()) return convex_distance(convex_core(a.shape(), T_world_a), convex_core(b.shape(), T_world_b));
+/// The shape itself, or the triangle of a mesh.
+static ConvexCore nearest_core(const CollisionShape& shape, const Pose& T_world_shape, int triangle) {
+  if (!shape.is_mesh()) return convex_core(shape.shape(), T_world_shape);
+  const TriangleMesh& mesh = *std::get<MeshPtr>(shape.shape());
+  ConvexCore core;
+  core.kind = ConvexCore::Kind::triangle;
+  core.T_world_core = T_world_shape;
+  const auto& corners = mesh.triangles[static_cast<std::size_t>(triangle)];
+  for (std::size_t i = 0; i < 3; ++i) core.corners[i] = mesh.vertices[static_cast<std::size_t>(corners[i])];
+  return core;
+}
+
+/// FCL's own points are wrong for meshes against other shapes, and so are the triangles it names: there all are looked through.
+static void nearest_points(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b,
+                           const fcl::DistanceResultd& result, Vector3* on_a, Vector3* on_b) {
+  if (a.is_mesh() && b.is_mesh()) {
+    convex_distance(nearest_core(a, T_world_a, static_cast<int>(result.b1)), nearest_core(b, T_world_b, static_cast<int>(result.b2)), on_a,
+                    on_b);
+    return;
+  }
+  const CollisionShape& mesh = a.is_mesh() ? a : b;
+  const int triangles = static_cast<int>(std::get<MeshPtr>(mesh.shape())->triangles.size());
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < triangles; ++i) {
+    Vector3 point_a, point_b;
+    const double distance = convex_distance(nearest_core(a, T_world_a, i), nearest_core(b, T_world_b, i), &point_a, &point_b);
+    if (distance >= least || distance <= 0) continue;
+    least = distance;
+    if (on_a != nullptr) *on_a = point_a;
+    if (on_b != nullptr) *on_b = point_b;
+  }
+}
+
+double gap(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b, Vector3* on_a, Vector3* on_b) {
+  if (!a.is_mesh() && !b.is_mesh())
+    return convex_distance(convex_core(a.shape(), T_world_a), convex_core(b.shape(), T_world_b), on_a, on_b);
   if (touch(a, T_world_a, b, T_world_b)) return 0.0;
   fcl::DistanceRequestd request;
   request.distance_tolerance = 1e-6;
   fcl::DistanceResultd result;
   fcl::distance(a.exact().geometry.get(), T_world_a, b.exact().geometry.get(), T_world_b, request, result);
+  if (on_a != nullptr || on_b != nullptr) nearest_points(a, T_world_a, b, T_world_b, result, on_a, on_b);
   return std::max(0.0, result.min_distance);
 }
 

@@ -41,8 +41,9 @@ using CollisionShapePtr = std::shared_ptr<const CollisionShape>;
 bool may_touch(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b, double margin = 0.0);
 /// Exact: do the solids touch? A mesh is its surface, except that a mesh inside a box, sphere, cylinder or capsule touches it.
 bool touch(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b);
-/// Exact distance, 0 when they touch [m].
-double gap(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b);
+/// Exact distance, 0 when they touch [m]. The points nearest each other (world) are written when given and they do not touch.
+double gap(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b, Vector3* on_a = nullptr,
+           Vector3* on_b = nullptr);
 /// A lower bound on the distance from the bounding spheres and boxes [m], >= 0.
 double gap_bound(const CollisionShape& a, const Pose& T_world_a, const CollisionShape& b, const Pose& T_world_b);
 

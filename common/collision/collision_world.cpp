@@ -609,7 +609,7 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
   return least;
 }
 
-double CollisionWorld::distance_to_scene(const Vector& q, double cap) {
+double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* on_robot, Vector3* on_scene) {
   Impl& w = *impl_;
   w.place(q);
   struct Candidate {
@@ -632,8 +632,14 @@ double CollisionWorld::distance_to_scene(const Vector& q, double cap) {
   for (const Candidate& c : candidates) {
     if (c.bound >= least) break;
     const bool lowered = c.body >= w.link_bodies && c.thing->lowered;
-    least = std::min(least, gap(*w.bodies[c.body].shape, w.T_world_body[c.body], lowered ? *c.thing->lowered : *c.thing->shape,
-                                lowered ? c.thing->T_world_lowered : c.thing->T_world_shape));
+    Vector3 on_body, on_thing;
+    const double distance =
+        gap(*w.bodies[c.body].shape, w.T_world_body[c.body], lowered ? *c.thing->lowered : *c.thing->shape,
+            lowered ? c.thing->T_world_lowered : c.thing->T_world_shape, on_robot ? &on_body : nullptr, on_scene ? &on_thing : nullptr);
+    if (distance >= least) continue;
+    least = distance;
+    if (on_robot != nullptr) *on_robot = on_body;
+    if (on_scene != nullptr) *on_scene = on_thing;
   }
   return least;
 }

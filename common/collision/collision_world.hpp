@@ -72,7 +72,9 @@ class CollisionWorld {
   /// Writes the points nearest each other on robot and person, in the world, when given.
   double distance_to_people(const Vector& q, Vector3* on_robot = nullptr, Vector3* on_person = nullptr);
   /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked: distances beyond `cap` return `cap`.
-  double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity());
+  /// Writes the points nearest each other on robot and scene, in the world, when given, the distance is below `cap` and nothing touches.
+  double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity(), Vector3* on_robot = nullptr,
+                           Vector3* on_scene = nullptr);
 
   /// Whether the straight line is free of contact everywhere, not at steps only, as the wide check can show: true is sure, false is
   /// unknown.

@@ -19,6 +19,10 @@ Vector3 local_support(const ConvexCore& core, const Vector3& d) {
       return Vector3::Zero();
     case ConvexCore::Kind::segment:
       return {0, 0, sign(d.z()) * core.half.z()};
+    case ConvexCore::Kind::triangle: {
+      const double a = d.dot(core.corners[0]), b = d.dot(core.corners[1]), c = d.dot(core.corners[2]);
+      return core.corners[a >= b && a >= c ? 0 : b >= c ? 1 : 2];
+    }
     case ConvexCore::Kind::box:
       return {sign(d.x()) * core.half.x(), sign(d.y()) * core.half.y(), sign(d.z()) * core.half.z()};
     case ConvexCore::Kind::cylinder: {
@@ -35,14 +39,34 @@ Vector3 support(const ConvexCore& core, const Vector3& d) {
 }
 
 struct Simplex {
-  std::array<Vector3, 4> p;
+  std::array<Vector3, 4> p;     // point of a less point of b
+  std::array<Vector3, 4> on_a;  // that point of a
   int size{};
   void keep(std::initializer_list<int> which) {
-    std::array<Vector3, 4> kept;
+    std::array<Vector3, 4> kept, kept_on_a;
     int n = 0;
-    for (int i : which) kept[n++] = p[i];
+    for (int i : which) {
+      kept[n] = p[i];
+      kept_on_a[n++] = on_a[i];
+    }
     p = kept;
+    on_a = kept_on_a;
     size = n;
+  }
+  void add(const Vector3& point_a, const Vector3& point_b) {
+    on_a[size] = point_a;
+    p[size++] = point_a - point_b;
+  }
+  /// The point of a that belongs to the point v of the simplex (at most a triangle).
+  Vector3 point_of_a(const Vector3& v) const {
+    if (size == 1) return on_a[0];
+    const Vector3 e = p[1] - p[0], r = v - p[0];
+    const double ee = e.squaredNorm(), er = e.dot(r);
+    if (size == 2) return on_a[0] + (ee > 0 ? er / ee : 0.0) * (on_a[1] - on_a[0]);
+    const Vector3 f = p[2] - p[0];
+    const double ff = f.squaredNorm(), ef = e.dot(f), fr = f.dot(r), det = ee * ff - ef * ef;
+    if (!(det > 0)) return on_a[0];
+    return on_a[0] + (ff * er - ef * fr) / det * (on_a[1] - on_a[0]) + (ee * fr - ef * er) / det * (on_a[2] - on_a[0]);
   }
 };
 
@@ -123,26 +147,24 @@ Vector3 reduce(Simplex& s) {
   return best.point;
 }
 
-/// Distance of the cores. `enough`: return early with a lower bound once the distance surely exceeds it.
-double core_distance(const ConvexCore& a, const ConvexCore& b, double enough) {
-  Simplex s;
-  Vector3 v = a.T_world_core.translation() - b.T_world_core.translation();
+/// Distance of the cores, with the points `v` apart; `enough`: return early with a lower bound once the distance surely exceeds it.
+double core_distance(const ConvexCore& a, const ConvexCore& b, double enough, Simplex& s, Vector3& v) {
+  v = a.T_world_core.translation() - b.T_world_core.translation();
   if (v.squaredNorm() < 1e-24) v = Vector3::UnitX();
-  s.p[0] = support(a, -v) - support(b, v);
-  s.size = 1;
+  s.add(support(a, -v), support(b, v));
   v = s.p[0];
   double best = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     const double norm = v.norm();
     if (norm < 1e-12) return 0.0;
     best = std::min(best, norm);
-    const Vector3 w = support(a, -v) - support(b, v);
+    const Vector3 w_a = support(a, -v), w_b = support(b, v), w = w_a - w_b;
     const double bound = v.dot(w) / norm;
     if (bound > enough) return bound;
     if (norm - bound <= kTolerance * std::max(1.0, norm)) return norm;
     for (int i = 0; i < s.size; ++i)
       if ((s.p[i] - w).squaredNorm() < 1e-28) return norm;
-    s.p[s.size++] = w;
+    s.add(w_a, w_b);
     v = reduce(s);
     if (s.size == 4) return 0.0;
   }
@@ -180,13 +202,24 @@ ConvexCore convex_core(const Shape& shape, const Pose& T_world_shape) {
   return core;
 }
 
-double convex_distance(const ConvexCore& a, const ConvexCore& b) {
-  return std::max(0.0, core_distance(a, b, std::numeric_limits<double>::infinity()) - a.margin - b.margin);
+double convex_distance(const ConvexCore& a, const ConvexCore& b, Vector3* on_a, Vector3* on_b) {
+  Simplex s;
+  Vector3 v;
+  const double apart = core_distance(a, b, std::numeric_limits<double>::infinity(), s, v), distance = apart - a.margin - b.margin;
+  if (distance <= 0) return 0.0;
+  if (on_a != nullptr || on_b != nullptr) {
+    const Vector3 point = s.point_of_a(v), normal = v / v.norm();
+    if (on_a != nullptr) *on_a = point - a.margin * normal;
+    if (on_b != nullptr) *on_b = point - v + b.margin * normal;
+  }
+  return distance;
 }
 
 bool convex_touch(const ConvexCore& a, const ConvexCore& b) {
   const double reach = a.margin + b.margin;
-  return core_distance(a, b, reach) <= reach;
+  Simplex s;
+  Vector3 v;
+  return core_distance(a, b, reach, s, v) <= reach;
 }
 
 }  // namespace handsel

@@ -1,6 +1,8 @@
-// Distance of convex shapes: GJK on their cores (point, segment, box, cylinder), the rounding radius taken off afterwards. Double
+// Distance of convex shapes: GJK on their cores (point, segment, triangle, box, cylinder), the rounding radius taken off afterwards. Double
 // precision, closes to 1e-9 m; never the signed distance.
 #pragma once
+
+#include <array>
 
 #include "common/geometry/shape.hpp"
 
@@ -8,17 +10,18 @@ namespace handsel {
 
 /// A convex core and what is rolled around it.
 struct ConvexCore {
-  enum class Kind { point, segment, box, cylinder } kind{Kind::point};
-  Vector3 half{Vector3::Zero()};  ///< box: half extents; segment, cylinder: half.z() half length; cylinder: half.x() radius [m]
-  double margin{};                ///< radius rolled around the core [m]
+  enum class Kind { point, segment, triangle, box, cylinder } kind{Kind::point};
+  Vector3 half{Vector3::Zero()};   ///< box: half extents; segment, cylinder: half.z() half length; cylinder: half.x() radius [m]
+  double margin{};                 ///< radius rolled around the core [m]
+  std::array<Vector3, 3> corners;  ///< of a triangle only [m]
   Pose T_world_core{Pose::Identity()};
 };
 
 /// Core of a sphere, box, cylinder or capsule. A mesh has none: its bounding box is returned, which is not what you want.
 ConvexCore convex_core(const Shape&, const Pose& T_world_shape);
 
-/// Distance of the two shapes, 0 when they touch [m].
-double convex_distance(const ConvexCore& a, const ConvexCore& b);
+/// Distance of the two shapes, 0 when they touch [m]. The points nearest each other (world) are written when given and they do not touch.
+double convex_distance(const ConvexCore& a, const ConvexCore& b, Vector3* on_a = nullptr, Vector3* on_b = nullptr);
 /// Whether they touch; stops as soon as a separating plane is found.
 bool convex_touch(const ConvexCore& a, const ConvexCore& b);
 

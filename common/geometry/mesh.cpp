@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstdio>
 #include <map>
 
 #include "common/base/errors.hpp"
@@ -14,7 +15,8 @@ namespace {
 
 constexpr std::uintmax_t kMaxBytes = 64u << 20;
 constexpr std::size_t kMaxTriangles = 500'000;
-constexpr double kWeldGrid = 1e-7;  // of the file's own unit, relative to its size
+constexpr double kLargest = 100, kSmallest = 1e-4;  // [m] nothing a robot has or meets is larger or smaller
+constexpr double kWeldGrid = 1e-7;                  // of the file's own unit, relative to its size
 
 using Cell = std::array<long long, 3>;
 
@@ -84,6 +86,16 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const Vector3& scale) 
     mesh.triangles.push_back(t);
   }
   if (mesh.triangles.empty()) throw ConfigError(file.string() + ": has no triangle with an area");
+  Vector3 low = mesh.vertices.front(), high = low;
+  for (const Vector3& p : mesh.vertices) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  if (const double size = (high - low).maxCoeff(); size > kLargest || size < kSmallest) {
+    char text[120];
+    std::snprintf(text, sizeof text, ": is %.3g m large, not between 0.1 mm and 100 m; if its unit is another, give it a scale", size);
+    throw ConfigError(file.string() + text);
+  }
   return mesh;
 }
 

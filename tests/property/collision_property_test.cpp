@@ -104,6 +104,26 @@ TEST(CollisionProperty, a_box_as_mesh_answers_like_the_box) {
   EXPECT_GT(touching, 200);
 }
 
+TEST(CollisionProperty, the_points_nearest_each_other_are_on_the_shapes_and_that_far_apart) {
+  std::mt19937 random(kSeed + 3);
+  std::uniform_real_distribution<double> size(0.05, 0.6);
+  int apart = 0;
+  for (int k = 0; k < 3000; ++k) {
+    const Vector3 extents(size(random), size(random), size(random));
+    const Shape a = k % 3 == 0 ? box_as_mesh(extents) : random_shape(random), b = k % 5 == 0 ? box_as_mesh(extents) : random_shape(random);
+    const Pose Ta = random_pose(random, 0.6), Tb = random_pose(random, 0.6);
+    Vector3 on_a, on_b;
+    const double d = gap(*CollisionShape::make(a), Ta, *CollisionShape::make(b), Tb, &on_a, &on_b);
+    if (d < 1e-4) continue;
+    ++apart;
+    const auto solid = [&](const Shape& shape) { return std::holds_alternative<MeshPtr>(shape) ? Shape(Box{extents}) : shape; };
+    EXPECT_NEAR((on_a - on_b).norm(), d, 2e-5) << "case " << k;
+    EXPECT_TRUE(contains(solid(a), Ta.inverse() * on_a, 2e-6)) << "case " << k;
+    EXPECT_TRUE(contains(solid(b), Tb.inverse() * on_b, 2e-6)) << "case " << k;
+  }
+  EXPECT_GT(apart, 500);
+}
+
 TEST(CollisionProperty, distance_is_symmetric_and_keeps_under_rigid_motion) {
   std::mt19937 random(kSeed + 2);
   for (int k = 0; k < 1000; ++k) {

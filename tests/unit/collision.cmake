@@ -6,3 +6,5 @@ handsel_test(wide_collision SOURCES ${CMAKE_CURRENT_LIST_DIR}/wide_collision_tes
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_definitions(test_wide_collision PRIVATE HANDSEL_WIDE_LANES)
 endif()
+add_test(NAME wide_collision_million COMMAND test_wide_collision)
+set_tests_properties(wide_collision_million PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT "HANDSEL_WIDE_STATES=1000000;GTEST_FILTER=WideCollision.*")

@@ -99,6 +99,11 @@ TEST_F(World, clearance_to_the_scene_is_the_gap) {
   world_.set_scene(scene_with("table", {1.5, 0, 0}, {0.1, 0.1, 0.1}));
   EXPECT_NEAR(world_.distance_to_scene(q_), 1.45 - 1.18, 1e-6);
   EXPECT_NEAR(world_.distance_to_scene(q_, 0.1), 0.1, 1e-12);
+  Vector3 on_robot, on_scene;
+  const double distance = world_.distance_to_scene(q_, 2.0, &on_robot, &on_scene);
+  EXPECT_NEAR((on_robot - on_scene).norm(), distance, 1e-9);
+  EXPECT_NEAR(on_robot.x(), 1.18, 1e-6);
+  EXPECT_NEAR(on_scene.x(), 1.45, 1e-6);
 }
 
 TEST_F(World, counts_its_checks) {

@@ -62,6 +62,19 @@ TEST(Mesh, SaysWhatIsWrong) {
   EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.write("t.obj", kTetrahedron), Vector3(1, 0, 1)); }), HasSubstr("scale"));
 }
 
+TEST(Mesh, OddInputIsNamedAndOpenOnesAreRead) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& text) { return message_of<ConfigError>([&] { load_mesh(folder.write("odd.obj", text)); }); };
+  EXPECT_THAT(refusal(""), HasSubstr("odd.obj"));
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\n"), HasSubstr("not a mesh that can be read"));
+  EXPECT_THAT(refusal("v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), HasSubstr("not finite"));
+  EXPECT_THAT(refusal("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), HasSubstr("out of range"));
+  EXPECT_THAT(refusal("v 0 0 0\nv 1200 0 0\nv 0 800 0\nf 1 2 3\n"), HasSubstr("1.2e+03 m large"));
+  EXPECT_THAT(refusal("v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nf 1 2 3\n"), HasSubstr("give it a scale"));
+  const auto millimetres = folder.write("mm.obj", "v 0 0 0\nv 1200 0 0\nv 0 800 0\nf 1 2 3\n");
+  EXPECT_EQ(load_mesh(millimetres, Vector3::Constant(0.001)).triangles.size(), 1u) << "open, and in millimetres";
+}
+
 TEST(Mesh, RefusesMoreThanTheCap) {
   const TemporaryFolder folder;
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";

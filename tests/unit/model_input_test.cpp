@@ -91,6 +91,17 @@ TEST(BadUrdf, Values) {
               HasSubstr("circle"));
 }
 
+TEST(BadUrdf, Limits) {
+  const auto with_limit = [](const std::string& limit) {
+    return urdf("<link name=\"a\"/><joint name=\"x\" type=\"revolute\"><parent link=\"one\"/><child link=\"a\"/><axis xyz=\"0 0 1\"/>" +
+                limit + "</joint>");
+  };
+  EXPECT_THAT(urdf_refusal(with_limit("")), AllOf(HasSubstr("x"), HasSubstr("does not specify limits")));
+  EXPECT_THAT(urdf_refusal(with_limit("<limit lower=\"1\" upper=\"-1\" velocity=\"1\" effort=\"1\"/>")),
+              HasSubstr("above its upper limit"));
+  EXPECT_THAT(urdf_refusal(with_limit("<limit lower=\"nan\" upper=\"1\" velocity=\"1\" effort=\"1\"/>")), HasSubstr("nan"));
+}
+
 TEST(Urdf, MeshesAreFoundInPackagesAboveTheUrdf) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "urdf");

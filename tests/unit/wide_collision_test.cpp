@@ -194,6 +194,34 @@ TEST(WideCollision, refuses_none_of_the_goals_of_the_panda_problems) {
   EXPECT_EQ(refused, 0);
 }
 
+TEST(WideCollision, never_clears_what_is_in_collision_of_the_iiwa) {
+  const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf");
+  if (!file) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
+  const RobotModel robot = RobotModel::load_urdf(*file);
+  BothChecks checks(robot, nullptr, {0, 1, 2, 3, 4, 5, 6});
+  std::mt19937 random(kSeed + 6);
+  std::uniform_real_distribution<double> place(-1, 1), size(0.05, 0.5);
+  std::printf("seed %u\n", kSeed + 6);
+  const int scenes = 20;
+  for (int k = 0; k < scenes; ++k) {
+    std::vector<Obstacle> obstacles;
+    for (int i = 0; i < 8; ++i) {
+      const Vector3 at = Vector3(place(random), place(random), 0.6 * place(random)).normalized() * (0.55 + 0.3 * place(random));
+      const Pose T = make_pose(at + Vector3(0, 0, 0.4),
+                               Eigen::Quaterniond(Eigen::AngleAxisd(3 * place(random), Vector3(place(random), 1, 0).normalized())));
+      const Shape shape =
+          i % 2 ? Shape(Box{{size(random), size(random), size(random)}}) : Shape(Cylinder{0.3 * size(random), size(random)});
+      obstacles.push_back({"thing" + std::to_string(i), {shape, T}});
+    }
+    checks.both([&](CollisionWorld& world) { world.set_obstacles(obstacles); });
+    checks.compare(states_wanted() / scenes, Vector::Zero(robot.dof()), random);
+  }
+  checks.report("iiwa");
+  EXPECT_GT(checks.free_, checks.states_ / 20);
+  EXPECT_LT(checks.free_, checks.states_);
+  EXPECT_GT(checks.cleared_, checks.free_ / 2);
+}
+
 ObjectModel slab() {
   ObjectModel object;
   object.name = "slab";
