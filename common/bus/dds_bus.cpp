@@ -18,6 +18,7 @@
 #include <dds/ddsi/ddsi_serdata.h>
 
 #include "common/base/errors.hpp"
+#include "common/bus/dds_defaults.hpp"
 #include "common/bus/executor.hpp"
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
@@ -62,11 +63,7 @@ dds_entity_t need(dds_entity_t entity, const std::string& what) {
 
 }  // namespace
 
-void use_default_dds_configuration() {
-  if (std::getenv("CYCLONEDDS_URI")) return;
-  const std::string uri = "file://" + resource("dds/loopback.xml").string();
-  setenv("CYCLONEDDS_URI", uri.c_str(), 0);
-}
+void use_default_dds_configuration() { use_dds_configuration(resource("dds")); }
 
 struct Reader {
   Reader(DdsBus::Impl& owner, const MessageType& type, Intake::Callback callback, Duration period, Intake::Log log)

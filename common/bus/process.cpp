@@ -12,6 +12,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/bus/dds_bus.hpp"
+#include "common/bus/dds_defaults.hpp"
 #include "common/messages/system.hpp"
 #include "common/wire/interface_id.hpp"
 
@@ -21,6 +22,7 @@ namespace {
 constexpr Duration kTwinWait = std::chrono::milliseconds(400);
 
 constexpr Duration kJobsEnd = std::chrono::milliseconds(600);
+constexpr useconds_t kLongestEnd = 950'000;  // [us] from the signal
 
 std::atomic<DdsBus*> stopped_by_signal{nullptr};
 std::atomic<bool> asked_to_end{false};
@@ -30,30 +32,21 @@ void on_signal(int) {
   if (DdsBus* bus = stopped_by_signal) bus->stop();
 }
 
-std::uint32_t default_domain() {
-  const char* text = std::getenv("HANDSEL_DOMAIN");
-  if (!text || !*text) return 0;
-  char* end = nullptr;
-  const unsigned long domain = std::strtoul(text, &end, 10);
-  if (*end != '\0' || domain > 230) throw ConfigError(std::string("HANDSEL_DOMAIN is \"") + text + "\", must be a number from 0 to 230");
-  return static_cast<std::uint32_t>(domain);
-}
-
 int complain(const char* component, const std::exception& error, int code) {
   std::fprintf(stderr, "handsel_%s: %s\n", component, error.what());
   return code;
 }
 
 int run(int argc, char** argv, const char* component, const NodeFactory& make_node) {
-  std::string robot = "jido", scenario, config;
+  std::string robot, scenario, config;
   std::uint64_t seed = 1;
   bool standby = false;
   DdsBusSettings settings;
   settings.component = component;
-  settings.domain = default_domain();
+  settings.domain = static_cast<std::uint32_t>(default_domain());
 
   CLI::App app{std::string("handsel component ") + component};
-  app.add_option("--robot", robot, "robot description: name or file")->capture_default_str();
+  app.add_option("--robot", robot, "robot description: name or file (default: the scenario's, else jido)");
   app.add_option("--scenario", scenario, "scenario: name or file");
   app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 230))->capture_default_str();
   app.add_option("--config", config, "folder of the components' settings");
@@ -85,6 +78,9 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
                 settings.realtime ? bus.realtime_note().c_str() : "");
     std::fflush(stdout);
     bus.run();
+    // The transport waits for ever for a network that has gone away under it.
+    signal(SIGALRM, [](int) { _exit(0); });
+    ualarm(kLongestEnd, 0);
     bus.set_stopping();
     if (!bus.end_jobs(kJobsEnd)) {
       std::fprintf(stderr, "handsel_%s: a job did not stop when asked; ending without it\n", component);

@@ -52,6 +52,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       drawing_(context.robot, context.objects) {
   const config::BridgeSettings settings = read_settings(context.settings);
   settings_.port = port_of(settings);
+  if (const char* address = std::getenv("HANDSEL_WEB_ADDRESS"); address && *address) settings_.address = address;
   settings_.max_clients = settings.max_clients();
   settings_.allowed_origins.assign(settings.allowed_origins().begin(), settings.allowed_origins().end());
 

@@ -432,14 +432,16 @@ Server::Server(const ServerSettings& settings, Site site, Catalogue catalogue, s
     : impl_(std::make_unique<Impl>(settings, std::move(site), std::move(catalogue), std::move(config))) {
   Impl& impl = *impl_;
   if (impl.shared.hub.catalogue().channels.size() > kMostChannels) throw std::logic_error("more channels than the server has room for");
-  const tcp::endpoint endpoint(asio::ip::address_v4::loopback(), settings.port);
   Error error;
+  const tcp::endpoint endpoint(asio::ip::make_address_v4(settings.address, error), settings.port);
+  if (error) throw std::runtime_error("\"" + settings.address + "\" is no IPv4 address to show the page at");
   impl.acceptor.open(endpoint.protocol());
   impl.acceptor.set_option(tcp::acceptor::reuse_address(true));
   impl.acceptor.bind(endpoint, error);
   if (!error) impl.acceptor.listen(64, error);
   if (error)
-    throw std::runtime_error("port " + std::to_string(settings.port) + " on 127.0.0.1 cannot be used for the page: " + error.message());
+    throw std::runtime_error("port " + std::to_string(settings.port) + " on " + settings.address +
+                             " cannot be used for the page: " + error.message());
   for (const char* host : {"127.0.0.1", "localhost"}) {
     const std::string name = std::string(host) + ":" + std::to_string(port());
     impl.shared.hosts.insert(name);

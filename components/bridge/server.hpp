@@ -1,5 +1,5 @@
-// One port on 127.0.0.1: HTTP for the page, and a Foxglove WebSocket on "/". Runs on a thread of its own; what it is given may come
-// from any one other thread.
+// One port, on 127.0.0.1 unless told otherwise: HTTP for the page, and a Foxglove WebSocket on "/". Runs on a thread of its own; what it is
+// given may come from any one other thread.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,7 @@ struct ServerSettings {
   double request_timeout{5.0};  ///< [s] to send a request, and to take the answer
   double stall_timeout{5.0};    ///< [s] a WebSocket client may take for one message before it is cut
   std::vector<std::string> allowed_origins;  ///< pages of other hosts that may connect, as in their Origin header
+  std::string address{"127.0.0.1"};  ///< IPv4, of the interface it listens on; pages still name this machine as 127.0.0.1 or localhost
 };
 
 struct Counters {

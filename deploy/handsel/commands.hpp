@@ -11,6 +11,7 @@ void add_run_command(CLI::App& app, int& exit_code);
 void add_task_commands(CLI::App& app, int& exit_code);  ///< task, speed
 void add_story_command(CLI::App& app, int& exit_code);
 void add_status_command(CLI::App& app, int& exit_code);
+void add_health_command(CLI::App& app, int& exit_code);
 void add_topic_commands(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
 void add_eval_command(CLI::App& app, int& exit_code);

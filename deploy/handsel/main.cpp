@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   handsel::add_task_commands(app, exit_code);
   handsel::add_story_command(app, exit_code);
   handsel::add_status_command(app, exit_code);
+  handsel::add_health_command(app, exit_code);
   handsel::add_topic_commands(app, exit_code);
   handsel::add_doctor_command(app, exit_code);
   handsel::add_eval_command(app, exit_code);

@@ -1,36 +1,46 @@
 #include "deploy/handsel/processes.hpp"
 
-#include <charconv>
-#include <cstdlib>
+#include <algorithm>
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
+#include "common/config/scenario_robot.hpp"
 #include "common/model/object_model.hpp"
 #include "common/model/robot_model.hpp"
 
 namespace handsel {
 
-int default_domain() {
-  const char* text = std::getenv("HANDSEL_DOMAIN");
-  if (!text || !*text) return 0;
-  int domain = -1;
-  const std::string value = text;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), domain);
-  if (error != std::errc() || end != value.data() + value.size() || domain < 0 || domain > 230) {
-    throw ConfigError("HANDSEL_DOMAIN is \"" + value + "\"; it must be a number from 0 to 230");
-  }
-  return domain;
-}
-
 // The safety lane: observation, occupied volume, guard, set-points, robot side.
 bool is_realtime(std::string_view process) { return process == "sim" || process == "spark" || process == "trajectory_controller"; }
 
+namespace {
+
+bool has(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void require_processes(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (std::find(kProcesses.begin(), kProcesses.end(), name) != kProcesses.end()) continue;
+    std::string all;
+    for (const char* process : kProcesses) all += (all.empty() ? "" : ", ") + std::string(process);
+    throw ConfigError("there is no process \"" + name + "\"; there are: " + all);
+  }
+}
+
+}  // namespace
+
 std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
+  require_processes(options.only);
+  require_processes(options.without);
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
   const std::string robot = robot_of(options);
   std::vector<ProcessSpec> specs;
   std::vector<std::string> processes(kProcesses.begin(), kProcesses.end());
+  std::erase_if(processes, [&](const std::string& process) {
+    return has(options.without, process) || (!options.only.empty() && !has(options.only, process));
+  });
   if (options.ros2) processes.emplace_back("ros2_lane");
   for (const std::string& process : processes) {
     const std::filesystem::path binary = folder / ("handsel_" + process);
@@ -43,15 +53,11 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
     specs.push_back(std::move(spec));
   }
+  if (specs.empty()) throw ConfigError("no process is left to be started");
   return specs;
 }
 
-std::string robot_of(const SystemOptions& options) {
-  if (!options.robot.empty()) return options.robot;
-  config::Scenario scenario;
-  load_text_proto(scenario_file(options.scenario), scenario);
-  return scenario.robot().empty() ? "jido" : scenario.robot();
-}
+std::string robot_of(const SystemOptions& options) { return options.robot.empty() ? scenario_robot(options.scenario) : options.robot; }
 
 void check_system(const SystemOptions& options) {
   config::Scenario scenario;

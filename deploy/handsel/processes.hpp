@@ -27,13 +27,14 @@ struct SystemOptions {
   std::string robot;  ///< empty: the scenario's
   std::string scenario{"give_mug"};
   std::uint64_t seed{1};
-  bool ros2{false};  ///< with the lane to ROS 2
-  int web_port{-1};  ///< of the bridge; 0: any free one; -1: as its settings say
+  bool ros2{false};                        ///< with the lane to ROS 2
+  int web_port{-1};                        ///< of the bridge; 0: any free one; -1: as its settings say
+  std::vector<std::string> only, without;  ///< of kProcesses, when the others run on another host; both empty: all
+  bool whole() const { return only.empty() && without.empty(); }
 };
 
-/// The default domain: $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number in 0..230.
-int default_domain();
-/// One ProcessSpec for each of kProcesses, and of what else is asked for; throws MissingError naming the first binary that is not beside this one.
+/// One ProcessSpec for each of kProcesses that is asked for, and of what else is; throws MissingError naming the first binary that is not
+/// beside this one, ConfigError when `only` or `without` names no process or nothing is left.
 std::vector<ProcessSpec> system_processes(const SystemOptions&);
 /// The robot asked for, else the scenario's, else jido. Throws as check_system().
 std::string robot_of(const SystemOptions&);

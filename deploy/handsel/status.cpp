@@ -1,7 +1,7 @@
 #include "deploy/handsel/status.hpp"
 
-#include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -39,13 +39,20 @@ std::string format(const char* pattern, Values... values) {
 
 }  // namespace
 
+std::string robot_side(const Snapshot& snapshot) {
+  return snapshot.health.contains("driver") && !snapshot.health.contains("sim") ? "driver" : "sim";
+}
+
 SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
   SystemStatus status;
-  for (const char* process : kProcesses) status.processes.push_back(line_of(process, snapshot, now));
-  for (const auto& [component, seen] : snapshot.health) {
-    if (std::find(kProcesses.begin(), kProcesses.end(), component) == kProcesses.end())
-      status.processes.push_back(line_of(component, snapshot, now));
+  std::set<std::string> listed;
+  for (const std::string process : kProcesses) {
+    const std::string component = process == "sim" ? robot_side(snapshot) : process;
+    status.processes.push_back(line_of(component, snapshot, now));
+    listed.insert(component);
   }
+  for (const auto& [component, seen] : snapshot.health)
+    if (!listed.contains(component)) status.processes.push_back(line_of(component, snapshot, now));
   for (const ProcessLine& line : status.processes) {
     if (line.state == "ok") continue;
     status.troubles.push_back(line.component + " is " + line.state + (line.reason.empty() ? "" : ": " + line.reason));

@@ -29,6 +29,8 @@ struct SystemStatus {
 /// A component is silent when not heard for this long; health comes at 5 Hz.
 inline constexpr Duration kSilent = std::chrono::milliseconds(600);
 
+/// The process at the robot's end: "driver" when one is heard and the simulator is not, else "sim".
+std::string robot_side(const Snapshot&);
 SystemStatus make_status(const Snapshot&, TimePoint now);
 nlohmann::json to_json(const SystemStatus&, const Snapshot&, TimePoint now);
 std::string to_text(const SystemStatus&, const Snapshot&, TimePoint now);

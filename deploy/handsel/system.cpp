@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "common/base/errors.hpp"
+#include "deploy/handsel/status.hpp"
 
 namespace handsel {
 namespace {
@@ -29,18 +30,21 @@ std::string join(const std::vector<std::string>& items) {
 
 }  // namespace
 
+std::string why_not_ready(const Snapshot& snapshot, const std::string& process) {
+  const auto found = snapshot.health.find(process);
+  if (found == snapshot.health.end()) return "not heard yet";
+  const ComponentHealth& health = found->second.sample;
+  const bool enough = health.state == HealthState::ok || (process == "bridge" && health.state == HealthState::degraded);
+  return enough ? "" : health.reason.empty() ? "starting" : health.reason;
+}
+
 std::vector<std::string> not_ready(const Snapshot& snapshot, bool with_bridge) {
   std::vector<std::string> missing;
   for (const std::string process : kProcesses) {
     if (process == "bridge" && !with_bridge) continue;
-    const auto found = snapshot.health.find(process);
-    if (found == snapshot.health.end()) {
-      missing.push_back(process + " (not heard yet)");
-      continue;
-    }
-    const ComponentHealth& health = found->second.sample;
-    const bool enough = health.state == HealthState::ok || (process == "bridge" && health.state == HealthState::degraded);
-    if (!enough) missing.push_back(process + " (" + (health.reason.empty() ? "starting" : health.reason) + ")");
+    const std::string component = process == "sim" ? robot_side(snapshot) : process;
+    const std::string why = why_not_ready(snapshot, component);
+    if (!why.empty()) missing.push_back(component + " (" + why + ")");
   }
   return missing;
 }
@@ -72,10 +76,18 @@ bool System::wait(Duration limit, const std::function<bool()>& done) {
 
 std::optional<Duration> System::wait_ready(Duration limit) {
   const TimePoint begin = monotonic_now();
-  if (!wait(limit, [this] { return not_ready(session_.snapshot()).empty(); })) {
+  const auto lacking = [this] {
+    std::vector<std::string> missing;
+    for (const ProcessStatus& process : launcher_.processes()) {
+      const std::string why = why_not_ready(session_.snapshot(), process.name);
+      if (!why.empty()) missing.push_back(process.name + " (" + why + ")");
+    }
+    return missing;
+  };
+  if (!wait(limit, [&] { return lacking().empty(); })) {
     if (interrupted()) return std::nullopt;
     throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
-                       join(not_ready(session_.snapshot())) + "; logs are in " + log_directory_.string());
+                       join(lacking()) + "; logs are in " + log_directory_.string());
   }
   return monotonic_now() - begin;
 }

@@ -12,8 +12,10 @@
 
 namespace handsel {
 
-/// Components that are not there or not ready, each with why: "path_planner (not heard yet)". Empty: the system is ready. The bridge
-/// may be degraded: nothing depends on it; without `with_bridge` it is not asked for.
+/// Why a process is not ready, empty when it is.
+std::string why_not_ready(const Snapshot&, const std::string& process);
+/// Components that are not there or not ready, each with why: "path_planner (not heard yet)". Empty: the system is ready. A
+/// driver may stand in for sim. The bridge may be degraded: nothing depends on it; without `with_bridge` it is not asked for.
 std::vector<std::string> not_ready(const Snapshot&, bool with_bridge = true);
 
 class System {
@@ -28,8 +30,8 @@ class System {
   /// Address of the bridge's page; empty while it has not said so.
   std::string web_address() const;
 
-  /// Listens until every component is ready; returns the time it took, or nullopt on Ctrl-C. Throws MissingError naming what is missing
-  /// after `limit`, ConfigError / MissingError when a process gave up.
+  /// Listens until every component started here is ready; returns the time it took, or nullopt on Ctrl-C. Throws MissingError naming what
+  /// is missing after `limit`, ConfigError / MissingError when a process gave up.
   std::optional<Duration> wait_ready(Duration limit);
   /// Throws ConfigError / MissingError when a process gave up.
   void require_alive() const;

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "common/bus/dds_defaults.hpp"
+
 extern char** environ;
 
 namespace handsel {

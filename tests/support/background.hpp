@@ -2,6 +2,7 @@
 #pragma once
 
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,6 +25,7 @@ class Background {
     argv.push_back(nullptr);
     pid_ = fork();
     if (pid_ == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
       if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen(out_.c_str(), "w", stdout)) _exit(127);
       execv(argv[0], argv.data());
       _exit(127);
@@ -37,6 +39,7 @@ class Background {
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;
 
+  void send(int signal) const { kill(pid_, signal); }
   /// Ends it and returns its exit code.
   int interrupt() {
     kill(pid_, SIGINT);

@@ -1,0 +1,23 @@
+handsel_test(install SOURCES ${CMAKE_CURRENT_LIST_DIR}/install_test.cpp LINK handsel_bus LABEL system)
+target_compile_definitions(test_install PRIVATE HANDSEL_BUILD_DIR="${CMAKE_BINARY_DIR}" HANDSEL_CMAKE="${CMAKE_COMMAND}")
+target_compile_options(test_install PRIVATE -Wno-missing-field-initializers)
+add_dependencies(test_install deployable)
+set_tests_properties(install PROPERTIES TIMEOUT 120)
+
+# The example as its author would build it, but against this build: for two hosts.
+if(EXISTS ${CMAKE_SOURCE_DIR}/examples/perception/perception.c)
+  add_executable(handsel_perception_example ${CMAKE_SOURCE_DIR}/examples/perception/perception.c)
+  target_link_libraries(handsel_perception_example PRIVATE handsel::idl m)
+endif()
+handsel_test(hosts SOURCES ${CMAKE_CURRENT_LIST_DIR}/hosts_test.cpp LINK handsel_command LABEL system)
+target_compile_definitions(test_hosts PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_hosts product)
+set_tests_properties(hosts PROPERTIES RUN_SERIAL TRUE TIMEOUT 180 ENVIRONMENT GTEST_FILTER=-*cut*)
+if(TARGET handsel_perception_example)
+  add_dependencies(test_hosts handsel_perception_example)
+  add_test(NAME hosts_link COMMAND test_hosts)
+  set_tests_properties(hosts_link PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 180 ENVIRONMENT GTEST_FILTER=*cut*)
+endif()
+
+add_test(NAME compose COMMAND ${CMAKE_CURRENT_LIST_DIR}/compose_test.sh)
+set_tests_properties(compose PROPERTIES LABELS full RUN_SERIAL TRUE TIMEOUT 7200 SKIP_RETURN_CODE 77)
