@@ -33,7 +33,7 @@ void put(Stamp stamp, builtin_interfaces_msg_dds__Time_& out) {
 }
 
 std::string text_of(Judge& judge, const char* field, const char* text) {
-  const std::string value = text ? text : "";
+  std::string value = text ? text : "";
   const bool printable = std::all_of(value.begin(), value.end(), [](char c) { return c > 31 && c < 127; });
   if (value.size() > kRosText) judge.fail(field, "is longer than " + std::to_string(kRosText) + " bytes");
   if (!printable) judge.fail(field, "holds bytes that are not printable ASCII");
@@ -257,16 +257,31 @@ class RosType final : public MessageType {
 
 }  // namespace
 
-#define HANDSEL_ROS2(M, W)                                                                    \
-  template <>                                                                                 \
-  std::unique_ptr<MessageType> ros2_type<ros2::M>(const std::string& name, Profile profile) { \
-    return std::make_unique<RosType<ros2::M, W>>(W##_desc, name, profile);                    \
-  }
-HANDSEL_ROS2(JointState, sensor_msgs_msg_dds__JointState_)
-HANDSEL_ROS2(JointTrajectory, trajectory_msgs_msg_dds__JointTrajectory_)
-HANDSEL_ROS2(Transforms, tf2_msgs_msg_dds__TFMessage_)
-HANDSEL_ROS2(Ids, hri_msgs_msg_dds__IdsList_)
-HANDSEL_ROS2(Text, std_msgs_msg_dds__String_)
-#undef HANDSEL_ROS2
+template <>
+std::unique_ptr<MessageType> ros2_type<ros2::JointState>(const std::string& name, Profile profile) {
+  return std::make_unique<RosType<ros2::JointState, sensor_msgs_msg_dds__JointState_>>(sensor_msgs_msg_dds__JointState__desc, name,
+                                                                                       profile);
+}
+
+template <>
+std::unique_ptr<MessageType> ros2_type<ros2::JointTrajectory>(const std::string& name, Profile profile) {
+  return std::make_unique<RosType<ros2::JointTrajectory, trajectory_msgs_msg_dds__JointTrajectory_>>(
+      trajectory_msgs_msg_dds__JointTrajectory__desc, name, profile);
+}
+
+template <>
+std::unique_ptr<MessageType> ros2_type<ros2::Transforms>(const std::string& name, Profile profile) {
+  return std::make_unique<RosType<ros2::Transforms, tf2_msgs_msg_dds__TFMessage_>>(tf2_msgs_msg_dds__TFMessage__desc, name, profile);
+}
+
+template <>
+std::unique_ptr<MessageType> ros2_type<ros2::Ids>(const std::string& name, Profile profile) {
+  return std::make_unique<RosType<ros2::Ids, hri_msgs_msg_dds__IdsList_>>(hri_msgs_msg_dds__IdsList__desc, name, profile);
+}
+
+template <>
+std::unique_ptr<MessageType> ros2_type<ros2::Text>(const std::string& name, Profile profile) {
+  return std::make_unique<RosType<ros2::Text, std_msgs_msg_dds__String_>>(std_msgs_msg_dds__String__desc, name, profile);
+}
 
 }  // namespace handsel

@@ -49,7 +49,7 @@ std::string TrajectoryDesk::why_not_now(TimePoint now) const {
 }
 
 std::string TrajectoryDesk::prepare(const ros2::JointTrajectory& wanted, TimePoint now) {
-  if (const std::string why = why_not_now(now); !why.empty()) return why;
+  if (std::string why = why_not_now(now); !why.empty()) return why;
   std::vector<std::size_t> place;  // in the arm's group, of each joint named
   for (const std::string& name : wanted.joint_names) {
     const auto at = std::find_if(arm_.axes.begin(), arm_.axes.end(),
