@@ -16,7 +16,7 @@ set_tests_properties(hosts PROPERTIES RUN_SERIAL TRUE TIMEOUT 180 ENVIRONMENT GT
 if(TARGET handsel_perception_example)
   add_dependencies(test_hosts handsel_perception_example)
   add_test(NAME hosts_link COMMAND test_hosts)
-  set_tests_properties(hosts_link PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 180 ENVIRONMENT GTEST_FILTER=*cut*)
+  set_tests_properties(hosts_link PROPERTIES LABELS full RUN_SERIAL TRUE TIMEOUT 180 ENVIRONMENT GTEST_FILTER=*cut*)
 endif()
 
 add_test(NAME compose COMMAND ${CMAKE_CURRENT_LIST_DIR}/compose_test.sh)
