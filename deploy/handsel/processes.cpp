@@ -49,8 +49,9 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
 std::string robot_of(const SystemOptions& options) {
   if (!options.robot.empty()) return options.robot;
   config::Scenario scenario;
-  load_text_proto(scenario_file(options.scenario), scenario);
-  return scenario.robot().empty() ? "jido" : scenario.robot();
+  const std::filesystem::path file = scenario_file(options.scenario);
+  load_text_proto(file, scenario);
+  return scenario.robot().empty() ? "jido" : described_name(file, scenario.robot());
 }
 
 void check_system(const SystemOptions& options) {
