@@ -9,6 +9,8 @@
 #include <sstream>
 #include <vector>
 
+#include "common/config/described.hpp"
+
 namespace handsel {
 namespace fs = std::filesystem;
 namespace {

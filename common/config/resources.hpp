@@ -20,12 +20,6 @@ void load_text_proto(const std::filesystem::path& file, google::protobuf::Messag
 /// "file:line" of the first line that contains `text` (e.g. a quoted name), or "file": says where a wrong value stands.
 std::string locate(const std::filesystem::path& file, const std::string& text);
 
-/// A path as a description writes it: "$NAME/rest" and "${NAME}/rest" begin with an environment variable's value, the others are relative
-/// to the description's folder. Throws MissingError when the variable is not set.
-std::filesystem::path described_path(const std::filesystem::path& description, const std::string& path);
-/// Likewise where a name may stand instead of a path; names stay as they are.
-std::string described_name(const std::filesystem::path& description, const std::string& name_or_path);
-
 /// "jido" or a path to a .txtpb -> path of the description. MissingError lists what there is.
 std::filesystem::path robot_description(const std::string& name_or_path);
 std::filesystem::path hand_description(const std::string& name_or_path);

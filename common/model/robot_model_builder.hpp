@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/described.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
 #include "common/model/robot_model.hpp"

@@ -111,6 +111,8 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
   g.pregrasp_joints = *opened;
   found.force /= static_cast<double>(g.contacts.size());
   squeeze(found, std::max(on_first, g.contacts.size() - on_first));
+  why = FrameReason::not_closed;
+  if (!(g.margin > 0)) return std::nullopt;  // pads would slip
   return found;
 }
 

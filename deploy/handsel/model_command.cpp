@@ -74,7 +74,7 @@ bool pads_face(const HandModel& hand) {
 void check_masses(const RobotModel& robot, std::vector<std::string>& lacks) {
   for (const auto& link : robot.links()) {
     if (link.mass == 0) {
-      if (!link.collision.empty()) lacks.push_back("link " + link.name + " has shapes but no mass");
+      if (!link.collision.empty() && link.parent_joint >= 0) lacks.push_back("link " + link.name + " has shapes but no mass");
       continue;
     }
     const Vector3 i = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia, Eigen::EigenvaluesOnly).eigenvalues();

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "common/base/errors.hpp"
+#include "common/config/described.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
 #include "common/model/object_model.hpp"
