@@ -97,7 +97,7 @@ TEST(OwnRobotFolder, is_enough_and_a_robot_without_limits_is_refused) {
   const auto lame = folder.write("lame.txtpb", text);
   const test::Outcome checked = model_check(lame.string());
   EXPECT_EQ(checked.exit_code, 1);
-  EXPECT_NE(checked.out.find("guard has no entry for \"finger_joint\""), std::string::npos) << checked.out;
+  EXPECT_NE(checked.out.find("guard has no entry for"), std::string::npos) << checked.out;
   const test::Outcome started = test::shell(std::string(HANDSEL_COMMAND) +
                                             " run --headless --port 0 --domain 66 --scenario give_box_iiwa14 --robot " + lame.string());
   EXPECT_EQ(started.exit_code, 2);
