@@ -2,6 +2,8 @@
 
 #include <BulletCollision/CollisionShapes/btShapeHull.h>
 
+#include <algorithm>
+
 namespace handsel::sim {
 
 namespace {
@@ -11,15 +13,21 @@ constexpr double kMargin = 0.0005;
 std::unique_ptr<btConvexShape> hull(const TriangleMesh& mesh) {
   btConvexHullShape full;
   full.setMargin(0);
-  for (const Vector3& v : mesh.vertices) full.addPoint(to_bt(v), false);
+  std::vector<Vector3> vertices = mesh.vertices;  // many files name a vertex once a triangle
+  const auto before = [](const Vector3& a, const Vector3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::sort(vertices.begin(), vertices.end(), before);
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  for (const Vector3& v : vertices) full.addPoint(to_bt(v), false);
   full.recalcLocalAabb();
   auto small = std::make_unique<btConvexHullShape>();
-  if (mesh.vertices.size() > 42) {
+  if (vertices.size() > 42) {
     btShapeHull reduced(&full);
     reduced.buildHull(0);
     for (int i = 0; i < reduced.numVertices(); ++i) small->addPoint(reduced.getVertexPointer()[i], false);
   } else {
-    for (const Vector3& v : mesh.vertices) small->addPoint(to_bt(v), false);
+    for (const Vector3& v : vertices) small->addPoint(to_bt(v), false);
   }
   small->recalcLocalAabb();
   small->setMargin(kMargin);

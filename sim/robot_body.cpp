@@ -164,15 +164,20 @@ void RobotBody::find_fingers() {
 
 // Stiffness in proportion to what a joint moves, as high as the torque limits and the fastest motion of the finger allow; Rayleigh damping.
 void RobotBody::soften_fingers() {
-  std::vector<std::vector<int>> fingers;
-  for (int i = 0; i < bodies(); ++i) {
-    const int finger = bodies_[i].finger;
-    if (finger < 0) continue;
-    fingers.resize(std::max(fingers.size(), static_cast<std::size_t>(finger) + 1));
-    fingers[finger].push_back(i);
+  std::vector<int> together;  // for each finger the first of those it is coupled with
+  for (const Body& b : bodies_)
+    if (b.finger >= static_cast<int>(together.size())) together.push_back(b.finger);
+  for (const Body& b : bodies_) {
+    if (!follows(b)) continue;
+    const int from = together[b.finger], to = together[bodies_[b.leader].finger];
+    std::replace(together.begin(), together.end(), from, to);
   }
+  std::vector<std::vector<int>> fingers(together.size());
+  for (int i = 0; i < bodies(); ++i)
+    if (bodies_[i].finger >= 0) fingers[together[bodies_[i].finger]].push_back(i);
   const double fastest = settings_.finger_bandwidth;
   for (const std::vector<int>& finger : fingers) {
+    if (finger.empty()) continue;
     const auto n = static_cast<Eigen::Index>(finger.size());
     const Eigen::MatrixXd M = mass_matrix(finger);
     Eigen::MatrixXd K;

@@ -9,6 +9,8 @@
 #include <sstream>
 #include <vector>
 
+#include "common/config/described.hpp"
+
 namespace handsel {
 namespace fs = std::filesystem;
 namespace {
@@ -101,6 +103,21 @@ std::string locate(const fs::path& file, const std::string& text) {
   for (int number = 1; std::getline(in, line); ++number)
     if (line.find(text) != std::string::npos) return file.string() + ":" + std::to_string(number);
   return file.string();
+}
+
+fs::path described_path(const fs::path& description, const std::string& path) {
+  if (!path.starts_with('$')) return description.parent_path() / path;
+  const std::size_t end = path.find('/');
+  std::string name = path.substr(1, end == std::string::npos ? end : end - 1);
+  if (name.starts_with('{') && name.ends_with('}')) name = name.substr(1, name.size() - 2);
+  const char* value = std::getenv(name.c_str());
+  if (value == nullptr || *value == '\0')
+    throw MissingError(locate(description, path) + ": " + path + " needs the environment variable " + name + ", which is not set");
+  return fs::path(value) / (end == std::string::npos ? "" : path.substr(end + 1));
+}
+
+std::string described_name(const fs::path& description, const std::string& name_or_path) {
+  return is_path(name_or_path) ? described_path(description, name_or_path).string() : name_or_path;
 }
 
 fs::path robot_description(const std::string& name_or_path) { return description("robot", resource_root() / "robots", true, name_or_path); }

@@ -1,5 +1,6 @@
 #include "common/model/hand_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/config/resources.hpp"
@@ -15,7 +16,6 @@ class HandModelBuilder {
 
   HandModel build() {
     if (text_.name().empty()) throw ConfigError(file_.string() + ": name is missing");
-    if (text_.urdf().empty()) throw ConfigError(file_.string() + ": urdf is missing");
     if (text_.fingers().size() < 2) throw ConfigError(file_.string() + ": a hand needs at least two fingers, the thumb first");
     hand_.name_ = text_.name();
     read_model();
@@ -23,32 +23,49 @@ class HandModelBuilder {
     hand_.rest_ = posture(text_.rest(), "rest", hand_.model_.rest_posture());
     hand_.pregrasp_ = posture(text_.pregrasp(), "pregrasp", hand_.rest_);
     shrink();
+    hand_.grip_force_ = text_.grip_force();
+    if (!(hand_.grip_force_ >= 0)) throw ConfigError(locate(file_, "grip_force") + ": grip_force must not be negative");
     hand_.T_hand_grasp_ = text_.has_grasp_frame() ? to_pose(text_.grasp_frame()) : workspace_centre();
     return std::move(hand_);
   }
 
  private:
   void read_model() {
-    const fs::path urdf = file_.parent_path() / text_.urdf();
-    if (!fs::exists(urdf)) throw MissingError(locate(file_, text_.urdf()) + ": no file " + urdf.string());
-    std::vector<std::string> joints;
-    for (const auto& finger : text_.fingers()) joints.insert(joints.end(), finger.joints().begin(), finger.joints().end());
-    RobotModelBuilder builder(urdf, Meshes::load);
+    std::vector<std::string> joints;  // in the order of the fingers; one that moves several fingers once
+    for (const auto& finger : text_.fingers())
+      for (const std::string& joint : finger.joints())
+        if (std::find(joints.begin(), joints.end(), joint) == joints.end()) joints.push_back(joint);
+    RobotModelBuilder builder = described_urdf(file_, text_, {});
     builder.set_axes(joints, {}, file_);
     builder.add_group("all", joints, "", file_);
-    int next = 0;
     for (const auto& finger : text_.fingers()) {
       if (finger.joints().empty()) throw ConfigError(where(finger.name()) + "finger " + finger.name() + " has no joints");
       builder.add_group(finger.name(), {finger.joints().begin(), finger.joints().end()}, finger.tip_link(), file_);
-      Finger out{finger.name(), {}, finger.tip_link(), finger.tip_radius()};
-      for (int i = 0; i < finger.joints().size(); ++i) out.axes.push_back(next++);
+      Finger out{finger.name(), {}, finger.tip_link(), finger.tip_radius(), {}};
+      for (const std::string& joint : finger.joints())
+        out.axes.push_back(static_cast<int>(std::find(joints.begin(), joints.end(), joint) - joints.begin()));
+      if (finger.has_pad()) out.pad = read_pad(finger);
+      if (out.pad && out.tip_radius == 0) out.tip_radius = std::min(out.pad->width, out.pad->height) / 2;
       hand_.fingers_.push_back(out);
     }
     builder.default_limits();
     hand_.model_ = builder.finish();
   }
 
+  Pad read_pad(const config::FingerDescription& finger) const {
+    const Pad pad{to_pose(finger.pad().pose()), finger.pad().width(), finger.pad().height()};
+    if (!(pad.width > 0) || !(pad.height > 0))
+      throw ConfigError(where(finger.name()) + "the pad of finger " + finger.name() + " needs width and height > 0");
+    return pad;
+  }
+
   void read_fingers() const {
+    const auto with_pad = std::count_if(hand_.fingers_.begin(), hand_.fingers_.end(), [](const Finger& f) { return f.pad.has_value(); });
+    if (hand_.fingers_.size() == 2 && with_pad < 2)
+      throw ConfigError(file_.string() + ": a hand of two fingers holds with areas; each needs a pad");
+    if (hand_.fingers_.size() > 2 && with_pad > 0)
+      throw ConfigError(file_.string() + ": a hand of " + std::to_string(hand_.fingers_.size()) +
+                        " fingers touches with fingertips (tip_radius); pads are for two fingers");
     for (const auto& finger : hand_.fingers_) {
       if (hand_.model_.link_index(finger.tip_link) < 0)
         throw ConfigError(where(finger.name) + "finger " + finger.name + " has no tip_link");

@@ -1,6 +1,7 @@
 // A hand as data: fingers in order (thumb first), their joints, fingertips, grasp frame (common/config/hand.proto).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,11 +9,18 @@
 
 namespace handsel {
 
+/// A flat fingertip.
+struct Pad {
+  Pose T_tip_pad{Pose::Identity()};  ///< its middle; z is the way it presses, x and y lie in it
+  double width{}, height{};          ///< along x and y [m]
+};
+
 struct Finger {
   std::string name;
-  std::vector<int> axes;  ///< indices into the hand's own axes (0 = first actuated hand axis)
+  std::vector<int> axes;  ///< indices into the hand's own axes (0 = first actuated hand axis); fingers that move together share them
   std::string tip_link;   ///< centre of the fingertip sphere is this link's origin
-  double tip_radius{};    ///< [m]
+  double tip_radius{};    ///< [m]; of a pad half its lesser side, when none is given
+  std::optional<Pad> pad;
 };
 
 class HandModel {
@@ -28,6 +36,9 @@ class HandModel {
   const Vector& pregrasp() const { return pregrasp_; }             ///< open, ready to enclose
   const Vector& lower_contact() const { return lower_contact_; }   ///< bounds shrunk for contacts
   const Vector& upper_contact() const { return upper_contact_; }
+  /// Two fingers with pads: it pinches. All other hands hold with fingertips.
+  bool pinches() const { return fingers_.size() == 2 && fingers_[0].pad && fingers_[1].pad; }
+  double grip_force() const { return grip_force_; }  ///< a finger presses with no more than this [N]; 0: not said
 
  private:
   friend class HandModelBuilder;
@@ -36,6 +47,7 @@ class HandModel {
   std::vector<Finger> fingers_;
   Pose T_hand_grasp_{Pose::Identity()};
   Vector rest_, pregrasp_, lower_contact_, upper_contact_;
+  double grip_force_{};
 };
 
 }  // namespace handsel

@@ -135,9 +135,9 @@ void RobotModelBuilder::apply(const config::RobotDescription& description, const
     add_group(group.name(), {group.joints().begin(), group.joints().end()}, group.tip_link(), file);
   for (int i = 0; i < model_.dof(); ++i)
     if (const auto value = rest.find(model_.axes_[i].name); value != rest.end()) model_.rest_[i] = value->second;
-  if (!description.srdf().empty()) read_srdf(file.parent_path() / description.srdf(), false, true);
+  if (!description.srdf().empty()) read_srdf(described_path(file, description.srdf()), false, true);
 
-  model_.hand_ = description.hand();
+  model_.hand_ = described_name(file, description.hand());
   if (!description.tool_link().empty()) model_.tool_ = require_link(description.tool_link(), "tool_link", file);
   if (!description.gaze_link().empty()) model_.gaze_ = require_link(description.gaze_link(), "gaze_link", file);
   if (!description.redundancy_joint().empty()) {
@@ -220,9 +220,14 @@ RobotModel RobotModel::load(const fs::path& description) {
   config::RobotDescription text;
   load_text_proto(description, text);
   if (text.urdf().empty()) throw ConfigError(description.string() + ": urdf is missing");
-  const fs::path urdf = description.parent_path() / text.urdf();
-  if (!fs::exists(urdf)) throw MissingError(where(description, text.urdf()) + "no file " + urdf.string());
-  RobotModelBuilder builder(urdf, Meshes::load);
+  RobotModelBuilder builder = described_urdf(description, text, text.without());
+  if (text.has_mount()) {
+    if (text.hand().empty()) throw ConfigError(where(description, "mount") + "mount is given but no hand");
+    config::HandDescription hand;
+    const fs::path file = hand_description(described_name(description, text.hand()));
+    load_text_proto(file, hand);
+    builder.mount(described_urdf(file, hand, {}), text.mount(), description);
+  }
   builder.apply(text, description);
   builder.require_masses();
   return builder.finish();

@@ -6,15 +6,26 @@
 #include <string>
 #include <vector>
 
+#include "common/config/described.hpp"
+#include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
 #include "common/model/robot_model.hpp"
 
 namespace handsel {
 
+/// What a description says about reading its URDF.
+struct UrdfOptions {
+  std::vector<std::filesystem::path> packages;  ///< folders that hold what package:// names
+  std::vector<std::string> without;             ///< links left out, with all they carry
+};
+
 class RobotModelBuilder {
  public:
   /// Reads links and joints; no axes yet. Throws ConfigError / MissingError with file and line.
-  RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes);
+  RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes, const UrdfOptions& options = {});
+
+  /// Joins another tree to a link, rigidly; before the axes are set. Throws ConfigError when a name is in both.
+  void mount(RobotModelBuilder other, const config::HandMount& at, const std::filesystem::path& source);
 
   /// Actuated joints in document order.
   std::vector<std::string> actuated() const;
@@ -42,5 +53,18 @@ class RobotModelBuilder {
   RobotModel model_;
   std::vector<int> document_order_;  // joints as they stand in the URDF
 };
+
+/// The builder of the URDF that a description of a robot or hand names.
+template <class Description>
+RobotModelBuilder described_urdf(const std::filesystem::path& file, const Description& text,
+                                 const google::protobuf::RepeatedPtrField<std::string>& without) {
+  if (text.urdf().empty()) throw ConfigError(file.string() + ": urdf is missing");
+  const std::filesystem::path urdf = described_path(file, text.urdf());
+  if (!std::filesystem::exists(urdf)) throw MissingError(locate(file, text.urdf()) + ": no file " + urdf.string());
+  UrdfOptions options;
+  for (const std::string& folder : text.packages()) options.packages.push_back(described_path(file, folder));
+  options.without.assign(without.begin(), without.end());
+  return {urdf, Meshes::load, options};
+}
 
 }  // namespace handsel

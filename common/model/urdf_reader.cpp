@@ -2,12 +2,14 @@
 #include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <mutex>
 #include <set>
 #include <sstream>
 
 #include "common/config/resources.hpp"
+#include "common/model/description_parts.hpp"
 #include "common/model/robot_model_builder.hpp"
 
 namespace handsel {
@@ -79,8 +81,20 @@ struct Document {
   std::map<std::string, std::pair<std::string, std::string>> parents;  // of each child link: parent link, file and line
 };
 
+/// Folders of packages: the description's, those of ROS_PACKAGE_PATH, the shares of AMENT_PREFIX_PATH.
+std::vector<fs::path> package_folders(const std::vector<fs::path>& described) {
+  std::vector<fs::path> folders = described;
+  for (const auto& [variable, below] : {std::pair("ROS_PACKAGE_PATH", ""), std::pair("AMENT_PREFIX_PATH", "share")}) {
+    const char* value = std::getenv(variable);
+    std::istringstream entries(value != nullptr ? value : "");
+    for (std::string entry; std::getline(entries, entry, ':');)
+      if (!entry.empty()) folders.push_back(fs::path(entry) / below);
+  }
+  return folders;
+}
+
 /// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are searched too.
-fs::path find_mesh(const fs::path& urdf, const std::string& uri) {
+fs::path find_mesh(const fs::path& urdf, const std::string& uri, const std::vector<fs::path>& packages) {
   std::vector<fs::path> tails;
   const auto scheme = uri.find("://");
   if (scheme == std::string::npos) {
@@ -96,12 +110,16 @@ fs::path find_mesh(const fs::path& urdf, const std::string& uri) {
       if (fs::is_regular_file(folder / tail)) return fs::weakly_canonical(folder / tail);
     if (folder == folder.parent_path()) break;
   }
-  throw MissingError(locate(urdf, uri) + ": no mesh " + uri + " in the folder of the URDF or above it");
+  for (const auto& folder : package_folders(packages))
+    for (const auto& tail : tails)
+      if (fs::is_regular_file(folder / tail)) return fs::weakly_canonical(folder / tail);
+  throw MissingError(locate(urdf, uri) + ": no mesh " + uri + " in the folder of the URDF, above it, or in the packages' folders");
 }
 
 class ShapeReader {
  public:
-  ShapeReader(fs::path urdf, Meshes meshes) : urdf_(std::move(urdf)), meshes_(meshes) {}
+  ShapeReader(fs::path urdf, Meshes meshes, std::vector<fs::path> packages)
+      : urdf_(std::move(urdf)), meshes_(meshes), packages_(std::move(packages)) {}
 
   void read(const urdf::Link& from, std::vector<PlacedShape>& to) {
     for (const auto& c : from.collision_array)
@@ -132,7 +150,7 @@ class ShapeReader {
     }
     if (meshes_ == Meshes::skip) return std::nullopt;
     const auto& m = static_cast<const urdf::Mesh&>(g);
-    const fs::path file = find_mesh(urdf_, m.filename);
+    const fs::path file = find_mesh(urdf_, m.filename, packages_);
     const Vector3 scale(m.scale.x, m.scale.y, m.scale.z);
     for (const auto& known : cache_)
       if (known.file == file && known.scale == scale) return known.mesh;
@@ -147,6 +165,7 @@ class ShapeReader {
   };
   fs::path urdf_;
   Meshes meshes_;
+  std::vector<fs::path> packages_;
   std::vector<Known> cache_;
 };
 
@@ -222,6 +241,8 @@ void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint
         if (joints[j].name == name) joint.dof = static_cast<int>(j);
       joint.mimic_factor = factor;
       joint.mimic_offset = offset;
+      if (joint.dof < 0)
+        throw ConfigError(locate(file, "\"" + joint.name + "\"") + ": joint " + joint.name + " mimics " + name + ", which is left out");
       return;
     }
     offset += factor * from->mimic->offset;
@@ -236,21 +257,34 @@ void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint
 
 }  // namespace
 
-RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes) : urdf_(urdf) {
+RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes, const UrdfOptions& options) : urdf_(urdf) {
   const std::string text = read(urdf);
   const Document document(urdf, text);
   const auto tree = parse(urdf, text);
   model_.name_ = tree->getName();
-  ShapeReader shapes(urdf, meshes);
+  ShapeReader shapes(urdf, meshes, options.packages);
+  std::set<std::string> without(options.without.begin(), options.without.end());
+  for (const auto& name : without)
+    if (tree->getLink(name) == nullptr) throw ConfigError(urdf.string() + ": has no link \"" + name + "\" that could be left out");
+  if (without.contains(tree->getRoot()->name)) throw ConfigError(urdf.string() + ": the root link cannot be left out");
 
   struct Visit {
     const urdf::Link* link;
     int parent;
   };
   std::vector<Visit> stack{{tree->getRoot().get(), -1}};
+  std::size_t visited = 0;
   while (!stack.empty()) {
     const auto [from, parent] = stack.back();
     stack.pop_back();
+    ++visited;
+    if (without.contains(from->name)) {
+      for (const auto& child : from->child_links) {
+        without.insert(child->name);
+        stack.push_back({child.get(), -1});
+      }
+      continue;
+    }
     const int index = static_cast<int>(model_.links_.size());
     Link link;
     link.name = from->name;
@@ -263,11 +297,42 @@ RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes) : urdf
     model_.links_.push_back(std::move(link));
     for (auto child = from->child_links.rbegin(); child != from->child_links.rend(); ++child) stack.push_back({child->get(), index});
   }
-  if (model_.links_.size() != tree->links_.size()) throw ConfigError(urdf.string() + ": some joints form a cycle apart from the root link");
+  if (visited != tree->links_.size()) throw ConfigError(urdf.string() + ": some joints form a cycle apart from the root link");
 
-  for (const auto& name : document.joints) document_order_.push_back(joint_index(name));
+  for (const auto& name : document.joints)
+    if (const int joint = joint_index(name); joint >= 0) document_order_.push_back(joint);
   for (auto& joint : model_.joints_)
     if (joint.kind != JointKind::fixed) resolve_mimic(*tree, urdf, joint, model_.joints_);
+}
+
+void RobotModelBuilder::mount(RobotModelBuilder other, const config::HandMount& at, const fs::path& source) {
+  const int parent = require_link(at.link(), "mount.link", source);
+  RobotModel& hand = other.model_;
+  for (const auto& link : hand.links_)
+    if (model_.link_index(link.name) >= 0)
+      throw ConfigError(source.string() + ": link \"" + link.name + "\" is in " + urdf_.string() + " and in " + other.urdf_.string() +
+                        "; leave it out of the first (without) or do not mount the second");
+  for (const auto& joint : hand.joints_)
+    if (joint_index(joint.name) >= 0)
+      throw ConfigError(source.string() + ": joint \"" + joint.name + "\" is in " + urdf_.string() + " and in " + other.urdf_.string());
+  const auto links = static_cast<int>(model_.links_.size()), joints = static_cast<int>(model_.joints_.size()) + 1;
+  Joint flange;
+  flange.name = other.model_.links_.front().name + "_mount";
+  flange.parent = parent;
+  flange.child = links;
+  flange.T_parent_joint = to_pose(at.pose());
+  model_.joints_.push_back(flange);
+  for (Joint& joint : hand.joints_) {
+    joint.parent += links;
+    joint.child += links;
+    if (joint.dof >= 0) joint.dof += joints;
+    model_.joints_.push_back(std::move(joint));
+  }
+  for (Link& link : hand.links_) {
+    link.parent_joint = link.parent_joint < 0 ? joints - 1 : link.parent_joint + joints;
+    model_.links_.push_back(std::move(link));
+  }
+  for (const int joint : other.document_order_) document_order_.push_back(joint + joints);
 }
 
 }  // namespace handsel

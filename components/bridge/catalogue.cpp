@@ -9,6 +9,7 @@
 #include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
 #include "common/wire/schema.hpp"
+#include "components/bridge/drawn_urdf.hpp"
 
 namespace handsel::bridge {
 namespace fs = std::filesystem;
@@ -22,7 +23,7 @@ bool queued(Profile profile) {
 bool kept(Profile profile) { return profile == Profile::state || profile == Profile::latch; }
 
 struct Description {
-  std::string folder;  ///< "robots/jido", empty when the robot's description is not among the resources
+  std::string folder;  ///< "robots/jido", empty when the robot's URDF is not, or not as it is, among the resources
   config::RobotDescription robot;
 };
 
@@ -31,14 +32,15 @@ Description describe(const RobotModel& robot, const fs::path& resources) {
   const std::string folder = "robots/" + robot.name();
   const fs::path file = resources / folder / (robot.name() + ".txtpb");
   if (!fs::exists(file)) return out;
-  out.folder = folder;
   load_text_proto(file, out.robot);
+  const bool whole = !out.robot.has_mount() && out.robot.without().empty();
+  if (whole && fs::is_regular_file(resources / folder / out.robot.urdf())) out.folder = folder;
   return out;
 }
 
 /// The URDF as a viewer can use it: meshes by their address here.
-std::string robot_description(const Description& description, const fs::path& resources) {
-  if (description.folder.empty()) return {};
+std::string robot_description(const RobotModel& robot, const Description& description, const fs::path& resources) {
+  if (description.folder.empty()) return drawn_urdf(robot);
   std::ostringstream text;
   text << std::ifstream(resources / description.folder / description.robot.urdf()).rdbuf();
   static const std::regex relative(R"re(filename="([^":]+)")re");
@@ -70,7 +72,7 @@ Catalogue make_catalogue(const RobotModel& robot, const fs::path& resources, con
   catalogue.metadata = {
       {"robot", robot.name()}, {"scenario", facts.scenario}, {"domain", std::to_string(facts.domain)}, {"version", facts.version}};
   catalogue.parameters = catalogue.metadata;
-  catalogue.parameters["/robot_description"] = robot_description(describe(robot, resources), resources);
+  catalogue.parameters["/robot_description"] = robot_description(robot, describe(robot, resources), resources);
   for (const TopicRow& row : topics()) {
     Channel channel;
     channel.topic = row.topic;
@@ -91,10 +93,15 @@ std::string config_json(const RobotModel& robot, const fs::path& resources, cons
   if (!description.folder.empty()) {
     json["urdf"] = "/assets/" + description.folder + "/" + description.robot.urdf();
     json["srdf"] = "/assets/" + description.folder + "/" + description.robot.srdf();
-    json["tool_link"] = description.robot.tool_link();
-    json["gaze_link"] = description.robot.gaze_link();
-    for (const auto& group : description.robot.groups()) json["groups"][group.name()] = group.joints();
+  } else {
+    json["urdf"] = "";
+    json["urdf_text"] = drawn_urdf(robot);
   }
+  const auto link = [&](int index) { return index < 0 ? std::string() : robot.links()[static_cast<std::size_t>(index)].name; };
+  json["tool_link"] = link(robot.tool_link());
+  json["gaze_link"] = link(robot.gaze_link());
+  for (const Group& group : robot.groups())
+    for (const int axis : group.axes) json["groups"][group.name].push_back(robot.axes()[static_cast<std::size_t>(axis)].name);
   json["axes"] = Json::array();
   for (const Axis& axis : robot.axes()) json["axes"].push_back(axis.name);
   json["objects"] = objects(resources);

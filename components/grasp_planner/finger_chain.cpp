@@ -15,7 +15,17 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
   const int tip = model.link_index(f.tip_link);
   if (tip < 0)
     throw ConfigError("hand " + hand.name() + ": finger " + f.name + " names tip link " + f.tip_link + ", which its URDF does not have");
-  // Every joint driven by this finger's axes is a step; fixed joints are folded into their neighbours.
+  // Every joint driven by this finger's axes on its own branch is a step; fixed joints are folded into their neighbours. Fingers that move
+  // together share axes, so the branch begins at the first joint above the tip that one of them moves.
+  const auto driven = [&](const Joint& joint) {
+    return joint.dof >= 0 && std::find(f.axes.begin(), f.axes.end(), joint.dof) != f.axes.end();
+  };
+  int root = -1;
+  for (int l = tip; model.links()[static_cast<std::size_t>(l)].parent_joint >= 0;) {
+    const Joint& joint = model.joints()[static_cast<std::size_t>(model.links()[static_cast<std::size_t>(l)].parent_joint)];
+    if (driven(joint)) root = l;
+    l = joint.parent;
+  }
   struct Frame {
     int step{-1};
     Pose T_step_link{Pose::Identity()};
@@ -25,7 +35,7 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
     const Joint& joint = model.joints()[static_cast<std::size_t>(model.links()[l].parent_joint)];
     const Frame& parent = frames[static_cast<std::size_t>(joint.parent)];
     const Pose T_step_joint = parent.T_step_link * joint.T_parent_joint;
-    const bool mine = joint.dof >= 0 && std::find(f.axes.begin(), f.axes.end(), joint.dof) != f.axes.end();
+    const bool mine = driven(joint) && (static_cast<int>(l) == root || parent.step >= 0);
     if (!mine) {
       frames[l] = {parent.step, T_step_joint};
     } else {
@@ -38,7 +48,7 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
   const Frame& at_tip = frames[static_cast<std::size_t>(tip)];
   if (at_tip.step < 0) throw ConfigError("hand " + hand.name() + ": no joint of finger " + f.name + " moves its tip link " + f.tip_link);
   tip_step_ = at_tip.step;
-  p_step_tip_ = at_tip.T_step_link.translation();
+  T_step_tip_ = at_tip.T_step_link;
   for (int s = tip_step_; s >= 0; s = steps_[static_cast<std::size_t>(s)].parent) tip_path_.push_back(s);
   std::reverse(tip_path_.begin(), tip_path_.end());
   for (const int axis : f.axes) {
@@ -93,6 +103,12 @@ Vector3 FingerChain::closing_direction(const std::vector<Pose>& T) const {
   const Vector3 d = closing_sign_ * jacobian(T).rightCols<1>();
   const double length = d.norm();
   return length > 1e-9 ? Vector3(d / length) : Vector3::UnitX();
+}
+
+void FingerChain::add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object, const Vector3& p_object, const Vector3& force,
+                             Vector& hand_effort) const {
+  const Eigen::VectorXd effort = jacobian(T_hand_step, T_hand_object * p_object).transpose() * (T_hand_object.linear() * force);
+  for (std::size_t a = 0; a < axes_.size(); ++a) hand_effort[axes_[a]] += effort[static_cast<Eigen::Index>(a)];
 }
 
 bool FingerChain::inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance,

@@ -13,6 +13,9 @@ class FingerChain {
 
   const std::vector<int>& axes() const { return axes_; }  ///< hand axes that move the fingertip
   double tip_radius() const { return tip_radius_; }       ///< [m]
+  /// Adds the efforts of the finger's axes that give `force` [N] to the object at the point `p_object` (both object frame).
+  void add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object, const Vector3& p_object, const Vector3& force,
+                  Vector& hand_effort) const;
   /// Links this finger's joints carry, and how each follows: T_hand_link = step pose * T_step_link.
   struct Carried {
     int link{};
@@ -25,7 +28,8 @@ class FingerChain {
   /// Poses of the moving joints' frames in the hand frame; `T` is resized to steps(). `q`: all axes of the hand.
   void forward(const Vector& q, std::vector<Pose>& T) const;
   Vector3 tip(const Vector& q) const;  ///< centre of the fingertip sphere, hand frame [m]
-  Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * p_step_tip_; }
+  Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_.translation(); }
+  Pose tip_pose(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_; }  ///< T_hand_tip
   /// 3 x axes().size(): velocity of the tip's centre for each of the finger's axes.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const { return jacobian(T, tip(T)); }
   /// Likewise of the point of the outermost link that is at `p_hand` now.
@@ -55,7 +59,7 @@ class FingerChain {
   std::vector<Carried> carried_;
   std::vector<int> tip_path_;  // steps from the hand to the tip
   int tip_step_{};
-  Vector3 p_step_tip_{Vector3::Zero()};
+  Pose T_step_tip_{Pose::Identity()};
   double tip_radius_{};
   double closing_sign_{1};  // of the outermost axis
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 namespace handsel::grasp_planner {
 namespace {
@@ -18,6 +19,12 @@ constexpr double kSameAngle = 0.35;     // [rad] ... and less turned count as on
 
 Vector with_hand(const RobotModel&, const Vector& q, const Group& arm, const Vector& arm_q, const Group& hand, const Vector& hand_q) {
   return RobotModel::with(RobotModel::with(q, arm, arm_q), hand, hand_q);
+}
+
+std::size_t touching(const Grasp& g) {
+  std::set<std::uint32_t> fingers;
+  for (const Contact& c : g.contacts) fingers.insert(c.finger);
+  return fingers.size();
 }
 
 bool alike(const Pose& a, const Pose& b) {
@@ -240,8 +247,8 @@ struct GraspChooser::Search {
   /// What can be said of a grasp before the arm is looked at.
   double rank(const ListedGrasp& listed) const {
     const double fingers = static_cast<double>(self.kit_->chains.size());
-    double sum = settings().rank_quality * listed.grasp.quality +
-                 settings().rank_contacts * static_cast<double>(listed.grasp.contacts.size()) / fingers;
+    double sum =
+        settings().rank_quality * listed.grasp.quality + settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
     sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
     if (request.for_human.empty()) return sum;
     return sum + settings().rank_room * listed.room;

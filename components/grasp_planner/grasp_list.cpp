@@ -6,6 +6,8 @@
 #include "common/geometry/segments.hpp"
 #include "components/grasp_planner/epsilon.hpp"
 #include "components/grasp_planner/frame_search.hpp"
+
+#include "components/grasp_planner/pinch.hpp"
 #include "components/grasp_planner/so3_grid.hpp"
 
 namespace handsel::grasp_planner {
@@ -37,6 +39,10 @@ const char* reason_text(FrameReason reason) {
       return "fingers collide with each other or, at rest, with the object";
     case FrameReason::not_closed:
       return "no combination of contacts is force-closed";
+    case FrameReason::nothing_opposite:
+      return "no surface opposite within the opening of the hand";
+    case FrameReason::pad_off_surface:
+      return "a pad would not lie on the surface";
     case FrameReason::count:
       break;
   }
@@ -73,11 +79,15 @@ struct GraspLister::Impl {
     orientations = so3_sequence(settings.orientations);
     out.hand = kit->hand.name();
     out.object = object->name();
+    if (kit->hand.pinches()) pinch.emplace(*kit, *object, settings);
     kit->forward(kit->hand.rest(), T_rest);
     kit->forward(kit->hand.pregrasp(), T_pregrasp);
   }
 
+  std::uint64_t frames() const { return pinch ? pinch->frames() : positions.size() * orientations.size(); }
+
   FrameReason frame(std::uint64_t id) {
+    if (pinch) return pinch_frame(id);
     const Pose T_object_grasp = make_pose(positions[id % positions.size()], orientations[id / positions.size()]);
     const Pose T_object_hand = T_object_grasp * kit->hand.T_hand_grasp().inverse();
     const std::size_t fingers = kit->chains.size();
@@ -116,6 +126,32 @@ struct GraspLister::Impl {
   const std::vector<Pose>& poses(std::size_t f, int choice) const {
     if (choice >= 0) return contacts[f][static_cast<std::size_t>(choice)].T_hand_step;
     return idle[f] == 1 ? T_pregrasp[f] : T_rest[f];
+  }
+
+  FrameReason pinch_frame(std::uint64_t id) {
+    FrameReason why{};
+    auto found = pinch->frame(id, out, why);
+    if (!found) return why;
+    const WrenchMatrix w = contact_wrenches(found->contacts, settings.cone_edges, object->com(), 1 / object->radius());
+    ++out.closure_tests;
+    if (!force_closure(w)) return FrameReason::not_closed;
+    Grasp& g = found->grasp;
+    g.epsilon = epsilon(w);
+    if (!(g.epsilon > 0)) return FrameReason::not_closed;
+    GraspScores s;
+    Vector3 mean = Vector3::Zero();
+    const auto n = static_cast<double>(g.contacts.size());
+    for (const Contact& c : g.contacts) {
+      mean += c.position / n;
+      s.curvature += (1 - c.curvature) / n;
+    }
+    s.force = found->force;
+    s.centre = std::clamp(1 - (mean - object->com()).norm() / object->radius(), 0.0, 1.0);
+    s.stability = std::clamp(g.epsilon / settings.full_epsilon, 0.0, 1.0);
+    g.quality = quality(s);
+    const double free = room(g);
+    out.grasps.push_back({std::move(g), s, free});
+    return FrameReason::grasped;
   }
 
   // Walks all combinations depth first; a pair of postures that collides cuts its whole branch.
@@ -277,11 +313,8 @@ struct GraspLister::Impl {
     const Pose T_hand_object = g.T_object_hand.inverse();
     for (std::size_t k = 0; k < grip.forces.size(); ++k) {
       const std::size_t f = g.contacts[k].finger;
-      const FingerChain& chain = kit->chains[f];
-      const Eigen::Matrix3Xd J =
-          chain.jacobian(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step, T_hand_object * g.contacts[k].position);
-      const Eigen::VectorXd effort = J.transpose() * (T_hand_object.linear() * grip.forces[k]);
-      for (std::size_t a = 0; a < chain.axes().size(); ++a) g.hand_effort[chain.axes()[a]] = effort[static_cast<Eigen::Index>(a)];
+      kit->chains[f].add_effort(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step, T_hand_object, g.contacts[k].position,
+                                grip.forces[k], g.hand_effort);
     }
   }
 
@@ -290,6 +323,7 @@ struct GraspLister::Impl {
   std::shared_ptr<const Graspable> object;
   GraspListSettings settings;
   FrameSearch search;
+  std::optional<PinchSearch> pinch;
   std::vector<Vector3> positions;
   std::vector<Eigen::Quaterniond> orientations;
   std::vector<std::vector<Pose>> T_rest, T_pregrasp;
@@ -306,7 +340,7 @@ GraspLister::GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<con
 GraspLister::~GraspLister() = default;
 GraspLister::GraspLister(GraspLister&&) noexcept = default;
 
-std::uint64_t GraspLister::frames() const { return impl_->positions.size() * impl_->orientations.size(); }
+std::uint64_t GraspLister::frames() const { return impl_->frames(); }
 
 bool GraspLister::advance(std::uint64_t count) {
   const std::uint64_t end = std::min(frames(), impl_->out.frames + count);

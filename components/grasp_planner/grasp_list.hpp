@@ -49,7 +49,9 @@ enum class FrameReason : std::uint8_t {
   thumb_without_contact,  ///< inverse kinematics, direction of the push, collision or opening
   fingers_without_contact,
   fingers_collide,
-  not_closed,  ///< no combination is force-closed
+  not_closed,        ///< no combination is force-closed
+  nothing_opposite,  ///< a pinching hand: no surface opposite within its opening
+  pad_off_surface,   ///< a pinching hand: a pad does not lie on the surface
   count
 };
 const char* reason_text(FrameReason);

@@ -12,7 +12,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::uint32_t kVersion = 2;  // of the form on disk and of the method: raise it when either changes
+constexpr std::uint32_t kVersion = 3;  // of the form on disk and of the method: raise it when either changes
 
 /// FNV-1a, 64 bit.
 class Hash {
@@ -145,8 +145,13 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
   for (const Finger& f : hand.fingers()) {
     h.add(f.tip_link);
     h.add(f.tip_radius);
+    if (f.pad) {
+      h.add(f.pad->T_tip_pad);
+      h.add(Vector3(f.pad->width, f.pad->height, 0));
+    }
     for (const int a : f.axes) h.add(static_cast<std::uint64_t>(a));
   }
+  h.add(hand.grip_force());
   h.add(hand.T_hand_grasp());
   for (const Vector* v : {&hand.rest(), &hand.pregrasp(), &hand.lower_contact(), &hand.upper_contact()}) h.add(*v);
   h.add(object.mesh);

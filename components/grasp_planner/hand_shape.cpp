@@ -8,7 +8,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kShrink = 0.001;  // [m] a mesh link in contact may be this deep
+constexpr double kShrink = 0.001;  // [m] a mesh or box of a finger in contact may be this deep
 
 const Pose& step_pose(const std::vector<Pose>& T, int step) {
   static const Pose identity = Pose::Identity();
@@ -46,6 +46,8 @@ HandShape::Solid HandShape::make_solid(int link, int step, const Pose& T_step_li
   if (cylinder != nullptr && cylinder->length >= 2 * cylinder->radius) capsule(cylinder->radius, cylinder->length);
   s.shape = CollisionShape::make(placed.shape);
   s.shrunk = s.shape;
+  if (const auto* box = std::get_if<Box>(&placed.shape))
+    s.shrunk = CollisionShape::make(Box{(box->size.array() - 2 * kShrink).max(1e-6).matrix()});
   if (const auto* mesh = std::get_if<MeshPtr>(&placed.shape)) s.shrunk = CollisionShape::make(shrink(**mesh));
   return s;
 }

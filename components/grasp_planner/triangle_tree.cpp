@@ -69,7 +69,7 @@ TriangleTree::TriangleTree(const TriangleMesh& mesh) {
   triangles_.reserve(mesh.triangles.size());
   for (const auto& k : mesh.triangles) {
     triangles_.push_back({mesh.vertices[static_cast<std::size_t>(k[0])], mesh.vertices[static_cast<std::size_t>(k[1])],
-                          mesh.vertices[static_cast<std::size_t>(k[2])]});
+                          mesh.vertices[static_cast<std::size_t>(k[2])], static_cast<std::uint32_t>(triangles_.size())});
   }
   if (triangles_.empty()) return;
   build(0, triangles_.size());
@@ -137,6 +137,36 @@ double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bo
     }
   }
   return std::sqrt(best);
+}
+
+void TriangleTree::hits(const Vector3& p, const Vector3& d, double length, std::vector<SurfaceHit>& out) const {
+  out.clear();
+  if (nodes_.empty()) return;
+  Eigen::AlignedBox3d ray(p);
+  ray.extend(Vector3(p + length * d));
+  std::array<std::uint32_t, 64> stack{};
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const Node& node = nodes_[stack[--depth]];
+    if (!node.box.intersects(ray)) continue;
+    if (node.count == 0) {
+      stack[depth++] = node.left;
+      stack[depth++] = node.right;
+      continue;
+    }
+    for (std::uint32_t i = node.left; i < node.left + node.count; ++i) {
+      const Triangle& t = triangles_[i];
+      const Vector3 e1 = t.b - t.a, e2 = t.c - t.a, h = d.cross(e2);
+      const double det = e1.dot(h);
+      if (std::abs(det) < 1e-18) continue;
+      const Vector3 s = p - t.a, k = s.cross(e1);
+      const double u = s.dot(h) / det, v = d.dot(k) / det, along = e2.dot(k) / det;
+      if (u < 0 || v < 0 || u + v > 1 || along < 0 || along > length) continue;
+      out.push_back({along, p + along * d, e1.cross(e2).normalized(), t.index, {1 - u - v, u, v}});
+    }
+  }
+  std::sort(out.begin(), out.end(), [](const SurfaceHit& a, const SurfaceHit& b) { return a.along < b.along; });
 }
 
 bool TriangleTree::contains(const Vector3& p) const {

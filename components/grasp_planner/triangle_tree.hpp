@@ -8,6 +8,14 @@
 
 namespace handsel::grasp_planner {
 
+/// Where a ray meets the surface.
+struct SurfaceHit {
+  double along{};                                               ///< from the ray's start [m]
+  Vector3 position{Vector3::Zero()}, normal{Vector3::UnitZ()};  ///< of its triangle, by its orientation
+  std::uint32_t triangle{};
+  Vector3 barycentric{Vector3::Zero()};
+};
+
 class TriangleTree {
  public:
   TriangleTree() = default;
@@ -19,6 +27,8 @@ class TriangleTree {
   double distance(const Vector3& a, const Vector3& b, double limit) const;
   /// Inside a closed mesh: most of three rays cross it an odd number of times.
   bool contains(const Vector3& p) const;
+  /// All places where the ray from `p` along the unit vector `d` meets the surface within `length` [m], nearest first.
+  void hits(const Vector3& p, const Vector3& d, double length, std::vector<SurfaceHit>& out) const;
   const Eigen::AlignedBox3d& box() const { return box_; }
 
  private:
@@ -29,6 +39,7 @@ class TriangleTree {
   };
   struct Triangle {
     Vector3 a, b, c;
+    std::uint32_t index{};
   };
   std::uint32_t build(std::size_t begin, std::size_t end);
   double search(const Vector3& a, const Vector3& b, double limit, bool first_hit) const;

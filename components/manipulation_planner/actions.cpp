@@ -51,8 +51,8 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
     auto settings = settings_;
     settings.set_exchange_goals(1);
     for (std::size_t i = 0; i < grasps.size(); ++i) {
-      const ExchangeSearch search =
-          find_exchange(*robot_, scene, who, layers, q, T_world_object, grasps[i].T_object_hand.inverse(), settings);
+      const ExchangeSearch search = find_exchange(*robot_, scene, who, layers, q, T_world_object, grasps[i].T_object_hand.inverse(),
+                                                  settings, barred_ways(grasps[i]));
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
       else
@@ -159,8 +159,9 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
     auto search = std::make_shared<ExchangeSearch>();
     const std::function<void()> job = [this, search, scene = scene_, layers = layers_.at(waiting_.now()), who = *whom, q = set_point_,
-                                       T = attachment_.T_tool_object, T_world_object = T_world_tool() * attachment_.T_tool_object] {
-      *search = find_exchange(*robot_, scene, who, layers, q, T_world_object, T, settings_);
+                                       T = attachment_.T_tool_object, T_world_object = T_world_tool() * attachment_.T_tool_object,
+                                       barred = grasp_ ? barred_ways(*grasp_) : std::vector<Vector3>{}] {
+      *search = find_exchange(*robot_, scene, who, layers, q, T_world_object, T, settings_, barred);
     };
     last = co_await work(job);
     if (!last.good) continue;

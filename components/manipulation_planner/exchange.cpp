@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "common/cost/reach_check.hpp"
 #include "common/model/human_body.hpp"
@@ -12,6 +13,7 @@ namespace {
 
 constexpr int kHeadings = 24;
 constexpr double kWorthwhile = 0.25;   // poses this much costlier than the best are not offered as alternatives
+constexpr double kBarred = 0.5;        // cosine: a finger in the way of the person's pull
 constexpr double kLeastFacing = -0.3;  // cosine: the hand may not come from the person's side
 
 struct Place {
@@ -35,9 +37,19 @@ double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
 
 }  // namespace
 
+std::vector<Vector3> barred_ways(const Grasp& grasp) {
+  std::set<std::uint32_t> fingers;
+  std::vector<Vector3> normals;
+  for (const Contact& contact : grasp.contacts) {
+    fingers.insert(contact.finger);
+    normals.push_back(contact.normal);
+  }
+  return fingers.size() == 2 ? normals : std::vector<Vector3>{};
+}
+
 ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
-                             const Pose& T_world_object_now, const Pose& T_tool_object,
-                             const config::ManipulationPlannerSettings& settings) {
+                             const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
+                             const std::vector<Vector3>& barred) {
   ExchangeSearch out;
   const Group& arm = robot.require_group("arm");
   const Vector3 torso = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
@@ -87,7 +99,10 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
           const Vector3 reach = (T.linear() * T_tool_object.linear().transpose() * palm_to_object).normalized();
           const double facing = reach.dot(-toward_robot);
           if (facing < kLeastFacing) continue;
-          places.push_back({T, base_cost + settings.w_legibility() * (1 - facing) / 2});
+          double in_the_way = 0;
+          for (const Vector3& normal : barred) in_the_way = std::max(in_the_way, (T.linear() * normal).dot(-toward_robot));
+          if (in_the_way > kBarred) continue;
+          places.push_back({T, base_cost + settings.w_legibility() * ((1 - facing) / 2 + in_the_way)});
         }
       }
     }

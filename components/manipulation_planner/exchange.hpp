@@ -8,6 +8,7 @@
 
 #include "common/config/manipulation_planner.pb.h"
 #include "common/cost/human_cost.hpp"
+#include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/robot_model.hpp"
 
@@ -25,10 +26,15 @@ struct ExchangeSearch {
   std::uint32_t tried{};            ///< inverse kinematics solved for
 };
 
+/// Where the fingers of a hand that pinches stand, seen from the object (outward normals, object frame): it cannot be drawn out that way.
+/// Empty when more than two fingers hold it: they open away from it.
+std::vector<Vector3> barred_ways(const Grasp& grasp);
+
 /// `q`: all axes, near which postures are sought; `T_world_object_now`: where the object is. The object keeps its tilt; only its place and
 /// heading change. Places in, under or behind furniture as the person sees it, and those an outside layer forbids, are none.
+/// `barred`: as barred_ways() gives them; the person must be able to draw the object toward them.
 ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
-                             const Pose& T_world_object_now, const Pose& T_tool_object,
-                             const config::ManipulationPlannerSettings& settings);
+                             const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
+                             const std::vector<Vector3>& barred = {});
 
 }  // namespace handsel::manipulation_planner

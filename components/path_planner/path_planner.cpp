@@ -139,13 +139,14 @@ class Planning {
     Found best;
     best.closest = std::numeric_limits<double>::infinity();
     for (std::uint64_t share = kFirstShare;; share *= 2) {
-      space_.limit(std::min(limit, space_.checks() + share));
+      const std::uint64_t before = space_.checks();
+      space_.limit(std::min(limit, before + share));
       const Found found = search(space_, goals_, kind, seed);
       seed += 104729;
       space_.limit(limit);
       if (!found.path.empty()) return found;
       if (found.closest < best.closest) best = found;
-      if (space_.exhausted()) return best;
+      if (space_.exhausted() || space_.checks() == before) return best;  // a start that is refused at once costs nothing, ever
     }
   }
 

@@ -155,8 +155,9 @@ Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind k
   auto ompl_space = std::make_shared<ob::RealVectorStateSpace>(n);
   ob::RealVectorBounds bounds(n);
   for (int i = 0; i < n; ++i) {
-    bounds.setLow(i, space.lower()[i]);
-    bounds.setHigh(i, space.upper()[i]);
+    // A posture on a joint's end may be past it by rounding: it is a start all the same.
+    bounds.setLow(i, std::min(space.lower()[i], space.start()[i]));
+    bounds.setHigh(i, std::max(space.upper()[i], space.start()[i]));
   }
   ompl_space->setBounds(bounds);
   std::uint64_t sampler_seed = seed;

@@ -22,13 +22,16 @@ constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for le
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
   std::vector<int> axes;
   std::vector<double> lower, upper;
+  std::vector<char> sliding;
   if (const Group* group = robot.group("hand"))
     for (int axis : group->axes) {
       axes.push_back(axis);
       lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
       upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
+      sliding.push_back(robot.joints()[static_cast<std::size_t>(robot.axes()[static_cast<std::size_t>(axis)].joint)].kind ==
+                        JointKind::prismatic);
     }
-  return {settings, axes, lower, upper, robot.comfort_limits(), robot.stop_limits()};
+  return {settings, axes, lower, upper, robot.comfort_limits(), robot.stop_limits(), sliding};
 }
 
 /// All axes but those of hand and head.

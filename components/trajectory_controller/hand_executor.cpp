@@ -10,7 +10,7 @@ constexpr double kMinor = 0.2;  // of the largest effort: axes with less only ho
 }
 
 HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
-                           const KinematicLimits& comfort, const KinematicLimits& stop)
+                           const KinematicLimits& comfort, const KinematicLimits& stop, std::vector<char> sliding)
     : settings_(settings),
       axes_(std::move(axes)),
       lower_(std::move(lower)),
@@ -19,7 +19,11 @@ HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, 
       stop_(stop),
       fingers_(axes_.size()),
       release_to_(Vector::Zero(static_cast<Eigen::Index>(axes_.size()))),
-      release_(settings.pull) {}
+      release_(settings.pull) {
+  for (std::size_t i = 0; i < sliding.size(); ++i)
+    if (sliding[i] != 0) fingers_[i].lever = settings.lever;
+  settings_.least_contacts = std::min(settings.least_contacts, static_cast<int>(axes_.size()));
+}
 
 AxisLimits HandExecutor::limits(std::size_t i, const KinematicLimits& of, double share) const {
   AxisLimits l = limits_of(of, axes_[i]);
@@ -29,7 +33,9 @@ AxisLimits HandExecutor::limits(std::size_t i, const KinematicLimits& of, double
 
 void HandExecutor::reset(const Vector& robot_position) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    const double lever = fingers_[i].lever;
     fingers_[i] = {};
+    fingers_[i].lever = lever;
     fingers_[i].target = fingers_[i].final = robot_position[axes_[i]];
     fingers_[i].mover.reset(fingers_[i].target);
   }
@@ -54,7 +60,8 @@ void HandExecutor::follow(const Vector& robot_position) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     f.target = f.final = std::clamp(robot_position[axes_[i]], lower_[i], upper_[i]);
-    if (std::abs(f.target - f.mover.target()) > kDeadBand) f.mover.go_to(f.target, limits(i, comfort_, 1.0), limits(i, stop_, 1.0));
+    if (std::abs(f.target - f.mover.target()) > kDeadBand * f.lever)
+      f.mover.go_to(f.target, limits(i, comfort_, 1.0), limits(i, stop_, 1.0));
   }
   phase_ = Phase::hold;
   release_.disarm();
@@ -67,13 +74,18 @@ std::string HandExecutor::accept(const HandCommand& command) {
   constexpr double kBeyond = 0.02, kMostEffort = 20;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const double p = command.position[static_cast<Eigen::Index>(i)];
-    if (!(p >= lower_[i] - kBeyond && p <= upper_[i] + kBeyond))
+    const double beyond = kBeyond * fingers_[i].lever;
+    if (!(p >= lower_[i] - beyond && p <= upper_[i] + beyond))
       return "hand axis " + std::to_string(i) + " wanted at " + std::to_string(p) + ", outside [" + std::to_string(lower_[i]) + ", " +
-             std::to_string(upper_[i]) + "] rad";
+             std::to_string(upper_[i]) + (fingers_[i].lever == 1.0 ? "] rad" : "] m");
   }
-  if (command.effort.size() != 0 &&
-      (command.effort.size() != command.position.size() || !(command.effort.cwiseAbs().maxCoeff() <= kMostEffort)))
-    return "hand command must give as many efforts as positions or none, each at most " + std::to_string(kMostEffort) + " Nm";
+  if (command.effort.size() != 0 && command.effort.size() != command.position.size())
+    return "hand command must give as many efforts as positions or none";
+  for (Eigen::Index i = 0; i < command.effort.size(); ++i) {
+    const double most = kMostEffort / fingers_[static_cast<std::size_t>(i)].lever;
+    if (!(std::abs(command.effort[i]) <= most))
+      return "hand command must give efforts of at most " + std::to_string(most) + (most == kMostEffort ? " Nm" : " N");
+  }
   if (command.action == HandAction::release_on_pull) {
     if (!(command.pull_force > 0) || command.pull_force > 100) return "pull_force must be above 0 and at most 100 N";
     release_to_ = command.position;
@@ -90,7 +102,8 @@ std::string HandExecutor::accept(const HandCommand& command) {
   most_effort_ = 0.0;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
-    f.effort = command.effort.size() > 0 ? command.effort[static_cast<Eigen::Index>(i)] : f.direction * f.share * settings_.squeeze_effort;
+    f.effort = command.effort.size() > 0 ? command.effort[static_cast<Eigen::Index>(i)]
+                                         : f.direction * f.share * settings_.squeeze_effort / f.lever;
     most_effort_ = std::max(most_effort_, std::abs(f.effort));
   }
   return {};
@@ -121,7 +134,7 @@ void HandExecutor::start(Phase phase) {
     Finger& f = fingers_[i];
     const double way = f.final - f.mover.state().position;
     f.share = longest > 0.0 ? std::max(0.05, std::abs(way) / longest) : 1.0;
-    f.direction = phase == Phase::closing && std::abs(way) >= settings_.closing_least ? std::copysign(1.0, way) : 0.0;
+    f.direction = phase == Phase::closing && std::abs(way) >= settings_.closing_least * f.lever ? std::copysign(1.0, way) : 0.0;
     f.contact = false;
     f.pressed_for = 0.0;
     retarget(i, f.final);
@@ -140,7 +153,7 @@ void HandExecutor::watch_contacts(const RobotState& robot, double dt) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     if (f.direction == 0.0 || f.contact) continue;
-    f.pressed_for = f.direction * pressed(robot, i) > settings_.touch_effort ? f.pressed_for + dt : 0.0;
+    f.pressed_for = f.direction * pressed(robot, i) > settings_.touch_effort / f.lever ? f.pressed_for + dt : 0.0;
     if (f.pressed_for < settings_.touch_time) continue;
     f.contact = true;
     retarget(i, robot.position[axes_[i]]);
@@ -157,12 +170,12 @@ void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
     Finger& f = fingers_[i];
     if (f.contact || std::abs(f.effort) < kMinor * most_effort_) continue;
     const double way = std::copysign(1.0, f.effort);
-    f.pressed_for = way * pressed(robot, i) > settings_.touch_effort ? f.pressed_for + dt : 0.0;
-    f.contact =
-        f.pressed_for >= settings_.touch_time || std::abs(f.target - f.final) >= settings_.seek_travel * std::abs(f.effort) / most_effort_;
+    f.pressed_for = way * pressed(robot, i) > settings_.touch_effort / f.lever ? f.pressed_for + dt : 0.0;
+    f.contact = f.pressed_for >= settings_.touch_time ||
+                std::abs(f.target - f.final) >= settings_.seek_travel * f.lever * std::abs(f.effort) / most_effort_;
     if (f.contact) continue;
     done = false;
-    retarget(i, f.target + dt * settings_.seek_speed * f.effort / most_effort_);
+    retarget(i, f.target + dt * settings_.seek_speed * f.lever * f.effort / most_effort_);
     if (f.target <= lower_[i] || f.target >= upper_[i]) f.contact = true;
   }
   if (!done) return;
@@ -208,7 +221,7 @@ int HandExecutor::pressing(const RobotState& robot) const noexcept {
   int count = 0;
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const Finger& f = fingers_[i];
-    if (f.grip != 0.0 && f.grip * pressed(robot, i) > settings_.touch_effort) ++count;
+    if (f.grip != 0.0 && f.grip * pressed(robot, i) > settings_.touch_effort / f.lever) ++count;
   }
   return count;
 }

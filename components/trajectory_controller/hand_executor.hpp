@@ -11,6 +11,7 @@
 
 namespace handsel::trajectory_controller {
 
+/// Angles, speeds and efforts are those of turning axes; of a sliding one they count at the lever of a finger.
 struct HandSettings {
   double grasp_speed{0.5};     ///< share of the comfort velocity while closing onto an object
   double closing_least{0.05};  ///< an axis closes when its way is at least this [rad]
@@ -21,11 +22,12 @@ struct HandSettings {
   double squeeze_effort{0.5};  ///< of a command that names none, axis with the longest way [Nm]
   double squeeze_time{0.4};    ///< of the squeeze's growth, and of its decay when the hand opens [s]
   double settle_time{0.15};    ///< at rest for this long before the outcome is told [s]
-  int least_contacts{2};       ///< axes in contact that make a grasp
+  int least_contacts{2};       ///< axes in contact that make a grasp; all of a hand that has fewer
   double lost_payload{0.02};   ///< payload once felt, now below this: lost [kg]
   double lost_time{0.3};       ///< for this long [s]
   double person_range{0.45};   ///< a pull counts only with a person's hand this near [m]
   double loosen_share{0.8};    ///< of the squeeze's efforts that is left then: it must still bear the load
+  double lever{0.05};          ///< [m]
   PullSettings pull;
 };
 
@@ -42,9 +44,10 @@ struct HandInputs {
 
 class HandExecutor {
  public:
-  /// `axes`: robot axes of the hand; `lower`, `upper` their bounds. Limits of all robot axes.
+  /// `axes`: robot axes of the hand; `lower`, `upper` their bounds; `sliding`: which of them are prismatic (none when empty). Limits of all
+  /// robot axes.
   HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
-               const KinematicLimits& comfort, const KinematicLimits& stop);
+               const KinematicLimits& comfort, const KinematicLimits& stop, std::vector<char> sliding = {});
 
   int size() const { return static_cast<int>(axes_.size()); }
   void reset(const Vector& robot_position) noexcept;
@@ -81,6 +84,7 @@ class HandExecutor {
     double share{1.0};     // of the longest way of all axes: speed goes with it, so that a finger keeps its way, (0, 1]
     double pressed_for{};  // [s]
     bool contact{};
+    double lever{1.0};  // what an angle of the settings is multiplied with, an effort divided by
   };
   AxisLimits limits(std::size_t i, const KinematicLimits& of, double share) const;
   void start(Phase phase);

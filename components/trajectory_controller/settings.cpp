@@ -94,6 +94,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.lost_time = read(h.lost_time(), "lost_time", 0, 10);
   s.hand.loosen_share = read(h.loosen_share(), "loosen_share", 0, 1);
   s.hand.person_range = read(h.person_range(), "person_range", 0, 10);
+  s.hand.lever = read(h.lever(), "lever", 1e-3, 1);
   s.hand.pull.baseline_time = read(h.pull_baseline(), "pull_baseline", 0, 10);
   s.hand.pull.filter_time = read(h.pull_filter(), "pull_filter", 0, 10);
   s.hand.pull.quick_time = read(h.pull_quick(), "pull_quick", 0, 10);

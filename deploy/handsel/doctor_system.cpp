@@ -19,6 +19,7 @@
 #include "deploy/handsel/launcher.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "deploy/handsel/machine.hpp"
+#include "deploy/handsel/processes.hpp"
 
 namespace handsel {
 namespace {
@@ -143,9 +144,9 @@ std::vector<Finding> check_descriptions(const DoctorOptions& options) {
     load_text_proto(scenario_file(options.scenario), scenario);
     return options.scenario;
   }));
-  const std::string robot = !options.robot.empty() ? options.robot : scenario.robot().empty() ? "jido" : scenario.robot();
-  std::string hand;
+  std::string robot, hand;
   out.push_back(attempt("robot", [&] {
+    robot = robot_of({.robot = options.robot, .scenario = options.scenario});
     const RobotModel model = RobotModel::load(robot_description(robot));
     hand = model.hand();
     return model.name() + ", " + std::to_string(model.dof()) + " axes";

@@ -57,10 +57,24 @@ void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
     }
 }
 
+/// In some posture of a pinching hand the pads' directions are opposite.
+bool pads_face(const HandModel& hand) {
+  std::vector<Pose> T;
+  for (int i = 0; i <= 10; ++i) {
+    hand.model().forward(hand.lower_contact() + 0.1 * i * (hand.upper_contact() - hand.lower_contact()), T);
+    const auto way = [&](const Finger& finger) {
+      return Vector3(T[static_cast<std::size_t>(hand.model().link_index(finger.tip_link))].linear() *
+                     finger.pad->T_tip_pad.linear().col(2));
+    };
+    if (way(hand.fingers()[0]).dot(way(hand.fingers()[1])) < -0.985) return true;
+  }
+  return false;
+}
+
 void check_masses(const RobotModel& robot, std::vector<std::string>& lacks) {
   for (const auto& link : robot.links()) {
     if (link.mass == 0) {
-      if (!link.collision.empty()) lacks.push_back("link " + link.name + " has shapes but no mass");
+      if (!link.collision.empty() && link.parent_joint >= 0) lacks.push_back("link " + link.name + " has shapes but no mass");
       continue;
     }
     const Vector3 i = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(link.inertia, Eigen::EigenvaluesOnly).eigenvalues();
@@ -80,7 +94,7 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
   need(robot.group("arm") == nullptr || robot.group("arm")->tip >= 0, "group \"arm\" has no tip_link");
   need(robot.tool_link() >= 0, "tool_link is missing: the frame grasps are given in");
   need(!robot.hand().empty(), "hand is missing: which hand description the robot carries");
-  need(robot.gaze_link() >= 0, "gaze_link is missing: the camera that looks at people");
+  need(robot.gaze_link() >= 0 || robot.group("head") == nullptr, "gaze_link is missing: the camera that the head turns");
   need(robot.redundancy_axis() >= 0 || robot.group("arm") == nullptr || robot.group("arm")->axes.size() < 7,
        "redundancy_joint is missing for an arm of seven axes");
   for (const auto& axis : robot.axes()) {
@@ -93,6 +107,7 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
       const auto& group = *robot.group("hand");
       bool same = hand.model().axes().size() == group.axes.size();
       for (std::size_t i = 0; same && i < group.axes.size(); ++i) same = hand.model().axes()[i].name == robot.axes()[group.axes[i]].name;
+      need(!hand.pinches() || pads_face(hand), "the pads of hand " + hand.name() + " never face each other");
       need(same, "group \"hand\" does not have the joints of hand " + hand.name() + " in its order");
     } catch (const std::exception& error) {
       lacks.push_back(std::string("hand: ") + error.what());

@@ -12,8 +12,10 @@
 #include "components/bridge/catalogue.hpp"
 #include "components/bridge/drawing.hpp"
 #include "components/bridge/drawing.pb.h"
+#include "components/bridge/drawn_urdf.hpp"
 #include "components/bridge/foxglove.hpp"
 #include "components/bridge/site.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace handsel::bridge {
 namespace {
@@ -375,6 +377,26 @@ TEST_F(CatalogueTest, the_page_is_told_where_things_are) {
   EXPECT_EQ(config["topics"].size(), topics().size());
   for (const auto& [name, object] : config["objects"].items()) EXPECT_TRUE(site.find(object["mesh"].get<std::string>())) << name;
   EXPECT_TRUE(config["objects"].contains("mug"));
+}
+
+/// For robots put together from several files, or kept elsewhere.
+TEST_F(CatalogueTest, a_drawn_robot_stands_as_its_model) {
+  const RobotModel robot = RobotModel::load(robot_description("jido"));
+  const test::TemporaryFolder folder;
+  const RobotModel again = RobotModel::load_urdf(folder.write("drawn.urdf", drawn_urdf(robot)));
+  ASSERT_EQ(again.links().size(), robot.links().size());
+  ASSERT_EQ(again.dof(), robot.dof());
+  Vector q(again.dof());
+  for (int i = 0; i < again.dof(); ++i)
+    for (int k = 0; k < robot.dof(); ++k)
+      if (again.axes()[static_cast<std::size_t>(i)].name == robot.axes()[static_cast<std::size_t>(k)].name)
+        q[i] = robot.rest_posture()[k] + 0.01 * k;
+  Vector original(robot.dof());
+  for (int k = 0; k < robot.dof(); ++k) original[k] = robot.rest_posture()[k] + 0.01 * k;
+  for (std::size_t l = 0; l < robot.links().size(); ++l) {
+    const Pose T = again.link_pose(q, again.link_index(robot.links()[l].name));
+    EXPECT_LT((T.matrix() - robot.link_pose(original, static_cast<int>(l)).matrix()).norm(), 1e-5) << robot.links()[l].name;
+  }
 }
 
 TEST_F(CatalogueTest, assets_are_of_robots_and_hands_only) {

@@ -5,3 +5,4 @@ handsel_test(grasp_choice SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasp_choice_test.cp
 handsel_test(grasp_stability SOURCES ${CMAKE_SOURCE_DIR}/tests/property/grasp_stability_test.cpp LINK handsel_grasp_planner_core Qhull::qhull_r LABEL unit)
 handsel_test(grip_force SOURCES ${CMAKE_SOURCE_DIR}/tests/property/grip_force_test.cpp LINK handsel_grasp LABEL unit)
 handsel_test(grasp_node SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasp_node_test.cpp LINK handsel_grasp_planner LABEL unit)
+handsel_test(pinch SOURCES ${CMAKE_CURRENT_LIST_DIR}/pinch_test.cpp LINK handsel_grasp_planner_core LABEL unit)

@@ -96,6 +96,41 @@ TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
   EXPECT_EQ(hand_.state(), HandState::grasped);
 }
 
+/// One axis that slides, as a parallel gripper has: the same settings, at the lever of a finger.
+TEST(SlidingHand, closes_until_it_presses_and_tells_metres) {
+  const HandSettings settings;
+  HandExecutor hand(settings, {0}, {0.0}, {0.04}, limits(1, 0.08, 0.5, 5), limits(1, 0.1, 0.8, 10), {1});
+  constexpr double kSpring = 1.4e4, kObject = 0.021;  // [N/m], [m]
+  MotionState3 out = rest_state(Vector::Constant(1, 0.04));
+  RobotState robot;
+  robot.position = Vector::Constant(1, 0.04);
+  robot.velocity = robot.effort = Vector::Zero(1);
+  hand.reset(robot.position);
+  HandCommand wide;
+  wide.position = Vector::Constant(1, 0.05);
+  EXPECT_NE(hand.accept(wide).find("] m"), std::string::npos);
+  HandCommand grasp;
+  grasp.action = HandAction::grasp;
+  grasp.position = Vector::Constant(1, 0.022);
+  grasp.effort = Vector::Constant(1, -50.0);
+  ASSERT_EQ(hand.accept(grasp), "");
+  TimePoint now{from_seconds(1)};
+  double least = 1;
+  for (int k = 0; k < 4000; ++k) {
+    robot.position[0] = std::max(out.position[0] + hand.effort(0) / kSpring, kObject);
+    robot.effort[0] = kSpring * (out.position[0] - robot.position[0]) + hand.effort(0);
+    HandInputs in;
+    in.robot = &robot;
+    in.new_state = in.may_move = true;
+    hand.step(in, kDt, now, out);
+    now += from_seconds(kDt);
+    least = std::min(least, out.position[0]);
+  }
+  EXPECT_EQ(hand.state(), HandState::grasped);
+  EXPECT_NEAR(robot.effort[0], -50.0, 15.0);
+  EXPECT_GT(least, kObject - 0.001) << "went on closing though it touched";
+}
+
 TEST_F(HandTest, fingers_arrive_together_and_squeeze_along_the_way_they_came) {
   HandCommand c;
   c.action = HandAction::grasp;

@@ -199,13 +199,81 @@ TEST(HandDescription, SaysWhatIsWrong) {
   };
   const auto hand = [](const std::string& tip, const std::string& more) {
     return "name: \"h\"\nurdf: \"r.urdf\"\nfingers { name: \"thumb\" joints: \"j\" tip_link: \"" + tip +
-           "\" tip_radius: 0.01 }\nfingers { name: \"fore\" joints: \"k\" tip_link: \"two\" tip_radius: 0.01 }\n" + more;
+           "\" pad { width: 0.02 height: 0.01 } }\nfingers { name: \"fore\" joints: \"k\" tip_link: \"two\" pad { width: 0.02 height: 0.01 "
+           "} }\n" +
+           more;
   };
   EXPECT_EQ(refusal(hand("one", "")), "no error");
   EXPECT_THAT(refusal(hand("three", "")), HasSubstr("tip_link"));
   EXPECT_THAT(refusal(hand("one", "pregrasp { key: \"x\" value: 0 }\n")), AllOf(HasSubstr("h.txtpb:5"), HasSubstr("pregrasp")));
   EXPECT_THAT(refusal(hand("one", "contact_margin: 2\n")), HasSubstr("h.txtpb:5"));
   EXPECT_THAT(refusal("name: \"h\"\nurdf: \"r.urdf\"\n"), HasSubstr("two fingers"));
+  const std::string tips =
+      "fingers { name: \"a\" joints: \"j\" tip_link: \"one\" tip_radius: 0.01 }\nfingers { name: \"b\" joints: \"k\" tip_link: \"two\" ";
+  EXPECT_THAT(refusal("name: \"h\"\nurdf: \"r.urdf\"\n" + tips + "tip_radius: 0.01 }\n"), HasSubstr("each needs a pad"));
+  EXPECT_THAT(refusal(hand("one", "fingers { name: \"c\" joints: \"k\" tip_link: \"two\" tip_radius: 0.01 }\n")),
+              HasSubstr("pads are for two"));
+  EXPECT_THAT(refusal("name: \"h\"\nurdf: \"r.urdf\"\n" + tips + "pad { width: 0.01 } }\n"), HasSubstr("width and height"));
+}
+
+/// A flange and, in another folder, a gripper whose mesh is in a package.
+class Mounted : public ::testing::Test {
+ protected:
+  Mounted() {
+    folder_.write("r.urdf", urdf("<link name=\"old\"/><link name=\"older\"/>\n" + joint("o", "one", "old") + joint("p", "old", "older")));
+    for (const char* sub : {"grip", "packages/far"}) std::filesystem::create_directories(folder_.path() / sub);
+    folder_.write("packages/far/tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder_.write("grip/g.urdf", urdf_named("palm", "nail"));
+    folder_.write("grip/g.txtpb",
+                  "name: \"g\"\nurdf: \"g.urdf\"\npackages: \"$HANDSEL_TEST_FOLDER/packages\"\n"
+                  "fingers { name: \"a\" joints: \"n\" tip_link: \"nail\" pad { width: 0.01 height: 0.01 } }\n"
+                  "fingers { name: \"b\" joints: \"n\" tip_link: \"nail\" pad { width: 0.01 height: 0.01 } }\n");
+    setenv("HANDSEL_TEST_FOLDER", folder_.path().c_str(), 1);
+  }
+  static std::string urdf_named(const std::string& palm, const std::string& nail) {
+    const std::string body =
+        "<inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/></inertial>";
+    return "<robot name=\"g\"><link name=\"" + palm + "\"/><link name=\"" + nail + "\">" + body +
+           "<collision><geometry><mesh filename=\"package://far/tri.obj\"/></geometry></collision></link><link name=\"twin\">" + body +
+           "</link>" + joint("n", palm, nail) + joint("t", palm, "twin", "<mimic joint=\"n\" multiplier=\"-2\"/>") + "</robot>";
+  }
+  RobotModel load(const std::string& without = "without: \"old\"\n",
+                  const std::string& mount = "mount { link: \"one\" pose { xyz { z: 0.5 } } }\n",
+                  const std::string& urdf = "$HANDSEL_TEST_FOLDER/r.urdf") {
+    std::string limits;
+    for (const char* kind : {"comfort", "guard", "stop"})
+      limits += std::string(kind) + " { joints: [\"j\", \"n\"] velocity: " +
+                (kind[0] == 'c' ? "1 acceleration: 2 jerk: 6 }\n" : "2 acceleration: 4 jerk: 12 }\n");
+    return RobotModel::load(
+        folder_.write("r.txtpb", "name: \"r\"\nurdf: \"" + urdf + "\"\ngroups { name: \"arm\" joints: \"j\" tip_link: \"palm\" }\n" +
+                                     "groups { name: \"hand\" joints: \"n\" }\ntool_link: \"palm\"\nhand: \"grip/g.txtpb\"\n" + limits +
+                                     without + mount));
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(Mounted, HandFollowsTheFlange) {
+  const RobotModel robot = load();
+  EXPECT_EQ(robot.dof(), 2);
+  EXPECT_EQ(robot.link_index("old"), -1);
+  EXPECT_EQ(robot.link_index("older"), -1);
+  EXPECT_EQ(robot.hand(), (folder_.path() / "grip/g.txtpb").string());
+  const Vector q = Eigen::Vector2d(0.3, 0.2);
+  const Pose T_palm = robot.link_pose(q, robot.tool_link()), T_twin = robot.link_pose(q, robot.link_index("twin"));
+  EXPECT_NEAR(T_palm.translation().z(), 0.5, 1e-12);
+  EXPECT_NEAR(std::atan2(T_palm(1, 0), T_palm(0, 0)), 0.3, 1e-12);
+  EXPECT_NEAR(std::atan2(T_twin(1, 0), T_twin(0, 0)), 0.3 - 0.4, 1e-12) << "a mimic joint follows its own hand's axis";
+  EXPECT_EQ(robot.links()[static_cast<std::size_t>(robot.link_index("nail"))].collision.size(), 1U);
+}
+
+TEST_F(Mounted, SaysWhatIsWrong) {
+  EXPECT_THAT(message_of<ConfigError>([&] { load("without: \"ghost\"\n"); }), HasSubstr("no link \"ghost\""));
+  EXPECT_THAT(message_of<ConfigError>([&] { load("without: \"base\"\n"); }), HasSubstr("root"));
+  EXPECT_THAT(message_of<ConfigError>([&] { load("", "mount { link: \"flange\" }\n"); }), HasSubstr("mount.link is \"flange\""));
+  EXPECT_THAT(message_of<MissingError>([&] { load("", "", "$HANDSEL_NO_SUCH_FOLDER/r.urdf"); }),
+              AllOf(HasSubstr("r.txtpb:2"), HasSubstr("HANDSEL_NO_SUCH_FOLDER"), HasSubstr("not set")));
+  folder_.write("grip/g.urdf", urdf_named("palm", "one"));
+  EXPECT_THAT(message_of<ConfigError>([&] { load(); }), AllOf(HasSubstr("link \"one\""), HasSubstr("g.urdf")));
 }
 
 TEST(ObjectDescription, SaysWhatIsWrong) {

@@ -2,7 +2,8 @@
 export interface Config {
   robot: string;
   scenario: string;
-  urdf: string;
+  urdf: string;        // where it is, or empty: then it is in urdf_text
+  urdf_text?: string;
   axes: string[];
   tool_link: string;
   groups: Record<string, string[]>;

@@ -27,7 +27,9 @@ declare global {
 async function configured(): Promise<[Config, string]> {
   for (;;) {
     try {
-      const config = await loadConfig(), urdf = await fetch(config.urdf);
+      const config = await loadConfig();
+      if (config.urdf_text) return [config, config.urdf_text];
+      const urdf = await fetch(config.urdf);
       if (!urdf.ok) throw new Error(`${config.urdf}: HTTP ${urdf.status}`);
       return [config, await urdf.text()];
     } catch (error) {

@@ -1,0 +1,15 @@
+// Paths and names as descriptions and scenarios write them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace handsel {
+
+/// A path as a description writes it: "$NAME/rest" and "${NAME}/rest" begin with an environment variable's value, the others are relative
+/// to the description's folder. Throws MissingError when the variable is not set.
+std::filesystem::path described_path(const std::filesystem::path& description, const std::string& path);
+/// Likewise where a name may stand instead of a path; names stay as they are.
+std::string described_name(const std::filesystem::path& description, const std::string& name_or_path);
+
+}  // namespace handsel

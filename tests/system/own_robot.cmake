@@ -1,0 +1,6 @@
+handsel_test(own_robot SOURCES ${CMAKE_CURRENT_LIST_DIR}/own_robot_test.cpp LINK handsel_lockstep LABEL system)
+target_compile_definitions(test_own_robot PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_own_robot handsel)
+set_tests_properties(own_robot PROPERTIES TIMEOUT 300 ENVIRONMENT "GTEST_FILTER=*OwnRobot.lacks*:OwnRobotFolder.*")
+add_test(NAME own_robot_ten COMMAND test_own_robot)
+set_tests_properties(own_robot_ten PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT "GTEST_FILTER=*OwnRobotTen.*")
