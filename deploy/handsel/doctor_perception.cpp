@@ -8,6 +8,7 @@
 #include "common/bus/executor.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
+#include "common/config/scenario_robot.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/world.hpp"
 #include "components/spark/scene_model.hpp"
@@ -144,8 +145,7 @@ PerceptionGround ground_of(const DoctorOptions& options) {
   PerceptionGround ground;
   config::Scenario scenario;
   load_text_proto(scenario_file(options.scenario), scenario);
-  const RobotModel robot =
-      RobotModel::load(robot_description(options.robot.empty() ? scenario.robot().empty() ? "jido" : scenario.robot() : options.robot));
+  const RobotModel robot = RobotModel::load(robot_description(options.robot.empty() ? scenario_robot(options.scenario) : options.robot));
   ground.base = sim::pose_of(scenario.base()).translation();
   ground.reach = spark::reach_of(robot, ground.base);
   std::error_code ignored;
