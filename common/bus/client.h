@@ -31,31 +31,31 @@ extern "C" {
 
 /* One topic of the system. */
 typedef struct handsel_topic {
-  const char *type;    /* struct of module handsel, without the prefix handsel_ */
-  const char *name;    /* on the wire */
+  const char* type;    /* struct of module handsel, without the prefix handsel_ */
+  const char* name;    /* on the wire */
   double rate;         /* nominal [Hz]; 0: on change or on demand */
   double deadline;     /* longest time between samples [s]; 0: none */
   size_t largest;      /* bound of the serialised sample [bytes] */
-  const char *writers; /* components, separated by spaces */
-  const char *readers; /* components, separated by spaces */
-  const dds_topic_descriptor_t *descriptor;
+  const char* writers; /* components, separated by spaces */
+  const char* readers; /* components, separated by spaces */
+  const dds_topic_descriptor_t* descriptor;
 } handsel_topic;
 
 /* All topics; `count` gets their number. */
-HANDSEL_EXPORT const handsel_topic *handsel_topics(size_t *count);
+HANDSEL_EXPORT const handsel_topic* handsel_topics(size_t* count);
 /* NULL when there is no such topic. */
-HANDSEL_EXPORT const handsel_topic *handsel_find_topic(const char *topic);
+HANDSEL_EXPORT const handsel_topic* handsel_find_topic(const char* topic);
 /* The QoS that Handsel's own writers and readers of the topic have; whoever differs may not be matched. To be freed with
  * dds_delete_qos(); NULL when there is no such topic. */
-HANDSEL_EXPORT dds_qos_t *handsel_topic_qos(const char *topic);
+HANDSEL_EXPORT dds_qos_t* handsel_topic_qos(const char* topic);
 
 /* Enters the domain HANDSEL_DOMAIN (else 0) the way Handsel's processes do: CYCLONEDDS_URI when it is set, else the hosts of
  * HANDSEL_PEERS, else this machine only. `component`: what tools call this program. */
-HANDSEL_EXPORT dds_entity_t handsel_participant(const char *component);
+HANDSEL_EXPORT dds_entity_t handsel_participant(const char* component);
 /* A writer with handsel_topic_qos(). */
-HANDSEL_EXPORT dds_entity_t handsel_writer(dds_entity_t participant, const char *topic);
+HANDSEL_EXPORT dds_entity_t handsel_writer(dds_entity_t participant, const char* topic);
 /* A reader that never holds up the system: it keeps the newest samples only. */
-HANDSEL_EXPORT dds_entity_t handsel_reader(dds_entity_t participant, const char *topic);
+HANDSEL_EXPORT dds_entity_t handsel_reader(dds_entity_t participant, const char* topic);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* Publishes a recorded person, and objects, as a perception process of your own would: HumanObservation and ObjectObservation at the rate of
- * a sensor, with the time of each measurement. Replace body_at() and read_objects() with your tracker. See README.md. */
+/* Publishes a recorded person, and objects, as a perception process of your own would: HumanObservation and ObjectObservation at the rate
+ * of a sensor, with the time of each measurement. Replace body_at() and read_objects() with your tracker. See README.md. */
 #include <math.h>
 #include <signal.h>
 #include <stdio.h>
@@ -15,7 +15,7 @@ enum { MAX_JOINTS = 64, MAX_OBJECTS = 16, MAX_LINE = 8192 };
 struct recording {
   size_t joints, rows;
   char names[MAX_JOINTS][33];
-  double *values; /* rows of 1 + 3 x joints: time [s], then x y z [m] of each joint, frame "world" */
+  double* values; /* rows of 1 + 3 x joints: time [s], then x y z [m] of each joint, frame "world" */
 };
 
 struct options {
@@ -33,21 +33,21 @@ static void on_signal(int number) {
   stopped = 1;
 }
 
-static void give_up(const char *what, const char *detail) {
+static void give_up(const char* what, const char* detail) {
   fprintf(stderr, "perception: %s: %s\n", what, detail);
   exit(2);
 }
 
 /* A CSV: `time,<joint>.x,<joint>.y,<joint>.z,...`, then numbers; the joints have their names of REP-155. */
-static struct recording read_person(const char *file) {
+static struct recording read_person(const char* file) {
   static char line[MAX_LINE];
   struct recording r = {0};
   size_t room = 0;
-  FILE *in = fopen(file, "r");
+  FILE* in = fopen(file, "r");
   if (!in || !fgets(line, sizeof line, in)) give_up(file, "cannot be read");
   strtok(line, ",\r\n");
-  for (char *name = strtok(NULL, ",\r\n"); name; name = strtok(NULL, ",\r\n")) {
-    char *dot = strrchr(name, '.');
+  for (char* name = strtok(NULL, ",\r\n"); name; name = strtok(NULL, ",\r\n")) {
+    char* dot = strrchr(name, '.');
     if (!dot || r.joints == MAX_JOINTS || dot - name > 32) give_up(file, "the columns must be time, <joint>.x, <joint>.y, <joint>.z, ...");
     if (strcmp(dot, ".z") != 0) continue;
     *dot = '\0';
@@ -60,9 +60,9 @@ static struct recording read_person(const char *file) {
       r.values = realloc(r.values, room * width * sizeof *r.values);
       if (!r.values) give_up(file, "is too large");
     }
-    char *at = line;
+    char* at = line;
     for (size_t i = 0; i < width; ++i) {
-      char *end;
+      char* end;
       r.values[r.rows * width + i] = strtod(at, &end);
       if (end == at) give_up(file, "a row has too few numbers");
       at = *end == ',' ? end + 1 : end;
@@ -75,16 +75,16 @@ static struct recording read_person(const char *file) {
 }
 
 /* A CSV: `id,model,x,y,z,qx,qy,qz,qw`, one resting object a line; `model` names a description the robot's side has. */
-static void read_objects(const char *file, handsel_ObjectObservation *out) {
+static void read_objects(const char* file, handsel_ObjectObservation* out) {
   char line[512];
-  FILE *in = fopen(file, "r");
+  FILE* in = fopen(file, "r");
   if (!in || !fgets(line, sizeof line, in)) give_up(file, "cannot be read");
   while (fgets(line, sizeof line, in) && out->objects._length < MAX_OBJECTS) {
-    handsel_ObservedObject *o = &out->objects._buffer[out->objects._length++];
-    handsel_Vector3 *p = &o->T_world_object.position;
-    handsel_Quaternion *q = &o->T_world_object.orientation;
-    const int found = sscanf(line, "%64[^,],%64[^,],%lf,%lf,%lf,%lf,%lf,%lf,%lf", o->id, o->model, &p->x, &p->y, &p->z, &q->x, &q->y,
-                             &q->z, &q->w);
+    handsel_ObservedObject* o = &out->objects._buffer[out->objects._length++];
+    handsel_Vector3* p = &o->T_world_object.position;
+    handsel_Quaternion* q = &o->T_world_object.orientation;
+    const int found =
+        sscanf(line, "%64[^,],%64[^,],%lf,%lf,%lf,%lf,%lf,%lf,%lf", o->id, o->model, &p->x, &p->y, &p->z, &q->x, &q->y, &q->z, &q->w);
     if (found != 9) give_up(file, "a line must be id,model,x,y,z,qx,qy,qz,qw");
     o->confidence = 1;
   }
@@ -92,7 +92,7 @@ static void read_objects(const char *file, handsel_ObjectObservation *out) {
 }
 
 /* The body at time t of the recording, linear between rows. */
-static void body_at(const struct recording *r, double t, handsel_ObservedPerson *out) {
+static void body_at(const struct recording* r, double t, handsel_ObservedPerson* out) {
   const size_t width = 1 + 3 * r->joints;
   size_t row = 0;
   while (row + 2 < r->rows && r->values[(row + 1) * width] <= t) ++row;
@@ -100,7 +100,7 @@ static void body_at(const struct recording *r, double t, handsel_ObservedPerson 
   const double part = fmin(1, fmax(0, (t - a[0]) / (b[0] - a[0])));
   out->joints._length = (uint32_t)r->joints;
   for (size_t i = 0; i < r->joints; ++i) {
-    handsel_ObservedJoint *joint = &out->joints._buffer[i];
+    handsel_ObservedJoint* joint = &out->joints._buffer[i];
     const double *from = &a[1 + 3 * i], *to = &b[1 + 3 * i];
     strcpy(joint->name, r->names[i]);
     joint->position.x = from[0] + part * (to[0] - from[0]);
@@ -110,14 +110,14 @@ static void body_at(const struct recording *r, double t, handsel_ObservedPerson 
   }
 }
 
-static const handsel_Vector3 *joint_of(const handsel_ObservedPerson *person, const char *name) {
+static const handsel_Vector3* joint_of(const handsel_ObservedPerson* person, const char* name) {
   for (uint32_t i = 0; i < person->joints._length; ++i)
     if (strcmp(person->joints._buffer[i].name, name) == 0) return &person->joints._buffer[i].position;
   return NULL;
 }
 
 /* No eye tracker here: who faces somewhere is taken to look there, a little down. A tracker without gaze leaves has_gaze false. */
-static void guess_gaze(handsel_ObservedPerson *person) {
+static void guess_gaze(handsel_ObservedPerson* person) {
   const handsel_Vector3 *left = joint_of(person, "l_shoulder"), *right = joint_of(person, "r_shoulder"), *head = joint_of(person, "head");
   person->has_gaze = left && right && head;
   if (!person->has_gaze) return;
@@ -129,27 +129,31 @@ static void guess_gaze(handsel_ObservedPerson *person) {
   person->gaze_direction = (handsel_Vector3){ahead.x / norm, ahead.y / norm, ahead.z / norm};
 }
 
-static struct options parse(int argc, char **argv) {
+static struct options parse(int argc, char** argv) {
   struct options o = {30, -1, "body_tracker", "visitor", NULL, NULL};
   for (int i = 1; i < argc; ++i) {
-    const char *value = i + 1 < argc ? argv[i + 1] : "";
+    const char* value = i + 1 < argc ? argv[i + 1] : "";
     if (argv[i][0] != '-') {
       *(o.person_file ? &o.object_file : &o.person_file) = argv[i];
       continue;
     }
-    if (strcmp(argv[i], "--rate") == 0) o.rate = strtod(value, NULL);
-    else if (strcmp(argv[i], "--repeat") == 0) o.repeat = strtod(value, NULL);
-    else if (strcmp(argv[i], "--source") == 0) o.source = value;
-    else if (strcmp(argv[i], "--body") == 0) o.body = value;
-    else give_up(argv[i], usage);
+    if (strcmp(argv[i], "--rate") == 0)
+      o.rate = strtod(value, NULL);
+    else if (strcmp(argv[i], "--repeat") == 0)
+      o.repeat = strtod(value, NULL);
+    else if (strcmp(argv[i], "--source") == 0)
+      o.source = value;
+    else if (strcmp(argv[i], "--body") == 0)
+      o.body = value;
+    else
+      give_up(argv[i], usage);
     ++i;
   }
-  if (!o.person_file || !(o.rate > 0 && o.rate <= 1000) || strlen(o.source) > 64 || strlen(o.body) > 64)
-    give_up("usage", usage);
+  if (!o.person_file || !(o.rate > 0 && o.rate <= 1000) || strlen(o.source) > 64 || strlen(o.body) > 64) give_up("usage", usage);
   return o;
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   const struct options o = parse(argc, argv);
   const struct recording person = read_person(o.person_file);
   signal(SIGINT, on_signal);

@@ -9,13 +9,13 @@
 
 int main(void) {
   size_t count = 0;
-  const handsel_topic *topics = handsel_topics(&count);
+  const handsel_topic* topics = handsel_topics(&count);
   const dds_entity_t participant = handsel_participant("client");
   if (participant < 0) return 3;
   dds_entity_t writer = 0;
   for (size_t i = 0; i < count; ++i) {
     const dds_entity_t ours = handsel_writer(participant, topics[i].name);
-    dds_qos_t *qos = handsel_topic_qos(topics[i].type);
+    dds_qos_t* qos = handsel_topic_qos(topics[i].type);
     const dds_entity_t reader = handsel_reader(participant, topics[i].name);
     if (ours < 0 || reader < 0 || qos == NULL) return 1;
     dds_delete_qos(qos);
