@@ -99,16 +99,21 @@ std::string joint_meant(const std::string& name) {
   return {};
 }
 
-void SampleTimes::add(Stamp stamp, TimePoint arrival, Stamp system_arrival) {
+bool SampleTimes::add(Stamp stamp, TimePoint arrival, Stamp system_arrival) {
   arrivals_.push_back(to_seconds(arrival.time_since_epoch()));
+  system_arrival_ = system_arrival;
   if (stamp == 0) {
     ++unstamped_;
-  } else {
-    ages_.push_back(static_cast<double>(system_arrival - stamp) * 1e-9);
-    if (last_ != 0) repeated_ += stamp == last_, backwards_ += stamp < last_;
-    last_ = stamp;
+    return true;
   }
-  system_arrival_ = system_arrival;
+  if (stamp == last_) {
+    ++repeated_;
+    return false;
+  }
+  ages_.push_back(static_cast<double>(system_arrival - stamp) * 1e-9);
+  backwards_ += stamp < last_;
+  last_ = stamp;
+  return true;
 }
 
 double SampleTimes::rate() const {
@@ -170,11 +175,11 @@ std::vector<Finding> SampleTimes::findings(const std::string& who, const std::st
 void PerceptionReview::on(const HumanObservation& seen, TimePoint arrival, Stamp system_arrival) {
   ++received_[TopicOf<HumanObservation>::row.topic];
   Bodies& bodies = people_[seen.source];
-  bodies.times.add(seen.stamp, arrival, system_arrival);
+  const bool fresh = bodies.times.add(seen.stamp, arrival, system_arrival);
   bodies.coverage = seen.coverage;
   bodies.most = std::max(bodies.most, seen.people.size());
   const bool tells = std::any_of(seen.people.begin(), seen.people.end(), [](const ObservedPerson& p) { return !p.joints.empty(); });
-  bodies.frozen += tells && same(seen.people, bodies.last);
+  bodies.frozen += tells && fresh && same(seen.people, bodies.last);
   for (const ObservedPerson& person : seen.people) look(bodies, person);
   bodies.last = seen.people;
 }

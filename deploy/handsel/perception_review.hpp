@@ -22,7 +22,8 @@ struct PerceptionGround {
 class SampleTimes {
  public:
   /// Arrival by the receiver's monotonic and system clocks.
-  void add(Stamp stamp, TimePoint arrival, Stamp system_arrival);
+  /// False: the sample before once more.
+  bool add(Stamp stamp, TimePoint arrival, Stamp system_arrival);
   std::size_t count() const { return arrivals_.size(); }
   double rate() const;        ///< [Hz]; 0 with less than two
   double median_age() const;  ///< [s] between stamp and arrival
