@@ -15,6 +15,7 @@ enum Layer { kSafety, kVisibility, kComfort, kTotal };
 constexpr std::uint8_t kNever = 255;
 constexpr std::array kWatched = {"l_shoulder", "r_shoulder", "waist", "head"};
 constexpr double kArmTolerance = 0.01;  // [m] an arm that seems longer or shorter by less is the same arm
+constexpr std::size_t kVolumes = 24;    // that are kept: measured lengths go up and down
 
 Vector3 shoulder_middle(const Person& person) {
   const BodyJoint *left = find_joint(person, "l_shoulder"), *right = find_joint(person, "r_shoulder");
@@ -57,14 +58,24 @@ const Layers& MapMaker::make(const Person& person, const std::vector<SceneBox>& 
   return layers_;
 }
 
+/// References stay valid while fewer than kVolumes others are asked for.
+const ComfortVolume& MapMaker::volume_of(const ArmSize& arm) {
+  const auto known = std::find_if(volumes_.begin(), volumes_.end(), [&](const ComfortVolume& v) { return v.suits(arm, kArmTolerance); });
+  if (known != volumes_.end()) {
+    volumes_.splice(volumes_.begin(), volumes_, known);
+  } else {
+    volumes_.emplace_front(arm, settings_.resolution);
+    if (volumes_.size() > kVolumes) volumes_.pop_back();
+  }
+  return volumes_.front();
+}
+
 void MapMaker::fill_comfort(const Person& person, const std::vector<SceneBox>& boxes, Costmap& map) {
   const std::optional<PlacedArm> left = placed_arm(person, Side::left), right = placed_arm(person, Side::right);
   if (!left || !right) return;
-  if (!left_.suits(left->size, kArmTolerance)) left_ = ComfortVolume(left->size, settings_.resolution);
-  if (!right_.suits(right->size, kArmTolerance))
-    right_ = left_.suits(right->size, kArmTolerance) ? left_ : ComfortVolume(right->size, settings_.resolution);
   const ReachCheck furniture(person, boxes, settings_.clearance);
-  const std::array<std::pair<const PlacedArm&, const ComfortVolume&>, 2> arms = {{{*left, left_}, {*right, right_}}};
+  const std::array<std::pair<const PlacedArm&, const ComfortVolume&>, 2> arms = {
+      {{*left, volume_of(left->size)}, {*right, volume_of(right->size)}}};
   const int n = static_cast<int>(map.nx);
   std::uint8_t* row = map.values.data();
   for (std::uint32_t k = 0; k < map.nz; ++k)

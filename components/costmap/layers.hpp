@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <list>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct MapSettings {
 
 using Layers = std::array<Costmap, std::size(kOwnLayers)>;  ///< in the order of kOwnLayers
 
-/// Makes the layers of one person after another; keeps the volume of the arm's comfort while the arm stays as long as it is.
+/// Makes the layers of one person after another; keeps the volumes of arms by their lengths.
 class MapMaker {
  public:
   explicit MapMaker(const MapSettings& settings) : settings_(settings) {}
@@ -31,11 +32,12 @@ class MapMaker {
   const Layers& make(const Person& person, const std::vector<SceneBox>& boxes);
 
  private:
+  const ComfortVolume& volume_of(const ArmSize& arm);
   void fill_comfort(const Person& person, const std::vector<SceneBox>& boxes, Costmap& map);
   void fill_others(const Person& person);
 
   MapSettings settings_;
-  ComfortVolume left_, right_;
+  std::list<ComfortVolume> volumes_;  // the last asked for first
   Layers layers_;
 };
 

@@ -56,6 +56,7 @@ Observer::Observer(Bus& bus) {
       const std::string phase = action.phase.empty() ? "" : " " + action.phase;
       if (action.state != ActionState::idle) note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
     }
+    if (!action.human.empty()) snapshot_.partner = action.human;
     keep(snapshot_.action, action, at);
   });
   watch<ExecutionStatus>(bus, [this, keep](const ExecutionStatus& execution, TimePoint at) {

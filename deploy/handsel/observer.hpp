@@ -27,6 +27,7 @@ struct Snapshot {
   std::map<std::uint64_t, TaskStatus> tasks;            ///< by task id
   Seen<TaskStatus> task;                                ///< newest of any id
   Seen<ActionStatus> action;
+  std::string partner;  ///< the person the newest action that concerned one was about
   Seen<ExecutionStatus> execution;
   Seen<AttentionAdvice> advice;
   Seen<AttentionState> attention;

@@ -76,7 +76,7 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"scenario", inputs.scenario},
           {"robot", inputs.robot},
           {"seed", inputs.seed},
-          {"human", seen.action.sample.human},
+          {"human", seen.partner},
           {"ready_s", inputs.ready},
           {"duration_s", performer.duration()},
           {"tasks", std::move(tasks)},

@@ -134,8 +134,8 @@ TEST(Ros2, APublisherWithRosNamesMovesOurPersonAndReadsOurRobot) {
   bus.subscribe<HumanState>([&](const HumanState& m, const Receipt&) { people = m; });
   bus.subscribe<GroundTruth>([&](const GroundTruth& m, const Receipt&) { truth = m; });
   bus.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { robot = m; });
-  const Vector3 feet(1.6, 0.3, 0);
-  Vector3 hand(1.1, 0.45, 1.0), goal = hand;
+  const Vector3 feet(2.2, 0.3, 0);
+  Vector3 hand(1.7, 0.45, 1.0), goal = hand;
   bus.every(std::chrono::milliseconds(33), [&](TimePoint) {
     const Vector3 way = goal - hand;
     hand += way * std::min(1.0, 0.015 / std::max(1e-9, way.norm()));  // at half a metre a second
@@ -147,7 +147,11 @@ TEST(Ros2, APublisherWithRosNamesMovesOurPersonAndReadsOurRobot) {
            (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm() < 0.05 &&
            (joint_of(truth.person, "r_hand") - hand).norm() < 0.05;
   };
-  EXPECT_TRUE(bus.run_until(follows, from_seconds(5))) << people.people.size() << " people, covered " << people.covered;
+  EXPECT_TRUE(bus.run_until(follows, from_seconds(5)))
+      << people.people.size() << " people, covered " << people.covered << ", SPARK's hand "
+      << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "r_hand") - hand).norm()) << " m off, its waist "
+      << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm()) << ", the simulated hand "
+      << (joint_of(truth.person, "r_hand") - hand).norm();
   goal += Vector3(0, -0.3, 0.2);
   EXPECT_TRUE(bus.run_until([&] { return (goal - hand).norm() < 1e-3 && follows(); }, from_seconds(8)))
       << "SPARK's person and the simulated one go where ROS says";
