@@ -139,33 +139,38 @@ double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bo
   return std::sqrt(best);
 }
 
-void TriangleTree::hits(const Vector3& p, const Vector3& d, double length, std::vector<SurfaceHit>& out) const {
-  out.clear();
-  if (nodes_.empty()) return;
-  Eigen::AlignedBox3d ray(p);
-  ray.extend(Vector3(p + length * d));
+/// Visits the triangles whose boxes' leaves meet the box of the segment.
+template <class Visit>
+void TriangleTree::near_segment(const Vector3& from, const Vector3& to, Visit&& visit) const {
+  Eigen::AlignedBox3d box(from);
+  box.extend(to);
   std::array<std::uint32_t, 64> stack{};
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {
     const Node& node = nodes_[stack[--depth]];
-    if (!node.box.intersects(ray)) continue;
+    if (!node.box.intersects(box)) continue;
     if (node.count == 0) {
       stack[depth++] = node.left;
       stack[depth++] = node.right;
       continue;
     }
-    for (std::uint32_t i = node.left; i < node.left + node.count; ++i) {
-      const Triangle& t = triangles_[i];
-      const Vector3 e1 = t.b - t.a, e2 = t.c - t.a, h = d.cross(e2);
-      const double det = e1.dot(h);
-      if (std::abs(det) < 1e-18) continue;
-      const Vector3 s = p - t.a, k = s.cross(e1);
-      const double u = s.dot(h) / det, v = d.dot(k) / det, along = e2.dot(k) / det;
-      if (u < 0 || v < 0 || u + v > 1 || along < 0 || along > length) continue;
-      out.push_back({along, p + along * d, e1.cross(e2).normalized(), t.index, {1 - u - v, u, v}});
-    }
+    for (std::uint32_t i = node.left; i < node.left + node.count; ++i) visit(triangles_[i]);
   }
+}
+
+void TriangleTree::hits(const Vector3& p, const Vector3& d, double length, std::vector<SurfaceHit>& out) const {
+  out.clear();
+  if (nodes_.empty()) return;
+  near_segment(p, p + length * d, [&](const Triangle& t) {
+    const Vector3 e1 = t.b - t.a, e2 = t.c - t.a, h = d.cross(e2);
+    const double det = e1.dot(h);
+    if (std::abs(det) < 1e-18) return;
+    const Vector3 s = p - t.a, k = s.cross(e1);
+    const double u = s.dot(h) / det, v = d.dot(k) / det, along = e2.dot(k) / det;
+    if (u < 0 || v < 0 || u + v > 1 || along < 0 || along > length) return;
+    out.push_back({along, p + along * d, e1.cross(e2).normalized(), t.index, {1 - u - v, u, v}});
+  });
   std::sort(out.begin(), out.end(), [](const SurfaceHit& a, const SurfaceHit& b) { return a.along < b.along; });
 }
 
@@ -177,25 +182,8 @@ bool TriangleTree::contains(const Vector3& p) const {
   int votes = 0;
   for (const Vector3& d : directions) {
     const Vector3 q = p + d * (2 * box_.diagonal().norm());
-    Eigen::AlignedBox3d ray;
-    ray.extend(p);
-    ray.extend(q);
     int crossings = 0;
-    std::array<std::uint32_t, 64> stack{};
-    std::size_t depth = 0;
-    stack[depth++] = 0;
-    while (depth > 0) {
-      const Node& node = nodes_[stack[--depth]];
-      if (!node.box.intersects(ray)) continue;
-      if (node.count == 0) {
-        stack[depth++] = node.left;
-        stack[depth++] = node.right;
-        continue;
-      }
-      for (std::uint32_t i = node.left; i < node.left + node.count; ++i) {
-        crossings += crosses(p, q, triangles_[i].a, triangles_[i].b, triangles_[i].c);
-      }
-    }
+    near_segment(p, q, [&](const Triangle& t) { crossings += crosses(p, q, t.a, t.b, t.c); });
     votes += crossings & 1;
   }
   return votes >= 2;

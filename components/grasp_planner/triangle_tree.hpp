@@ -32,6 +32,9 @@ class TriangleTree {
   const Eigen::AlignedBox3d& box() const { return box_; }
 
  private:
+  template <class Visit>
+  void near_segment(const Vector3& from, const Vector3& to, Visit&& visit) const;
+
   struct Node {
     Eigen::AlignedBox3d box;
     std::uint32_t left{}, right{};  // count > 0: leaf with triangles [left, left + count)

@@ -1,8 +1,10 @@
 // A command that runs while a test does something else; ended with SIGINT, as Ctrl-C would.
 #pragma once
 
+#include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -50,15 +52,13 @@ class Background {
   }
   /// Waits for its end and returns its exit code; -1 when it has not ended within `seconds`.
   int wait(int seconds) {
+    pollfd ended{static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0};
+    const int ready = poll(&ended, 1, 1000 * seconds);
+    close(ended.fd);
     int status = 0;
-    for (int i = 0; i < 100 * seconds; ++i) {
-      if (waitpid(pid_, &status, WNOHANG) == pid_) {
-        pid_ = -1;
-        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-      }
-      usleep(10000);
-    }
-    return -1;
+    if (ready <= 0 || waitpid(pid_, &status, WNOHANG) != pid_) return -1;
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
   /// What it has said on stderr so far.
   std::string said() const { return text_of(log_); }
