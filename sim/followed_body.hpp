@@ -8,12 +8,14 @@
 namespace handsel::sim {
 
 /// Between samples it moves evenly from where it is to the newest one, within the time the last two were apart: one period late, as any
-/// tracker's picture of a person is. The first sample places it. What was not seen is fitted to what was (`fit_body`). Ours.
+/// tracker's picture of a person is. The first sample places it, and so does one that nobody could have moved to since the last: a tracker
+/// started anew. What was not seen is fitted to what was (`fit_body`). Ours.
 class FollowedBody {
  public:
   FollowedBody(const BodyPoints& start, double stature);
 
-  void observe(const ObservedPerson& seen, double now);
+  /// True when it was placed.
+  bool observe(const ObservedPerson& seen, double now);
   void sample(double now, BodyPoints& out) const;
 
  private:

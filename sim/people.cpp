@@ -119,7 +119,10 @@ void People::look(Body& person, double dt, const BodyState& robot_hand, int grip
   }
   view.grip_broke = person.broke;
   person.broke = false;
+  const bool placed = person.model.placed();
   person.model.step(dt, view);
+  if (!placed) return;
+  for (int s = 0; s < 2; ++s) person.hands[s]->place(person.model.hand(s));
 }
 
 void People::hold_or_let_go(Body& person) {

@@ -104,6 +104,7 @@ void PersonModel::step(double dt, const PersonView& view) {
     const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_);
     if (!followed_) look_at(away ? Vector3(points_[kHead] + forward()) : interesting ? object_centre(view) : view.robot_hand, dt);
   }
+  placed_ = false;
   place_base();
   if (hand_active_) {
     bend_arm(index(), hand_target_);

@@ -73,6 +73,7 @@ class PersonModel {
   bool exchanging() const;                                        ///< from the reach until the object is withdrawn
   const BodyState& hand() const { return hands_[index()]; }       ///< where the exchanging hand is wanted; axes turn with the body
   const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
+  bool placed() const { return placed_; }                         ///< the next step takes it elsewhere without a motion
   double reach() const { return reach_; }                         ///< shoulder to middle of the hand [m]
   static constexpr double kPalm = 0.03;                           ///< middle of the hand to what it holds [m]
 
@@ -114,7 +115,7 @@ class PersonModel {
   double reach_{}, clock_{0}, phase_since_{0}, offer_time_{0}, lost_time_{0}, sore_time_{0}, cooldown_{0}, playback_{0}, progress_{0};
   PersonPhase phase_{PersonPhase::watching};
   Side side_{Side::right};
-  bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true};
+  bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true}, placed_{false};
   Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()};
   double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, walk_direction_{1};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},

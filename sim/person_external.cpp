@@ -25,7 +25,12 @@ Vector3 limited(const Vector3& v, double longest) { return v.norm() > longest ? 
 
 void PersonModel::follow(const ObservedPerson& seen) {
   if (!followed_ || frozen_) return;
-  followed_->observe(seen, clock_);
+  if (followed_->observe(seen, clock_)) {  // it is there from one moment to the next: nothing is moved, pushed or taken along
+    first_ = placed_ = true;
+    wants_grip_ = hand_active_ = false;
+    led_.setZero();
+    enter(PersonPhase::watching);
+  }
   if (seen.has_gaze) gaze_ = seen.gaze_direction;
 }
 

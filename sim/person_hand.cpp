@@ -37,6 +37,13 @@ BodyState PersonHand::state() const {
   return {from_bt(body_->getWorldTransform()), from_bt(body_->getLinearVelocity()), from_bt(body_->getAngularVelocity())};
 }
 
+void PersonHand::place(const BodyState& at) {
+  body_->setCenterOfMassTransform(to_bt(at.T_world_body));
+  body_->setLinearVelocity(to_bt(at.velocity));
+  body_->setAngularVelocity(to_bt(at.angular_velocity));
+  spring_.hold(Pose::Identity());
+}
+
 void PersonHand::pull_to(const BodyState& wanted, double dt) {
   const Wrench& w = spring_.update(wanted, state(), settings_.mass, settings_.inertia, dt);
   body_->applyCentralForce(to_bt(w.force));

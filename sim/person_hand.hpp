@@ -27,6 +27,7 @@ class PersonHand {
 
   btRigidBody& body() { return *body_; }
   BodyState state() const;
+  void place(const BodyState&);
   /// Force and torque of the coming step toward `wanted`.
   void pull_to(const BodyState& wanted, double dt);
   /// Wrench at a world point, for the coming step.

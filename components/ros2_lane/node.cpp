@@ -95,6 +95,12 @@ void Node::open_people_and_objects() {
 
 void Node::on(const ros2::Transforms& message, TimePoint arrival, bool is_static) {
   for (const ros2::Transform& transform : message.transforms) {
+    if (const auto own = own_parents_.find(transform.child); own != own_parents_.end() && own->second != transform.parent) {
+      clash_ = "TF tells frame " + transform.child + " below " + transform.parent + " from outside, and robot " + robot_->name() +
+               " has a link of that name below " + own->second + ": the one from outside is left out, call it otherwise";
+      clash_at_ = arrival;
+      continue;
+    }
     if (!tree_.set(transform, arrival, is_static)) bus_.set_degraded("TF has more than 4096 frames; others are left out");
     people_.on(transform);
   }
@@ -127,16 +133,21 @@ void Node::gather(TimePoint now) {
   robot_out_->publish(*state);
 }
 
+std::string Node::trouble() const {
+  const TimePoint now = bus_.now();
+  if (robot_out_ && robot_heard_)
+    if (const std::string missing = joints_.missing(now); !missing.empty()) return "JointState does not tell of " + missing;
+  if (!clash_.empty() && to_seconds(now - clash_at_) < kShown) return clash_;
+  if (!refused_.empty() && to_seconds(now - refused_at_) < kShown) return "JointTrajectory " + refused_;
+  return {};
+}
+
 void Node::open_trajectories() {
   bus_.every(kStep, [this](TimePoint now) {
     TrajectoryOutbox out;
     desk_.step(now, out);
     send(out);
-    std::string trouble;
-    if (robot_out_ && robot_heard_)
-      if (const std::string missing = joints_.missing(now); !missing.empty()) trouble = "JointState does not tell of " + missing;
-    if (trouble.empty() && !refused_.empty() && to_seconds(now - refused_at_) < kShown) trouble = "JointTrajectory " + refused_;
-    bus_.set_degraded(trouble);
+    bus_.set_degraded(trouble());
   });
   if (settings_.trajectory_in().empty()) return;
   query_out_ = bus_.advertise<StateQuery>();
@@ -185,6 +196,9 @@ void Node::open_outputs() {
   }
   if (settings_.tf_out()) {
     frames_out_ = write<ros2::Transforms>(settings_.tf(), Profile::goal);
+    const std::vector<Link>& links = robot_->links();
+    for (std::size_t i = 1; i < links.size(); ++i)
+      own_parents_[links[i].name] = links[static_cast<std::size_t>(robot_->joints()[static_cast<std::size_t>(links[i].parent_joint)].parent)].name;
     bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { scene_ = m; });
     bus_.every(from_seconds(1 / settings_.tf_rate()), [this](TimePoint) { tell_frames(); });
   }

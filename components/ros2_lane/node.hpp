@@ -1,6 +1,7 @@
 // The lane to ROS 2 on a Bus: its topics beside ours.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,9 @@ namespace handsel::ros2_lane {
 class Node {
  public:
   Node(Bus& bus, const NodeContext& context);
+
+  /// What is wrong with what comes from ROS, as the health shows it; empty: nothing.
+  std::string trouble() const;
 
  private:
   template <class M>
@@ -47,6 +51,9 @@ class Node {
   TrajectoryDesk desk_;
   Pose T_world_base_{Pose::Identity()};
   bool robot_heard_{false};
+  std::map<std::string, std::string> own_parents_;  ///< of the robot's links, when TF is told of them: nobody else may
+  std::string clash_;                               ///< of a frame from outside with one of them
+  TimePoint clash_at_{};
   std::string refused_;
   TimePoint refused_at_{};
   std::optional<RobotState> state_;

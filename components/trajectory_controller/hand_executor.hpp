@@ -25,7 +25,7 @@ struct HandSettings {
   int least_contacts{2};       ///< axes in contact that make a grasp; all of a hand that has fewer
   double lost_payload{0.02};   ///< payload once felt, now below this: lost [kg]
   double lost_time{0.3};       ///< for this long [s]
-  double person_range{0.45};   ///< a pull counts only with a person's hand this near [m]
+  double person_range{0.6};    ///< a pull counts only with a person's hand this near the tool frame: a mug between, 0.25 m of error [m]
   double loosen_share{0.8};    ///< of the squeeze's efforts that is left then: it must still bear the load
   double lever{0.05};          ///< [m]
   PullSettings pull;

@@ -90,10 +90,10 @@ void publish(dds_entity_t writer, std::vector<Frame> frames) {
 /// The body of somebody at `feet` whose right hand is at `hand`, below a camera's frame, as a tracker for ROS4HRI tells it.
 std::vector<Frame> body(const Vector3& feet, const Vector3& hand) {
   const Vector3 camera(0.5, -1.0, 1.5);
-  std::vector<Frame> out{{"world", "camera", camera}};
+  std::vector<Frame> out{{"world", "mast", camera}};
   for (const BodyJoint& joint : standing_body(feet, M_PI, 1.72)) {
     if (joint.name == "torso" || joint.name == "r_elbow" || joint.name == "r_wrist") continue;
-    out.push_back({"camera", joint.name + "_7f", (joint.name == "r_hand" ? hand : joint.position) - camera});
+    out.push_back({"mast", joint.name + "_7f", (joint.name == "r_hand" ? hand : joint.position) - camera});
   }
   return out;
 }

@@ -64,6 +64,27 @@ TEST(ExternalPerson, FollowsItsSourceAndNoOther) {
   EXPECT_EQ(world.control({0, SimAction::person_freeze, "anna", 0}), "");
 }
 
+TEST(ExternalPerson, ComesFromOneMomentToTheNextWithoutAPush) {
+  SimWorld world(jido(), library(), with_visitor(), SimSettings{}, 1);
+  Driver driver(world, start());
+  driver.hold(0.3);
+  HumanObservation far = seen(in_hand() + Vector3(0.45, 0, 0));
+  for (ObservedJoint& joint : far.people[0].joints) joint.position += Vector3(-3.0, 0.1, 0);  // beyond the robot
+  double fastest = 0;
+  RobotState state;
+  const auto watch = [&] {
+    if (world.robot_state(state)) fastest = std::max(fastest, state.velocity.cwiseAbs().maxCoeff());
+  };
+  for (int times = 0; times < 3; ++times) {  // behind it and back, through it
+    world.observe(far);
+    driver.move(driver.q(), 0.3, watch);
+    EXPECT_LT((hand_of(world) - far.people[0].joints.back().position).norm(), 0.05);
+    world.observe(seen(in_hand() + Vector3(0.45, 0, 0)));
+    driver.move(driver.q(), 0.3, watch);
+  }
+  EXPECT_LT(fastest, 0.05) << "nobody struck the arm";
+}
+
 TEST(ExternalPerson, TakesWhatIsOfferedAndPullsUntilTheRobotLetsGo) {
   SimWorld world(jido(), library(), with_visitor(), SimSettings{}, 1);
   Driver driver(world, start());

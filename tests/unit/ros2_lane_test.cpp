@@ -139,9 +139,9 @@ TEST_F(Lane, TurnsFramesOfABodyIntoAnObservation) {
   EXPECT_TRUE(seen.empty()) << "nothing is known: nothing is said";
   for (int i = 1; i <= 10; ++i) {
     const Stamp now = ros.stamp_now();
-    tf->publish({{frame("camera", "waist_7", Vector3(0, 0, 1), now), frame("waist_7", "torso_7", Vector3(0, 0, 0.45), now),
+    tf->publish({{frame("mast", "waist_7", Vector3(0, 0, 1), now), frame("waist_7", "torso_7", Vector3(0, 0, 0.45), now),
                   frame("torso_7", "head_7", Vector3(0, 0, 0.25 + 0.001 * i), now), frame("head_7", "l_eye_7", Vector3(0, 0, 0), now),
-                  frame("world", "camera", Vector3(2, 0.5, 0), now), frame("world", "head_tilt", Vector3(0, 0, 1.5), now)}});
+                  frame("world", "mast", Vector3(2, 0.5, 0), now), frame("world", "head_tilt", Vector3(0, 0, 1.5), now)}});
     run(0.034);
   }
   ASSERT_GE(seen.size(), 8u);
@@ -164,6 +164,30 @@ TEST_F(Lane, TurnsFramesOfABodyIntoAnObservation) {
   run(0.3);
   ASSERT_GE(seen.size(), 5u) << "an empty list says that nobody is there";
   EXPECT_TRUE(seen.back().people.empty());
+}
+
+TEST_F(Lane, LeavesOutAFrameFromOutsideThatIsCalledLikeALinkOfOurRobot) {
+  std::vector<HumanObservation> seen;
+  ours.subscribe<HumanObservation>([&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
+  const auto tf = write<ros2::Transforms>("tf");
+  const auto state_out = ours.advertise<RobotState>();
+  RobotState state;
+  state.robot = "jido";
+  state.position = context.robot->rest_posture();
+  state.velocity = Vector::Zero(context.robot->dof());
+  const std::string link = context.robot->links()[static_cast<std::size_t>(context.robot->tool_link())].name;
+  for (int i = 0; i < 20; ++i) {
+    state.stamp = ros.stamp_now();
+    state_out->publish(state);
+    tf->publish({{frame("world", link, Vector3(9, 9, 0), state.stamp), frame(link, "waist_7", Vector3(0, 0, 1), state.stamp),
+                  frame(link, "neck_7", Vector3(0, 0, 1.5), state.stamp), frame(link, "head_7", Vector3(0, 0, 1.7), state.stamp)}});
+    run(0.034);
+    EXPECT_THAT(lane->trouble(), HasSubstr("TF tells frame " + link + " below world from outside, and robot jido has a link of that name"));
+  }
+  ASSERT_FALSE(seen.empty());
+  for (const ObservedJoint& joint : seen.back().people.at(0).joints) EXPECT_LT(joint.position.x(), 5) << "our link is where our robot is";
+  run(10);
+  EXPECT_EQ(lane->trouble(), "");
 }
 
 TEST_F(Lane, TellsJointsAndFramesOfOurRobot) {
