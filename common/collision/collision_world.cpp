@@ -1,6 +1,7 @@
 #include "common/collision/collision_world.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -642,6 +643,21 @@ double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* o
     if (on_scene != nullptr) *on_scene = on_thing;
   }
   return least;
+}
+
+bool CollisionWorld::surely_free_at_steps(const Vector& from, const Vector& to, double step) {
+  Impl& w = *impl_;
+  if (!w.wide_ready(from) || !w.moves_only(from, to)) return false;
+  const int states = motion_states(from, to, step), last = std::max(1, states - 1);
+  const int blocks = (states + WideWorld::kStates - 1) / WideWorld::kStates;
+  std::array<double, WideWorld::kStates> at;
+  for (int block = 0; block < blocks; ++block) {
+    int count = 0;
+    for (int i = block; i < states; i += blocks) at[static_cast<std::size_t>(count++)] = static_cast<double>(i) / last;
+    w.checks += static_cast<std::uint64_t>(count);
+    if (w.wide->unclear_on_line(from, to, at.data(), count) != 0) return false;
+  }
+  return true;
 }
 
 bool CollisionWorld::surely_free(const Vector& from, const Vector& to) {

@@ -76,6 +76,9 @@ class CollisionWorld {
   double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity(), Vector3* on_robot = nullptr,
                            Vector3* on_scene = nullptr);
 
+  /// The wide check alone for the states check_motion would judge: true is sure of them, false is unknown; false without moving axes.
+  bool surely_free_at_steps(const Vector& from, const Vector& to, double step = 0.02);
+
   /// Whether the straight line is free of contact everywhere, not at steps only, as the wide check can show: true is sure, false is
   /// unknown.
   bool surely_free(const Vector& from, const Vector& to);

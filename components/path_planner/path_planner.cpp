@@ -11,7 +11,9 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr std::uint64_t kFirstShare = 40000;
-constexpr int kAttempts = 3;  // the fine check may refuse what the coarse one let pass; then everything is checked finely
+constexpr int kAttempts = 4;  // the first judges by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
+constexpr double kWideShare = 0.3;  // of the budget for the first
+constexpr double kNearEnds = 0.3;   // motions this close to start or goals are judged exactly by the first, too [rad]
 
 std::string contact(const CollisionVerdict& verdict) { return verdict.first + " touches " + verdict.second; }
 
@@ -75,8 +77,16 @@ class Planning {
     if (!ends_free()) return result_;
     if (problem_.straight) return straight_line();
     for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
-      space_.set_step(attempt == 0 ? settings_.step : std::min(settings_.step, settings_.verify_step));
-      if (!find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919)) return result_;
+      const bool widely = attempt == 0;
+      space_.set_step(attempt < 2 ? settings_.step : std::min(settings_.step, settings_.verify_step));
+      most_ = widely ? static_cast<std::uint64_t>(kWideShare * static_cast<double>(problem_.budget)) : problem_.budget;
+      space_.limit(most_);
+      if (widely) space_.judge_widely(goals_, kNearEnds);
+      const bool found = find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919);
+      space_.judge_exactly();
+      space_.limit(problem_.budget);
+      if (!found && widely && !space_.cancelled()) continue;
+      if (!found) return result_;
       if (verified() || unsmoothed()) {
         finish(space_, result_);
         return result_;
@@ -166,15 +176,15 @@ class Planning {
       result_.path = direct;
       result_.planner = "straight";
     } else {
-      PlannerKind kind = asked ? problem_.planner : people ? PlannerKind::bitrrt : PlannerKind::rrt_connect;
+      PlannerKind kind = asked ? problem_.planner : people ? PlannerKind::bitrrt : PlannerKind::automatic;
       if (!asked && kind == PlannerKind::bitrrt)
         space_.limit(space_.checks() +
                      static_cast<std::uint64_t>(settings_.search_share *
-                                                static_cast<double>(problem_.budget - std::min(problem_.budget, space_.checks()))));
+                                                static_cast<double>(most_ - std::min(most_, space_.checks()))));
       found = search_restarting(kind, seed);
-      space_.limit(problem_.budget);
+      space_.limit(most_);
       if (found.path.empty() && !asked && kind == PlannerKind::bitrrt && !space_.exhausted() && direct.empty()) {
-        kind = PlannerKind::rrt_connect;
+        kind = PlannerKind::automatic;
         found = search_restarting(kind, seed + 1);
       }
       if (found.path.empty() && direct.empty()) return out_of_budget(found.closest);
@@ -245,6 +255,7 @@ class Planning {
   std::vector<Vector> goals_;
   std::vector<std::size_t> goal_index_;
   std::vector<Vector> raw_;
+  std::uint64_t most_{};  // checks until this attempt ends
   Result result_;
 };
 

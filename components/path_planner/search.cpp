@@ -14,6 +14,7 @@
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
 #include <ompl/util/Console.h>
 
+#include "components/path_planner/connect.hpp"
 #include "components/path_planner/random.hpp"
 #include "components/path_planner/transition_rrt.hpp"
 
@@ -150,6 +151,7 @@ double closest_approach(const ob::PlannerData& data, const std::vector<Vector>& 
 
 Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, std::uint64_t seed) {
   if (kind == PlannerKind::trrt) return transition_rrt(space, goals, seed);
+  if (kind == PlannerKind::automatic) return connect(space, goals, seed);
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   const int n = space.size();
   auto ompl_space = std::make_shared<ob::RealVectorStateSpace>(n);

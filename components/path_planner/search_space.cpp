@@ -80,15 +80,45 @@ bool SearchSpace::free(const Vector& q) { return world_.is_free(whole(q)) && !(b
 CollisionVerdict SearchSpace::motion_verdict(const Vector& from, const Vector& to, double step) {
   all_to_ = whole(to);
   CollisionVerdict verdict = world_.check_motion(whole(from), all_to_, step);
-  if (!verdict.free || !bound_) return verdict;
+  return verdict.free && bound_ ? permitted_on_line(step) : verdict;
+}
+
+/// From all_ to all_to_.
+CollisionVerdict SearchSpace::permitted_on_line(double step) const {
   const Vector begin = all_;
   const int states = motion_states(begin, all_to_, std::max(step, kForbiddenStep));
+  CollisionVerdict verdict;
   for (int i = 0; i < states && verdict.free; ++i)
     verdict = permitted(begin + (static_cast<double>(i) / std::max(1, states - 1)) * (all_to_ - begin));
   return verdict;
 }
 
+bool SearchSpace::motion_free(const Vector& from, const Vector& to) {
+  if (ends_.empty()) return motion_verdict(from, to, step_).free;
+  all_to_ = whole(to);
+  if (world_.surely_free_at_steps(whole(from), all_to_, step_)) return !bound_ || permitted_on_line(step_).free;
+  const auto near = [this](const Vector& end, const Vector& q) { return (end - q).cwiseAbs().maxCoeff() < reach_; };
+  return std::any_of(ends_.begin(), ends_.end(), [&](const Vector& end) { return near(end, from) || near(end, to); }) &&
+         motion_verdict(from, to, step_).free;
+}
+
+void SearchSpace::judge_widely(std::vector<Vector> ends, double reach) {
+  ends_ = std::move(ends);
+  ends_.push_back(start());
+  reach_ = reach;
+}
+
 double SearchSpace::cost(const Vector& q) const { return cost_.concerned() ? cost_(whole(q)) : 0.0; }
+
+const std::vector<double>& SearchSpace::costs_at_steps(const Vector& from, const Vector& to, int steps) const {
+  at_.resize(static_cast<std::size_t>(steps));
+  costs_.assign(static_cast<std::size_t>(steps), 0.0);
+  if (!cost_.concerned()) return costs_;
+  for (int i = 0; i < steps; ++i) at_[static_cast<std::size_t>(i)] = (i + 1.0) / steps;
+  all_to_ = whole(to);
+  cost_.on_line(whole(from), all_to_, at_.data(), steps, costs_.data());
+  return costs_;
+}
 
 /// Of the middles of equal pieces of the motion.
 const std::vector<double>& SearchSpace::costs_along(const Vector& from, const Vector& to) const {
