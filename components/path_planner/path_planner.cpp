@@ -11,7 +11,8 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr std::uint64_t kFirstShare = 40000;
-constexpr int kAttempts = 4;  // the first judges by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
+constexpr int kAttempts =
+    4;  // the first judges by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
 constexpr double kWideShare = 0.3;  // of the budget for the first
 constexpr double kNearEnds = 0.3;   // motions this close to start or goals are judged exactly by the first, too [rad]
 
@@ -144,14 +145,14 @@ class Planning {
   }
 
   /// An unlucky tree is given up for a new one, each time after twice as many checks: search times have long tails.
-  Found search_restarting(PlannerKind kind, std::uint64_t seed) {
+  Found search_restarting(PlannerKind kind, bool heed_cost, std::uint64_t seed) {
     const std::uint64_t limit = space_.limit();
     Found best;
     best.closest = std::numeric_limits<double>::infinity();
     for (std::uint64_t share = kFirstShare;; share *= 2) {
       const std::uint64_t before = space_.checks();
       space_.limit(std::min(limit, before + share));
-      const Found found = search(space_, goals_, kind, seed);
+      const Found found = search(space_, goals_, kind, heed_cost, seed);
       seed += 104729;
       space_.limit(limit);
       if (!found.path.empty()) return found;
@@ -176,16 +177,16 @@ class Planning {
       result_.path = direct;
       result_.planner = "straight";
     } else {
-      PlannerKind kind = asked ? problem_.planner : people ? PlannerKind::bitrrt : PlannerKind::automatic;
-      if (!asked && kind == PlannerKind::bitrrt)
+      const PlannerKind kind = problem_.planner;
+      bool heeds_cost = people;
+      if (!asked && people)
         space_.limit(space_.checks() +
-                     static_cast<std::uint64_t>(settings_.search_share *
-                                                static_cast<double>(most_ - std::min(most_, space_.checks()))));
-      found = search_restarting(kind, seed);
+                     static_cast<std::uint64_t>(settings_.search_share * static_cast<double>(most_ - std::min(most_, space_.checks()))));
+      found = search_restarting(kind, heeds_cost, seed);
       space_.limit(most_);
-      if (found.path.empty() && !asked && kind == PlannerKind::bitrrt && !space_.exhausted() && direct.empty()) {
-        kind = PlannerKind::automatic;
-        found = search_restarting(kind, seed + 1);
+      if (found.path.empty() && !asked && people && !space_.exhausted() && direct.empty()) {
+        heeds_cost = false;
+        found = search_restarting(kind, heeds_cost, seed + 1);
       }
       if (found.path.empty() && direct.empty()) return out_of_budget(found.closest);
       if (found.path.empty()) {
@@ -194,7 +195,7 @@ class Planning {
       } else {
         result_.path = found.path;
         result_.goal = goal_index_[found.goal];
-        result_.planner = name_of(kind);
+        result_.planner = name_of(asked ? kind : heeds_cost ? PlannerKind::bitrrt : PlannerKind::rrt_connect);
       }
     }
     raw_ = result_.path;

@@ -16,6 +16,7 @@
 
 #include "components/path_planner/connect.hpp"
 #include "components/path_planner/random.hpp"
+#include "components/path_planner/transition_connect.hpp"
 #include "components/path_planner/transition_rrt.hpp"
 
 namespace ob = ompl::base;
@@ -149,9 +150,9 @@ double closest_approach(const ob::PlannerData& data, const std::vector<Vector>& 
 
 }  // namespace
 
-Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, std::uint64_t seed) {
+Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool heed_cost, std::uint64_t seed) {
   if (kind == PlannerKind::trrt) return transition_rrt(space, goals, seed);
-  if (kind == PlannerKind::automatic) return connect(space, goals, seed);
+  if (kind == PlannerKind::automatic) return heed_cost ? transition_connect(space, goals, seed) : connect(space, goals, seed);
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   const int n = space.size();
   auto ompl_space = std::make_shared<ob::RealVectorStateSpace>(n);

@@ -39,7 +39,7 @@ class SearchSpace {
   void set_step(double step) { step_ = step; }
   double step() const { return step_; }
 
-  double cost(const Vector& q) const;                                ///< of one state, [0, 1]
+  double cost(const Vector& q) const;  ///< of one state, [0, 1]
   /// Of the ends of equal steps of a motion.
   const std::vector<double>& costs_at_steps(const Vector& from, const Vector& to, int steps) const;
   double integral_cost(const Vector& from, const Vector& to) const;  ///< along a motion [rad]
@@ -75,7 +75,7 @@ class SearchSpace {
   mutable std::vector<double> at_, costs_;
   std::uint64_t checks_before_{}, limit_{}, charged_{};
   double step_{};
-  bool bound_{};  // by what outside layers forbid: not when it starts there, the arm must be able to leave
+  bool bound_{};              // by what outside layers forbid: not when it starts there, the arm must be able to leave
   std::vector<Vector> ends_;  // empty: every motion is judged exactly
   double reach_{};
 };

@@ -5,43 +5,18 @@
 #include <limits>
 
 #include "components/path_planner/random.hpp"
+#include "components/path_planner/transition_test.hpp"
 
 namespace handsel::path_planner {
 namespace {
 
 constexpr double kGoalBias = 0.1;
-constexpr double kTemperatureFactor = 2.0;
-constexpr int kMostRefusals = 10;
 constexpr double kRefinementShare = 0.1;
-constexpr double kLeastTemperature = 1e-6;
 
 struct Node {
   Vector q;
   int parent{-1};
   double cost{};
-};
-
-class TransitionTest {
- public:
-  TransitionTest(double temperature, Random& random) : temperature_(temperature), random_(random) {}
-  bool operator()(double from, double to) {
-    if (to <= from) return true;
-    if (random_.unit() < std::exp(-(to - from) / temperature_)) {
-      temperature_ = std::max(kLeastTemperature, temperature_ / kTemperatureFactor);
-      refusals_ = 0;
-      return true;
-    }
-    if (++refusals_ > kMostRefusals) {
-      temperature_ *= kTemperatureFactor;
-      refusals_ = 0;
-    }
-    return false;
-  }
-
- private:
-  double temperature_;
-  Random& random_;
-  int refusals_{0};
 };
 
 int nearest(const std::vector<Node>& tree, const Vector& q) {
