@@ -11,8 +11,7 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr std::uint64_t kFirstShare = 40000;
-constexpr int kAttempts =
-    4;  // the first judges by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
+constexpr int kAttempts = 4;  // the first by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
 constexpr double kWideShare = 0.3;  // of the budget for the first
 constexpr double kNearEnds = 0.3;   // motions this close to start or goals are judged exactly by the first, too [rad]
 

@@ -30,6 +30,7 @@ struct Problem {
   Vector start;               ///< all axes of the robot [rad]
   std::vector<Vector> goals;  ///< alternatives, `axes` only [rad]
   PlannerKind planner{PlannerKind::automatic};
+  bool stock{};  ///< OMPL's planner of that name instead of ours, for comparison; automatic: as without
   std::uint64_t seed{1};
   std::uint64_t budget{100000};  ///< states that may be judged
   bool straight{};               ///< only the line from start to goals[0], checked

@@ -12,6 +12,7 @@
 #include <ompl/geometric/planners/rrt/BiTRRT.h>
 #include <ompl/geometric/planners/rrt/RRT.h>
 #include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/geometric/planners/rrt/TRRT.h>
 #include <ompl/util/Console.h>
 
 #include "components/path_planner/connect.hpp"
@@ -116,6 +117,13 @@ ob::PlannerPtr make_planner(const ob::SpaceInformationPtr& si, PlannerKind kind,
       planner->setRange(settings.connect_range);
       return planner;
     }
+    case PlannerKind::trrt: {
+      auto planner = std::make_shared<Seeded<og::TRRT>>(si, seed);
+      planner->setRange(settings.transition_range);
+      planner->setInitTemperature(settings.initial_temperature);
+      planner->setFrontierThreshold(0.5 * settings.transition_range);
+      return planner;
+    }
     case PlannerKind::bitrrt: {
       auto planner = std::make_shared<og::BiTRRT>(si);
       planner->setRange(settings.transition_range);
@@ -151,8 +159,12 @@ double closest_approach(const ob::PlannerData& data, const std::vector<Vector>& 
 }  // namespace
 
 Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind kind, bool heed_cost, std::uint64_t seed) {
-  if (kind == PlannerKind::trrt) return transition_rrt(space, goals, seed);
   if (kind == PlannerKind::automatic) return heed_cost ? transition_connect(space, goals, seed) : connect(space, goals, seed);
+  if (!space.problem().stock) {
+    if (kind == PlannerKind::rrt_connect) return connect(space, goals, seed);
+    if (kind == PlannerKind::trrt) return transition_rrt(space, goals, seed);
+    if (kind == PlannerKind::bitrrt) return transition_connect(space, goals, seed);
+  }
   ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
   const int n = space.size();
   auto ompl_space = std::make_shared<ob::RealVectorStateSpace>(n);
@@ -183,7 +195,7 @@ Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind k
     goal_states->addState(state);
   }
   definition->setGoal(goal_states);
-  if (kind == PlannerKind::bitrrt) definition->setOptimizationObjective(std::make_shared<Work>(si, space));
+  if (kind == PlannerKind::trrt || kind == PlannerKind::bitrrt) definition->setOptimizationObjective(std::make_shared<Work>(si, space));
 
   const ob::PlannerPtr planner = make_planner(si, kind, seed, space.settings());
   planner->setProblemDefinition(definition);

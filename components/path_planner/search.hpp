@@ -1,5 +1,5 @@
-// The random search for a first path: our RRT-Connect, T-RRT and bidirectional T-RRT; OMPL's RRT, RRT-Connect and BiT-RRT on our space,
-// samples, checks and costs.
+// The random search for a first path: our RRT-Connect, T-RRT and bidirectional T-RRT; OMPL's RRT, RRT-Connect, T-RRT and BiT-RRT on
+// our space, samples, checks and costs.
 #pragma once
 
 #include "components/path_planner/search_space.hpp"
@@ -13,9 +13,9 @@ struct Found {
   std::size_t nodes{};       ///< of the tree or trees
 };
 
-/// All goals must be free. automatic: our bidirectional T-RRT when the cost is to be heeded, else our RRT-Connect; rrt, rrt_connect and
-/// bitrrt: OMPL's; trrt: ours. Ends when the space is exhausted. The same seed gives the same path, also with other searches before it in
-/// the same process: no random number comes from OMPL's own generator.
+/// All goals must be free. automatic: bidirectional T-RRT when the cost is to be heeded, else RRT-Connect. rrt is OMPL's, the others are
+/// ours, or OMPL's where the problem says `stock`. Ends when the space is exhausted. The same seed gives the same path, also with other
+/// searches before it in the same process: no random number comes from OMPL's own generator.
 Found search(SearchSpace& space, const std::vector<Vector>& goals, PlannerKind planner, bool heed_cost, std::uint64_t seed);
 
 }  // namespace handsel::path_planner

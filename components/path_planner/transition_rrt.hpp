@@ -1,5 +1,4 @@
-// T-RRT as the chapter's section 4.1.1 describes it: an RRT whose new states must pass a transition test on their cost. OMPL's own
-// cools so fast that it often finds nothing on our costs; its BiT-RRT does well and is used as it is.
+// T-RRT as the chapter's section 4.1.1 describes it: an RRT whose new states must pass a transition test on their cost.
 #pragma once
 
 #include "components/path_planner/search.hpp"

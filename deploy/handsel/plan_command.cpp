@@ -24,7 +24,7 @@ struct Options {
   std::string robot, srdf, group, planner{"auto"};
   double time{5.0};
   std::uint64_t checks{0}, seed{1};
-  bool json_lines{false};
+  bool stock{false}, json_lines{false};
 };
 
 const std::map<std::string, PlannerKind> kPlanners = {{"auto", PlannerKind::automatic},
@@ -120,6 +120,7 @@ class Batch {
       throw LineError("the problem is for the group \"" + of_item + "\", not for \"" + options_.group + "\"");
     path_planner::Problem problem;
     problem.planner = kPlanners.at(options_.planner);
+    problem.stock = options_.stock;
     problem.seed = options_.seed;
     problem.budget = options_.checks > 0 ? options_.checks : UINT64_MAX / 2;
     problem.start = robot_.rest_posture().size() == robot_.dof() ? robot_.rest_posture() : Vector::Zero(robot_.dof());
@@ -252,6 +253,7 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
   plan->add_option("--group", options->group, "group of axes; where the robot names none, the axes of the goals");
   plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")->check(CLI::IsMember(kPlanners));
+  plan->add_flag("--stock", options->stock, "OMPL's planner of that name instead of ours");
   plan->add_option("--time", options->time, "limit of a problem [s]");
   plan->add_option("--checks", options->checks, "limit in judged states instead: repeatable");
   plan->add_option("--seed", options->seed, "of every random choice");
