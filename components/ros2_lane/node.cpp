@@ -198,7 +198,8 @@ void Node::open_outputs() {
     frames_out_ = write<ros2::Transforms>(settings_.tf(), Profile::goal);
     const std::vector<Link>& links = robot_->links();
     for (std::size_t i = 1; i < links.size(); ++i)
-      own_parents_[links[i].name] = links[static_cast<std::size_t>(robot_->joints()[static_cast<std::size_t>(links[i].parent_joint)].parent)].name;
+      own_parents_[links[i].name] =
+          links[static_cast<std::size_t>(robot_->joints()[static_cast<std::size_t>(links[i].parent_joint)].parent)].name;
     bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { scene_ = m; });
     bus_.every(from_seconds(1 / settings_.tf_rate()), [this](TimePoint) { tell_frames(); });
   }
