@@ -11,6 +11,7 @@
 namespace handsel::path_planner {
 namespace {
 
+constexpr std::size_t kClients = 16;  // whose last path is remembered
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
 config::PathPlannerSettings load(const NodeContext& context) {
@@ -21,6 +22,8 @@ config::PathPlannerSettings load(const NodeContext& context) {
     if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share and the temperature must be > 0");
   if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
     throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
+  if (s.live_time() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0)
+    throw ConfigError("path_planner.txtpb: live_time, live_rounds and live_tries must be >= 0, live_gain in [0, 1)");
   return s;
 }
 
@@ -64,7 +67,10 @@ Node::Node(Bus& bus, const NodeContext& context)
       cost_(*context.robot, load_cost_settings(context.settings)) {
   const config::PathPlannerSettings file = load(context);
   settings_ = core_settings(file);
-  timing_ = {file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())};
+  timing_ = {file.check_time(), file.longest_time(), file.live_time(), from_seconds(file.max_scene_age())};
+  live_.least_gain = file.live_gain();
+  live_.rounds = file.live_rounds();
+  live_.tries = file.live_tries();
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(
@@ -112,6 +118,8 @@ void Node::start(const PathRequest& request) {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const HumanState> people;
     LayersNow layers;
+    std::vector<Vector> running;  // empty: none, plan
+    LiveOutcome outcome{};
     Result result;
   };
   auto work = std::make_shared<Work>();
@@ -129,6 +137,10 @@ void Node::start(const PathRequest& request) {
   const double time = std::clamp(request.time_limit, 0.0, timing_.longest_time);
   problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
 
+  if (const auto last = given_.find(request.id.client);
+      last != given_.end() && request.time_limit <= timing_.live_time && !request.straight && last->second.group == request.group)
+    work->running = last->second.path;
+
   const auto compute = [this, work](const CancelToken& token) {
     world_.set_scene(*work->scene);
     world_.set_people(*work->people);
@@ -137,7 +149,13 @@ void Node::start(const PathRequest& request) {
     cost_.set_layers(work->layers);
     cost_.set_base(work->scene->T_world_base);
     const Hooks hooks{[&token] { return token.cancelled(); }, {}};
-    work->result = plan(*robot_, world_, cost_, work->problem, settings_, hooks);
+    if (work->running.empty()) {
+      work->result = plan(*robot_, world_, cost_, work->problem, settings_, hooks);
+    } else {
+      LiveResult live = go_on(*robot_, world_, cost_, work->problem, work->running, settings_, live_, hooks);
+      work->outcome = live.outcome;
+      work->result = std::move(live.result);
+    }
     return from_seconds(timing_.check_time * static_cast<double>(work->result.checks));
   };
   const auto answer = [this, work] {
@@ -148,6 +166,11 @@ void Node::start(const PathRequest& request) {
     PathReply reply = reply_of(work->request, work->result);
     if (!reply.solved && reply.reason == "cancelled" && desk_.superseded(id))
       reply.reason = "superseded by a newer request of the same client";
+    if (!work->running.empty()) ++live_outcomes_[static_cast<std::size_t>(work->outcome)];
+    if (reply.solved) {
+      if (given_.size() >= kClients && given_.count(id.client) == 0) given_.erase(given_.begin());
+      given_[id.client] = {work->request.group, reply.path};
+    }
     desk_.close(reply);
     reply_out_->publish(reply);
   };

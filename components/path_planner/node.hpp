@@ -1,8 +1,11 @@
 // The path planner on a Bus.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
@@ -10,7 +13,7 @@
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
-#include "components/path_planner/problem.hpp"
+#include "components/path_planner/live_path.hpp"
 #include "components/path_planner/request_desk.hpp"
 
 namespace handsel::path_planner {
@@ -19,10 +22,18 @@ class Node {
  public:
   Node(Bus& bus, const NodeContext& context);
 
+  /// How requests to go on along a running path ended, by LiveOutcome.
+  const std::array<std::uint64_t, 5>& live_outcomes() const { return live_outcomes_; }
+
  private:
   struct Timing {
-    double check_time{}, longest_time{};
+    double check_time{}, longest_time{}, live_time{};
     Duration max_scene_age{};
+  };
+  /// The path a client was given last.
+  struct Given {
+    std::string group;
+    std::vector<Vector> path;
   };
   void on_request(const PathRequest& request);
   void start(const PathRequest& request);
@@ -32,6 +43,9 @@ class Node {
   Bus& bus_;
   std::shared_ptr<const RobotModel> robot_;
   Settings settings_;
+  LiveSettings live_;
+  std::map<std::uint64_t, Given> given_;  // by client
+  std::array<std::uint64_t, 5> live_outcomes_{};
   Timing timing_;
   std::unique_ptr<Publisher<PathReply>> reply_out_;
   std::shared_ptr<const Scene> scene_;

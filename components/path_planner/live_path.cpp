@@ -1,0 +1,345 @@
+#include "components/path_planner/live_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "components/path_planner/random.hpp"
+#include "components/path_planner/search.hpp"
+#include "components/path_planner/search_space.hpp"
+#include "components/path_planner/smoothing.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+constexpr double kSame = 1e-6;      // [rad]
+constexpr double kDropLoss = 0.01;  // share of the price that dropping nodes may cost
+constexpr double kGain = 1e-6;      // smaller ones are none
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+double price(const SearchSpace& space, const std::vector<Vector>& path) {
+  double sum = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) sum += space.price(path[i - 1], path[i]);
+  return sum;
+}
+
+/// Each local path cut to at most `longest` (max norm).
+std::vector<Vector> cut(const std::vector<Vector>& path, double longest) {
+  std::vector<Vector> pieces = {path.front()};
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vector step = path[i] - path[i - 1];
+    const int count = std::max(1, static_cast<int>(std::ceil(step.lpNorm<Eigen::Infinity>() / longest)));
+    for (int k = 1; k <= count; ++k) pieces.push_back(k == count ? path[i] : Vector(path[i - 1] + step * (static_cast<double>(k) / count)));
+  }
+  return pieces;
+}
+
+class Live {
+ public:
+  Live(SearchSpace& space, const Problem& problem, const Settings& settings, const LiveSettings& live)
+      : space_(space), problem_(problem), settings_(settings), live_(live), random_(problem.seed) {}
+
+  /// nullopt: nothing of the path can be saved.
+  std::optional<LiveResult> run(std::vector<Vector> rest) {
+    LiveResult out;
+    std::size_t goal = goal_of(rest.back());
+    bool other_goal = false;
+    if (goal == problem_.goals.size() || !space_.free(rest.back())) {
+      if (!lead_to_a_goal(rest, goal) && !search_anew(rest, goal)) return std::nullopt;
+      other_goal = true;
+    }
+    const std::vector<Vector> as_it_was = rest;
+    std::size_t first = 0, last = 0;
+    const bool was_blocked = !other_goal && blocked(rest, first, last);
+    out.before = was_blocked || other_goal ? kInfinite : price(space_, rest);
+    if (was_blocked && !repair(rest)) {
+      if (!search_anew(rest, goal)) return std::nullopt;
+      other_goal = true;
+    }
+    std::vector<Vector> path = rest;
+    smooth(space_, path, random_);
+    if (was_blocked || other_goal) {
+      prune(space_, path);  // at once; it gets cheaper next time
+    } else if (space_.concerns_people()) {
+      deform(path);
+      drop_nodes(path);
+    } else {
+      prune(space_, path);
+    }
+    if (!verified(path)) {
+      path = rest;
+      if ((was_blocked || other_goal) && !verified(path)) return std::nullopt;
+    }
+    out.after = price(space_, path);
+    if (was_blocked || other_goal) {
+      out.outcome = other_goal ? LiveOutcome::replanned : LiveOutcome::repaired;
+    } else if (out.after < out.before * (1 - live_.least_gain)) {
+      out.outcome = LiveOutcome::improved;
+    } else {
+      path = as_it_was;
+      out.after = out.before;
+    }
+    out.result.path = std::move(path);
+    out.result.goal = goal;
+    out.result.planner = name(out.outcome);
+    finish(out.result);
+    return out;
+  }
+
+ private:
+  std::size_t goal_of(const Vector& q) const {
+    for (std::size_t i = 0; i < problem_.goals.size(); ++i)
+      if ((problem_.goals[i] - q).lpNorm<Eigen::Infinity>() < kSame) return i;
+    return problem_.goals.size();
+  }
+
+  /// The cheapest way that leaves the path at one of its nodes for one of the goals, straight.
+  bool lead_to_a_goal(std::vector<Vector>& rest, std::size_t& goal) {
+    const std::vector<Vector> nodes = cut(rest, 4 * live_.piece);
+    std::size_t reachable = 1;
+    while (reachable < nodes.size() && space_.motion_free(nodes[reachable - 1], nodes[reachable])) ++reachable;
+    double least = kInfinite;
+    std::vector<double> so_far(reachable, 0.0);
+    for (std::size_t k = 1; k < reachable; ++k) so_far[k] = so_far[k - 1] + space_.price(nodes[k - 1], nodes[k]);
+    std::size_t leave = 0;
+    for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
+      const Vector& q = problem_.goals[i];
+      if (!space_.outside_limits(q).empty() || !space_.free(q)) continue;
+      for (std::size_t k = 0; k < reachable; ++k) {
+        const double cost = so_far[k] + space_.price(nodes[k], q);
+        if (cost >= least || !space_.motion_free(nodes[k], q)) continue;
+        least = cost;
+        leave = k;
+        goal = i;
+      }
+    }
+    if (least == kInfinite) return false;
+    rest.assign(nodes.begin(), nodes.begin() + static_cast<long>(leave) + 1);
+    rest.push_back(problem_.goals[goal]);
+    return true;
+  }
+
+  /// RRT-Connect from where the path can be left: what is found soon is made cheaper while it runs.
+  bool search_anew(std::vector<Vector>& rest, std::size_t& goal) {
+    std::vector<Vector> goals;
+    std::vector<std::size_t> index;
+    for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
+      if (!space_.outside_limits(problem_.goals[i]).empty() || !space_.free(problem_.goals[i])) continue;
+      goals.push_back(problem_.goals[i]);
+      index.push_back(i);
+    }
+    if (goals.empty()) return false;
+    const Found found = search(space_, goals, PlannerKind::rrt_connect, problem_.seed);
+    if (found.path.empty()) return false;
+    rest = found.path;
+    goal = index[found.goal];
+    return true;
+  }
+
+  /// First and last edge (index of its end) that are not free.
+  bool blocked(const std::vector<Vector>& path, std::size_t& first, std::size_t& last) {
+    bool any = false;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      if (space_.motion_verdict(path[i - 1], path[i], settings_.step).free) continue;
+      if (!any) first = i;
+      last = i;
+      any = true;
+    }
+    return any;
+  }
+
+  /// Chapter section 4.1.1: a configuration of the path is moved toward a random one and the path rejoined on either side; here among those
+  /// that are blocked, farther out and rejoined farther away the longer it takes.
+  bool repair(std::vector<Vector>& rest) {
+    std::vector<Vector> path = cut(rest, live_.piece);
+    std::size_t first = 0, last = 0;
+    for (int round = 0; round < 3; ++round) {
+      if (!blocked(path, first, last)) {
+        rest = path;
+        return true;
+      }
+      std::vector<Vector> best;
+      double least = kInfinite;
+      int found = 0;
+      for (int k = 0; k < live_.tries && found < 3 && !space_.exhausted(); ++k) {
+        const double share = static_cast<double>(k + 1) / live_.tries;
+        const std::size_t wide = 1 + static_cast<std::size_t>(random_.unit() * (2 + 12 * share));
+        const std::size_t from = first > wide ? first - wide : 0, to = std::min(path.size() - 1, last + wide - 1);
+        const std::size_t middle = first - 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(last - first + 2));
+        const Vector center = path[std::min(middle, path.size() - 1)];
+        const Vector toward = random_.within(space_.lower(), space_.upper()) - center;
+        const double far = random_.between(0.1, 0.3 + 1.5 * share);
+        Vector q = center + toward * (far / std::max(far, toward.norm()));
+        q = q.cwiseMax(space_.lower()).cwiseMin(space_.upper());
+        if (!space_.free(q)) continue;
+        const double cost = found > 0 ? space_.price(path[from], q) + space_.price(q, path[to]) : 0.0;
+        if (cost >= least || !space_.motion_free(path[from], q) || !space_.motion_free(q, path[to])) continue;
+        best.assign(path.begin(), path.begin() + static_cast<long>(from) + 1);
+        best.push_back(q);
+        best.insert(best.end(), path.begin() + static_cast<long>(to), path.end());
+        least = found > 0 ? cost : space_.price(path[from], q) + space_.price(q, path[to]);
+        ++found;
+      }
+      if (best.empty()) return false;
+      path = std::move(best);
+    }
+    if (blocked(path, first, last)) return false;
+    rest = path;
+    return true;
+  }
+
+  /// The path bent as a whole: nodes on either side of one go with it, the less the farther they are, either way; cost, bounds, collision.
+  void deform(std::vector<Vector>& path) {
+    path = cut(path, 2 * live_.piece);
+    const std::size_t n = path.size();
+    if (n < 3) return;
+    std::vector<double> costs, prices(n, 0.0), bent_prices(n, 0.0);
+    for (const Vector& q : path) costs.push_back(space_.cost(q));
+    for (std::size_t i = 1; i < n; ++i) prices[i] = space_.price(path[i - 1], path[i]);
+    std::vector<Vector> bent = path;
+    for (int round = 0; round < live_.rounds && !space_.exhausted(); ++round) {
+      const auto any = [&] { return 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(n - 2)); };
+      const std::size_t a = any(), b = any(), middle = costs[a] > costs[b] ? a : b;
+      const std::size_t wide = 1 + static_cast<std::size_t>(random_.unit() * 0.3 * static_cast<double>(n));
+      const std::size_t from = middle > wide ? middle - wide : 0, to = std::min(n - 1, middle + wide);
+      Vector shift = random_.within(Vector::Constant(space_.size(), -1), Vector::Constant(space_.size(), 1));
+      shift *= random_.between(0.2, 1.0) * live_.piece * static_cast<double>(wide) / std::max(0.1, shift.norm());
+      double before = 0;
+      for (std::size_t i = from + 1; i <= to; ++i) before += prices[i];
+      for (const double sign : {1.0, -1.0}) {
+        bool good = true;
+        for (std::size_t i = from + 1; i < to && good; ++i) {
+          const double share = i <= middle ? static_cast<double>(i - from) / static_cast<double>(middle - from)
+                                           : static_cast<double>(to - i) / static_cast<double>(to - middle);
+          bent[i] = path[i] + sign * share * shift;
+          good = space_.inside(bent[i]);
+        }
+        bent[from] = path[from];
+        bent[to] = path[to];
+        double left = before - kGain;
+        for (std::size_t i = from + 1; i <= to && good; ++i) good = (left -= bent_prices[i] = space_.price(bent[i - 1], bent[i])) > 0;
+        for (std::size_t i = from + 1; i <= to && good; ++i) good = space_.motion_free(bent[i - 1], bent[i]);
+        if (!good) continue;
+        for (std::size_t i = from + 1; i <= to; ++i) {
+          path[i] = bent[i];
+          prices[i] = bent_prices[i];
+          costs[i] = space_.cost(path[i]);
+        }
+        break;
+      }
+    }
+  }
+
+  /// Nodes that hardly matter: each is a corner the trajectory would have to take.
+  void drop_nodes(std::vector<Vector>& path) {
+    double allowed = kDropLoss * price(space_, path);
+    for (std::size_t i = 1; i + 1 < path.size();) {
+      const double loss = space_.price(path[i - 1], path[i + 1]) - space_.price(path[i - 1], path[i]) - space_.price(path[i], path[i + 1]);
+      if (loss <= 0.25 * allowed && space_.motion_free(path[i - 1], path[i + 1])) {
+        allowed -= std::max(0.0, loss);
+        path.erase(path.begin() + static_cast<long>(i));
+      } else {
+        ++i;
+      }
+    }
+  }
+
+  bool verified(const std::vector<Vector>& path) {
+    for (std::size_t i = 1; i < path.size(); ++i)
+      if (!space_.motion_verdict(path[i - 1], path[i], live_.verify_step).free) return false;
+    return true;
+  }
+
+  void finish(Result& result) const {
+    for (std::size_t i = 1; i < result.path.size(); ++i) {
+      result.cost += space_.integral_cost(result.path[i - 1], result.path[i]);
+      result.work += space_.work(result.path[i - 1], result.path[i]);
+    }
+    result.length = path_length(result.path);
+    result.solved = true;
+  }
+
+  SearchSpace& space_;
+  const Problem& problem_;
+  const Settings& settings_;
+  const LiveSettings& live_;
+  Random random_;
+};
+
+}  // namespace
+
+const char* name(LiveOutcome outcome) {
+  switch (outcome) {
+    case LiveOutcome::kept:
+      return "kept";
+    case LiveOutcome::improved:
+      return "improved";
+    case LiveOutcome::repaired:
+      return "repaired";
+    case LiveOutcome::replanned:
+      return "replanned";
+    default:
+      return "blocked";
+  }
+}
+
+std::vector<Vector> remainder(const std::vector<Vector>& path, const Vector& q, double reach) {
+  if (path.size() < 2 || path.front().size() != q.size()) return {};
+  double least = kInfinite;
+  std::size_t next = 0;
+  bool at_end = false;
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vector edge = path[i] - path[i - 1];
+    const double share = edge.squaredNorm() > 0 ? std::clamp((q - path[i - 1]).dot(edge) / edge.squaredNorm(), 0.0, 1.0) : 0.0;
+    const double distance = (path[i - 1] + share * edge - q).lpNorm<Eigen::Infinity>();
+    if (distance >= least) continue;
+    least = distance;
+    next = share == 1.0 ? i + 1 : i;
+    at_end = next == path.size();
+  }
+  if (least > reach || (at_end && (path.back() - q).lpNorm<Eigen::Infinity>() < kSame)) return {};
+  if (at_end) --next;
+  std::vector<Vector> rest = {q};
+  for (std::size_t i = next; i < path.size(); ++i)
+    if ((path[i] - rest.back()).lpNorm<Eigen::Infinity>() > kSame) rest.push_back(path[i]);
+  if (rest.size() < 2) return {};
+  rest.back() = path.back();
+  return rest;
+}
+
+LiveResult go_on(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem,
+                 const std::vector<Vector>& running, const Settings& settings, const LiveSettings& live, const Hooks& hooks) {
+  LiveResult out;
+  Settings quick = settings;
+  quick.smoothing_rounds = live.rounds / 3;
+  std::uint64_t spent = 0;
+  const bool sound = problem.start.size() == robot.dof() && problem.start.allFinite() && !problem.axes.empty() && !problem.straight &&
+                     std::all_of(problem.axes.begin(), problem.axes.end(), [&](int a) { return a >= 0 && a < robot.dof(); }) &&
+                     std::all_of(problem.goals.begin(), problem.goals.end(), [&](const Vector& g) {
+                       return g.size() == static_cast<Eigen::Index>(problem.axes.size()) && g.allFinite();
+                     });
+  if (sound && problem.budget > 0) {
+    world.set_moving_axes(problem.axes);
+    cost.set_moving_axes(problem.axes);
+    SearchSpace space(robot, world, cost, problem, quick, hooks);
+    const std::vector<Vector> rest = remainder(running, space.start(), live.reach);
+    if (!rest.empty() && space.free(space.start())) {
+      if (auto found = Live(space, problem, quick, live).run(rest)) {
+        found->result.checks = space.checks();
+        return *found;
+      }
+    }
+    spent = space.checks();
+  }
+  Problem anew = problem;
+  anew.budget -= std::min(anew.budget, spent);
+  if (problem.budget > 0) anew.budget = std::max<std::uint64_t>(1, anew.budget);
+  out.result = plan(robot, world, cost, anew, quick, hooks);
+  out.result.checks += spent;
+  out.outcome = out.result.solved ? LiveOutcome::replanned : LiveOutcome::blocked;
+  out.before = kInfinite;
+  return out;
+}
+
+}  // namespace handsel::path_planner

@@ -1,0 +1,1 @@
+handsel_test(live_path SOURCES ${CMAKE_CURRENT_LIST_DIR}/live_path_test.cpp LINK handsel_path_planner_core LABEL unit)
