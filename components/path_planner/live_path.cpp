@@ -14,6 +14,7 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr double kSame = 1e-6;      // [rad]
+constexpr double kNearEnds = 0.3;   // motions this near to an end are judged exactly also where the wide check does not clear them [rad]
 constexpr double kDropLoss = 0.01;  // share of the price that dropping nodes may cost
 constexpr double kGain = 1e-6;      // smaller ones are none
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
@@ -53,6 +54,7 @@ class Live {
     std::size_t first = 0, last = 0;
     const bool was_blocked = !other_goal && blocked(rest, first, last);
     out.before = was_blocked || other_goal ? kInfinite : price(space_, rest);
+    space_.judge_widely({rest.back()}, kNearEnds);
     if (was_blocked && !repair(rest)) {
       if (!search_anew(rest, goal)) return std::nullopt;
       other_goal = true;
@@ -67,6 +69,7 @@ class Live {
     } else {
       prune(space_, path);
     }
+    space_.judge_exactly();
     if (!verified(path)) {
       path = rest;
       if ((was_blocked || other_goal) && !verified(path)) return std::nullopt;
@@ -130,7 +133,15 @@ class Live {
       index.push_back(i);
     }
     if (goals.empty()) return false;
-    const Found found = search(space_, goals, PlannerKind::rrt_connect, problem_.seed);
+    const std::uint64_t limit = space_.limit(), left = limit - std::min(limit, space_.checks());
+    space_.limit(limit - left / 2);
+    space_.judge_widely(goals, kNearEnds);
+    Found found = search(space_, goals, PlannerKind::rrt_connect, false, problem_.seed);
+    space_.limit(limit);
+    if (found.path.empty()) {
+      space_.judge_exactly();
+      found = search(space_, goals, PlannerKind::rrt_connect, false, problem_.seed + 1);
+    }
     if (found.path.empty()) return false;
     rest = found.path;
     goal = index[found.goal];
