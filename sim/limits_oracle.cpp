@@ -9,13 +9,14 @@ namespace {
 constexpr double kTolerance = 1e-6;    // relative
 constexpr double kRounding = 1e-12;    // of positions [rad]
 constexpr double kRestartJump = 0.05;  // from the robot's posture [rad]
-constexpr std::size_t kLearn = 100;
+constexpr std::size_t kLearn = 100, kLearnAtMost = 3200;
 
-double snapped(double period) {
+/// 0: none.
+double usual_near(double period) {
   for (double usual : {0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020}) {
-    if (std::abs(period - usual) < 0.15 * usual) return usual;
+    if (std::abs(period - usual) < 0.04 * usual) return usual;
   }
-  return period;
+  return 0;
 }
 
 }  // namespace
@@ -84,8 +85,11 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
       first_sequence_ = command.sequence;
     }
     waiting_.push_back({command, starts});
-    if (waiting_.size() >= kLearn) {
-      period_ = snapped((now - first_time_) / static_cast<double>(command.sequence - first_sequence_));
+    if (waiting_.size() >= kLearn) {  // a busy machine delays some of them: the more there are, the less it matters
+      const double period = (now - first_time_) / static_cast<double>(command.sequence - first_sequence_);
+      period_ = waiting_.size() < kLearnAtMost ? usual_near(period) : period;
+    }
+    if (period_ > 0) {
       for (std::size_t i = 1; i < waiting_.size(); ++i) judge_step(waiting_[i - 1].command, waiting_[i].command);
       waiting_.clear();
       waiting_.shrink_to_fit();

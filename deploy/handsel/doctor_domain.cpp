@@ -139,10 +139,11 @@ class Look {
     for (const auto& [robot, T] : bases_) out["bases"][robot] = std::vector<double>(T.data(), T.data() + 16);
     const DomainView view = session_.bus().look_around();
     out["commanders"] = Json::array();
-    for (const DomainParticipant& commander : view.commanders)
-      out["commanders"].push_back(commander.component + " (pid " + std::to_string(commander.pid) + " on " + commander.host + ")");
     char host[256] = {};
     gethostname(host, sizeof host - 1);
+    for (const DomainParticipant& commander : view.commanders)
+      out["commanders"].push_back({{"who", commander.component + " (pid " + std::to_string(commander.pid) + " on " + commander.host + ")"},
+                                   {"elsewhere", commander.host != host}});
     out["strangers"] = Json::array();
     for (const DomainParticipant& one : view.participants)
       if (!one.host.empty() && one.host != host) out["strangers"].push_back(one.component + " on " + one.host);
@@ -354,11 +355,14 @@ void judge_calibration(const DoctorOptions& options, const Json& seen, std::vect
 
 void judge_company(const DoctorOptions& options, const Json& seen, bool held, std::vector<Finding>& out) {
   std::string commanders;
-  for (const Json& commander : seen["commanders"]) commanders += (commanders.empty() ? "" : ", ") + commander.get<std::string>();
+  for (const Json& commander : seen["commanders"]) commanders += (commanders.empty() ? "" : ", ") + commander["who"].get<std::string>();
   const std::size_t count = seen["commanders"].size();
   if (count > 1) {
     out.push_back({"commander", Verdict::bad, "more than one process sends set-points on " + where(options.domain) + ": " + commanders,
                    "end all but one"});
+  } else if (count == 1 && !held && seen["commanders"][0]["elsewhere"].get<bool>() && seen["system"].get<bool>()) {
+    out.push_back({"commander", Verdict::note, "a system on another host moves the robot on " + where(options.domain) + ": " + commanders,
+                   "choose another domain with --domain if it is not meant to be this one"});
   } else if (count == 1 && !held) {
     out.push_back({"commander", Verdict::bad,
                    "the robot on " + where(options.domain) + " has a commander that was not started here: " + commanders,

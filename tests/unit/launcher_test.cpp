@@ -107,6 +107,11 @@ TEST_F(LauncherTest, children_die_with_a_launcher_that_was_killed) {
   }
   pid_t orphan = -1;
   ASSERT_EQ(read(channel[0], &orphan, sizeof orphan), static_cast<ssize_t>(sizeof orphan));
+  EXPECT_TRUE(eventually([&] {  // what was to run does: before that a child without a launcher ends by itself
+    std::string program;
+    std::ifstream("/proc/" + std::to_string(orphan) + "/comm") >> program;
+    return program == "sleep";
+  }));
   kill(keeper, SIGKILL);
   waitpid(keeper, nullptr, 0);
   int status = 0;
