@@ -15,6 +15,8 @@ if [ ! -f build/release/build.ninja ]; then
   # shellcheck disable=SC2086 # two options or none
   cmake --preset release $launcher >&2
 fi
+# Objects are the same wherever the tree lies, precompiled headers included.
+export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$root}" CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS="${CCACHE_SLOPPINESS:-pch_defines,time_macros}"
 cmake --build build/release --target "${@:-all}" >&2
 # The system runs without its page; a test of the page does not pass without it.
 "$root/components/bridge/web/build.sh" "$root/build/release/web" $for_tests || {
