@@ -52,6 +52,7 @@ void ManipulationPlanner::on(const ExecutionStatus& status) { execution_ = statu
 void ManipulationPlanner::on(const ActiveTrajectory& active) {
   set_point_ = active.position;
   set_point_velocity_ = active.velocity;
+  active_ = active;
 }
 
 void ManipulationPlanner::on(const GraspReply& reply) {
@@ -202,16 +203,45 @@ Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const V
   co_return planned;
 }
 
-Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, const Motion& motion) {
+TrajectoryRequest ManipulationPlanner::trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion) {
   TrajectoryRequest request;
   request.id = next_request();
   request.group = arm_.name;
   request.nodes = nodes;
-  request.start = posture();
+  request.start = start;
   request.attachment = attachment_;
   request.allowed_contacts = motion.allowed;
   request.speed_scale = motion.speed;
   trajectory_reply_.reset();
+  return request;
+}
+
+TrajectoryCommand ManipulationPlanner::command_for(const Trajectory& trajectory, const Motion& motion) {
+  TrajectoryCommand command;
+  command.id = ++commands_;
+  command.epoch = execution_->epoch;
+  command.robot = robot_->name();
+  for (const int axis : arm_.axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
+  command.trajectory = trajectory;
+  command.attachment = attachment_;
+  command.allowed_contacts = motion.allowed;
+  command.allowed_contacts.insert(command.allowed_contacts.end(), motion.tolerated.begin(), motion.tolerated.end());
+  return command;
+}
+
+/// Until the controller has heard of it.
+Routine<Outcome> ManipulationPlanner::send(const TrajectoryCommand& command) {
+  const std::uint64_t id = command.id;
+  for (int tries = 0; tries < 5; ++tries) {
+    out_->trajectories.push_back(command);
+    const bool heard = co_await waiting_.until([this, id] { return execution_->trajectory == id; }, 0.3);
+    if (heard) co_return Outcome{};
+  }
+  co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
+}
+
+Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, const Motion& motion) {
+  const TrajectoryRequest request = trajectory_request(nodes, posture(), motion);
   for (double waited = 0; !trajectory_reply_ && waited < settings_.request_timeout(); waited += settings_.request_retry()) {
     out_->trajectory_requests.push_back(request);
     co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
@@ -220,27 +250,22 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   if (!trajectory_reply_->solved) co_return Outcome::failure(trajectory_reply_->reason);
   for (const auto& corner : trajectory_reply_->corners) refuse(corner.what, corner.reason);
 
-  TrajectoryCommand command;
-  command.id = ++commands_;
-  command.epoch = execution_->epoch;
-  command.robot = robot_->name();
-  for (const int axis : arm_.axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
-  command.trajectory = trajectory_reply_->trajectory;
-  command.attachment = attachment_;
-  command.allowed_contacts = motion.allowed;
-  command.allowed_contacts.insert(command.allowed_contacts.end(), motion.tolerated.begin(), motion.tolerated.end());
-  const std::uint64_t id = command.id;
-  const auto acknowledged = [this, id] { return execution_->trajectory == id; };
-  bool heard = false;
-  for (int tries = 0; tries < 5 && !heard; ++tries) {
-    out_->trajectories.push_back(command);
-    heard = co_await waiting_.until(acknowledged, 0.3);
-  }
-  if (!heard) co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
-  const auto ended = [this, id] {
-    return execution_->trajectory != id || (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
+  const TrajectoryCommand command = command_for(trajectory_reply_->trajectory, motion);
+  Outcome heard = co_await send(command);
+  if (!heard.good) co_return heard;
+  Running running{command.id, command.trajectory.duration(), nodes};
+  const Running* now = &running;
+  const auto ended = [this, now] {
+    return execution_->trajectory != now->command ||
+           (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
   };
-  co_await waiting_.until([this, ended] { return ended() || blocked_for_ > settings_.blocked_timeout(); }, kForever);
+  const auto over = [this, ended] { return ended() || blocked_for_ > settings_.blocked_timeout(); };
+  const bool live = settings_.live_period() > 0 && !motion.straight;
+  for (bool done = false; !done;) {
+    done = co_await waiting_.until(over, live ? settings_.live_period() : kForever);
+    if (done || !live) break;
+    Outcome gone_on = co_await go_on(running, motion);
+  }
   if (!ended()) {
     const Outcome blocked = Outcome::failure("the way is blocked: " + execution_->reason);
     TrajectoryCommand stop;
@@ -253,7 +278,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     }
     co_return blocked;
   }
-  if (execution_->trajectory != id) co_return Outcome::failure("the trajectory controller lost the trajectory");
+  if (execution_->trajectory != running.command) co_return Outcome::failure("the trajectory controller lost the trajectory");
   if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
   if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);
   co_await waiting_.until([this] { return at_rest(); }, 1.0);

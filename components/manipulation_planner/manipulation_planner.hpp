@@ -56,6 +56,13 @@ class ManipulationPlanner {
   void on(const TrajectoryReply& reply);
   void job_done() { ++jobs_done_; }
 
+  /// What became of running paths.
+  struct LiveCounts {
+    std::uint64_t looks{}, kept{}, slower{}, taken{}, refused{};  ///< asked for; came back as they were; cheaper but longer; gone over to;
+                                                                  ///< turned down on the way
+  };
+  const LiveCounts& live_counts() const { return live_counts_; }
+
   void step(TimePoint now, Outbox& out);
   const ActionStatus& status() const { return status_; }
   std::string complaint(TimePoint now) { return layers_.complaint(now); }  ///< about layers left out; empty: none
@@ -73,6 +80,12 @@ class ManipulationPlanner {
     Outcome outcome;
     std::vector<Vector> nodes;
     std::string start_touches;  // why there is no path: the robot touches this where it stands
+  };
+  /// What the controller runs, and the path it came from.
+  struct Running {
+    std::uint64_t command{};
+    double duration{};  // of its trajectory [s]
+    std::vector<Vector> nodes;
   };
   struct GraspList {
     Outcome outcome;
@@ -98,6 +111,19 @@ class ManipulationPlanner {
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
   Routine<Outcome> move(const Motion& motion);
   Routine<Outcome> execute(const std::vector<Vector>& nodes, const Motion& motion);
+  Routine<Outcome> send(const TrajectoryCommand& command);
+  Routine<Outcome> go_on(Running& running, const Motion& motion);
+  TrajectoryRequest trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion);
+  TrajectoryCommand command_for(const Trajectory& trajectory, const Motion& motion);
+  /// What a motion that leads over from one trajectory to another is judged in.
+  struct Around {
+    Scene scene;
+    HumanState people;
+    Attachment attachment;
+    std::vector<std::string> allowed;
+    Vector posture;  // axes that are not the arm's
+  };
+  std::optional<Trajectory> lead_over(CollisionWorld& world, const Around& around, const MotionState3& from, const Trajectory& to) const;
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr);
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
@@ -136,6 +162,7 @@ class ManipulationPlanner {
   CostLayers layers_;
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;
+  ActiveTrajectory active_;
   TimePoint free_at_{};
   double blocked_for_{0};  // how long the forecast has held the robot back [s]
   std::optional<GraspReply> grasp_reply_;
@@ -144,6 +171,8 @@ class ManipulationPlanner {
 
   Attachment attachment_;
   std::optional<Grasp> grasp_;
+  LiveCounts live_counts_;
+  std::shared_ptr<CollisionWorld> world_;  // used by jobs only, which run one after the other
 };
 
 }  // namespace handsel::manipulation_planner

@@ -19,6 +19,12 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   positive("carry_speed", s.carry_speed());
   positive("approach_speed", s.approach_speed());
   positive("status_period", s.status_period());
+  if (s.live_period() < 0) throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
+  if (s.live_period() > 0) {
+    positive("live_time", s.live_time());
+    positive("replan_time", s.replan_time());
+    positive("live_reach", s.live_reach());
+  }
   return s;
 }
 
