@@ -201,7 +201,7 @@ class Planning {
     space_.enter(Stage::smooth);
     Random random(seed);
     smooth(space_, result_.path, random);
-    if (people && !direct.empty() && result_.path != direct) {
+    if (people && !asked && !direct.empty() && result_.path != direct) {
       const std::size_t other = result_.goal;
       std::vector<Vector> smoothed = direct;
       smooth(space_, smoothed, random);

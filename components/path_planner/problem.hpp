@@ -11,17 +11,17 @@
 namespace handsel::path_planner {
 
 struct Settings {
-  double step{0.02};                 ///< states along a motion are judged at least this close while searching [rad, max norm]
-  double verify_step{0.001};         ///< and this close on the path that is returned [rad]
-  double connect_range{0.7};         ///< longest edge of RRT and RRT-Connect [rad]
-  double transition_range{0.3};      ///< longest edge of T-RRT and BiT-RRT [rad]
-  double initial_temperature{0.02};  ///< of the transition test, in units of cost
-  double search_share{0.7};          ///< of the budget for the first planner; the rest is for RRT-Connect when it finds nothing
-  double cost_step{0.1};             ///< spacing of cost samples along a motion [rad]
-  double length_weight{0.05};        ///< cost of a radian where no person is concerned
-  int smoothing_rounds{120};         ///< shortcuts and perturbations tried
-  int patience{40};                  ///< stop smoothing after this many in a row without gain
-  double longest_edge{0.6};          ///< l_max: a perturbation replaces at most this much of the path to either side [rad]
+  double step{0.02};                  ///< states along a motion are judged at least this close while searching [rad, max norm]
+  double verify_step{0.001};          ///< and this close on the path that is returned [rad]
+  double connect_range{0.7};          ///< longest edge of RRT and RRT-Connect [rad]
+  double transition_range{0.3};       ///< longest edge of T-RRT and BiT-RRT [rad]
+  double initial_temperature{0.002};  ///< of the transition test, in units of cost
+  double search_share{0.7};           ///< of the budget for the first planner; the rest is for RRT-Connect when it finds nothing
+  double cost_step{0.1};              ///< spacing of cost samples along a motion [rad]
+  double length_weight{0.05};         ///< cost of a radian where no person is concerned
+  int smoothing_rounds{120};          ///< shortcuts and perturbations tried
+  int patience{40};                   ///< stop smoothing after this many in a row without gain
+  double longest_edge{0.6};           ///< l_max: a perturbation replaces at most this much of the path to either side [rad]
 };
 
 /// One planning problem. Everything a result depends on is in here, in the collision world and in the cost.
@@ -38,10 +38,12 @@ struct Problem {
 
 enum class Stage { search, smooth, verify };
 
-/// Where a caller looks in while planning runs. Both may be empty.
+/// Where a caller looks in while planning runs. Any may be empty.
 struct Hooks {
   std::function<bool()> cancelled;     ///< asked between checks; true ends the plan
   std::function<void(Stage)> entered;  ///< a stage begins
+  /// Smoothing goes on as long as this says so, whatever smoothing_rounds and patience are: any time that a caller has is used.
+  std::function<bool()> smooth_on{};
 };
 
 struct Result {

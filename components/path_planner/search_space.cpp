@@ -34,6 +34,8 @@ SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const H
     lower_[i] = std::isfinite(axis.lower) ? axis.lower : center - 2 * M_PI;
     upper_[i] = std::isfinite(axis.upper) ? axis.upper : center + 2 * M_PI;
   }
+  level_ = cost(start());
+  for (const Vector& goal : problem.goals) level_ = std::min(level_, cost(goal));
 }
 
 Vector SearchSpace::part(const Vector& all) const {
@@ -151,7 +153,11 @@ double SearchSpace::work(const Vector& from, const Vector& to) const {
 }
 
 double SearchSpace::price(const Vector& from, const Vector& to) const {
-  return integral_cost(from, to) + settings_.length_weight * (to - from).norm();
+  const double length = (to - from).norm();
+  double sum = 0;
+  if (cost_.concerned())
+    for (double cost : costs_along(from, to)) sum += std::max(0.0, cost - level_);
+  return (sum / static_cast<double>(std::max<std::size_t>(1, costs_.size())) + settings_.length_weight) * length;
 }
 
 double path_length(const std::vector<Vector>& path) {

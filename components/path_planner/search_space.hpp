@@ -44,7 +44,7 @@ class SearchSpace {
   const std::vector<double>& costs_at_steps(const Vector& from, const Vector& to, int steps) const;
   double integral_cost(const Vector& from, const Vector& to) const;  ///< along a motion [rad]
   double work(const Vector& from, const Vector& to) const;           ///< rises of the cost along a motion
-  /// What smoothing makes smaller: integral cost and length_weight times the length.
+  /// What smoothing makes smaller: integral of the cost above that of the cheapest of start and goals, and length_weight times the length.
   double price(const Vector& from, const Vector& to) const;
 
   std::uint64_t checks() const { return world_.checks() - checks_before_ + charged_; }
@@ -53,6 +53,7 @@ class SearchSpace {
   bool exhausted() const { return checks() >= limit_ || cancelled(); }
   std::uint64_t limit() const { return limit_; }
   void limit(std::uint64_t checks) { limit_ = checks; }  ///< budget counted from the beginning
+  const Hooks& hooks() const { return hooks_; }
   void enter(Stage stage) const {
     if (hooks_.entered) hooks_.entered(stage);
   }
@@ -71,6 +72,7 @@ class SearchSpace {
   const Settings& settings_;
   const Hooks& hooks_;
   Vector lower_, upper_;
+  double level_{};  // cost that no path between start and goals avoids
   mutable Vector all_, all_to_;
   mutable std::vector<double> at_, costs_;
   std::uint64_t checks_before_{}, limit_{}, charged_{};

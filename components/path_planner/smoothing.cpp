@@ -75,7 +75,9 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
   const Settings& settings = space.settings();
   const bool people = space.concerns_people();
   int in_vain = 0;
-  for (int round = 0; round < settings.smoothing_rounds && in_vain < settings.patience && !space.exhausted(); ++round) {
+  const auto& asked_on = space.hooks().smooth_on;
+  const auto goes_on = [&](int round) { return asked_on ? asked_on() : round < settings.smoothing_rounds && in_vain < settings.patience; };
+  for (int round = 0; goes_on(round) && !space.exhausted(); ++round) {
     const Line line(path);
     if (path.size() < 2 || line.length() < 1e-9) return;
     bool gained = false;

@@ -28,8 +28,8 @@ class TransitionTest {
   }
 
  private:
-  static constexpr double kTemperatureFactor = 2.0;
-  static constexpr int kMostRefusals = 10;
+  static constexpr double kTemperatureFactor = 1.5;
+  static constexpr int kMostRefusals = 3;
   static constexpr double kLeastTemperature = 1e-6;
 
   double temperature_;

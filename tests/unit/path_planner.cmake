@@ -3,3 +3,7 @@ handsel_test(path_planner_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property
              LABEL unit)
 handsel_test(planning_nodes SOURCES ${CMAKE_CURRENT_LIST_DIR}/planning_nodes_test.cpp LINK handsel_path_planner handsel_collision_checker
              handsel_costmap LABEL unit)
+handsel_test(path_cost SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/path_cost_test.cpp LINK handsel_path_planner_core handsel_costmap_core
+             LABEL unit)
+add_test(NAME path_cost_two_hundred COMMAND test_path_cost)
+set_tests_properties(path_cost_two_hundred PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=200)

@@ -1,5 +1,6 @@
 #include "components/path_planner/path_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -186,9 +187,15 @@ TEST_F(Planning, beside_a_person_the_path_costs_less_than_the_shortest) {
   problem_.straight = true;
   const Result straight = solve();
   problem_.straight = false;
-  const Result careful = solve();
-  expect_sound(careful);
-  EXPECT_LT(careful.cost, 0.9 * straight.cost);
+  std::vector<double> costs;
+  for (problem_.seed = 1; problem_.seed < 10; ++problem_.seed) {
+    const Result careful = solve();
+    expect_sound(careful);
+    EXPECT_LT(careful.cost, straight.cost);
+    costs.push_back(careful.cost);
+  }
+  std::sort(costs.begin(), costs.end());
+  EXPECT_LT(costs[4], 0.7 * straight.cost);
 }
 
 TEST(RequestDesk, plans_once_and_lets_newer_requests_replace_older_ones) {

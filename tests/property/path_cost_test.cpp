@@ -1,0 +1,189 @@
+// What the transition test is for: with a person beside the table, bidirectional T-RRT against RRT-Connect, all smoothed for the same
+// time. Random queries in whose way the person is: the straight line comes nearer to them than its ends. HANDSEL_RUNS: how many (60).
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "components/costmap/layers.hpp"
+#include "components/path_planner/path_planner.hpp"
+#include "tests/support/standing_person.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+constexpr unsigned kSeed = 2026;
+constexpr double kSmoothing = 0.004;  // [s] of this thread's time, for every path
+constexpr double kNearer = 0.1;       // the line between the ends comes this much nearer to the person than they are [m]
+constexpr double kSame = 0.001;       // distances that differ by less are the same [m]
+
+double thread_time() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Two-sided, normal approximation, of pairs that differ.
+double wilcoxon_p(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> d;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (std::abs(a[i] - b[i]) > 1e-9) d.push_back(a[i] - b[i]);
+  std::sort(d.begin(), d.end(), [](double x, double y) { return std::abs(x) < std::abs(y); });
+  double plus = 0;
+  for (std::size_t i = 0; i < d.size(); ++i)
+    if (d[i] > 0) plus += static_cast<double>(i + 1);
+  const double n = static_cast<double>(d.size()), mean = n * (n + 1) / 4, deviation = std::sqrt(n * (n + 1) * (2 * n + 1) / 24);
+  return d.empty() ? 1.0 : std::erfc(std::abs(plus - mean) / deviation / std::sqrt(2.0));
+}
+
+double sum(const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); }
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v.empty() ? 0.0 : v[v.size() / 2];
+}
+
+/// What one planner did, query by query.
+struct Record {
+  std::vector<double> integral, excess, least, search, smoothing;
+};
+
+class BesideTheTable : public ::testing::Test {
+ protected:
+  BesideTheTable() {
+    scene_.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
+    world_.set_scene(scene_);
+    problem_.axes = robot_.require_group("arm").axes;
+    problem_.budget = 2000000;
+  }
+
+  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+
+  Vector part(const Vector& q) const {
+    Vector out(problem_.axes.size());
+    for (std::size_t i = 0; i < problem_.axes.size(); ++i) out[static_cast<Eigen::Index>(i)] = q[problem_.axes[i]];
+    return out;
+  }
+
+  Vector whole(const Vector& part) const {
+    Vector q = problem_.start;
+    for (std::size_t i = 0; i < problem_.axes.size(); ++i) q[problem_.axes[i]] = part[static_cast<Eigen::Index>(i)];
+    return q;
+  }
+
+  Vector draw() {
+    Vector q = robot_.rest_posture();
+    do {
+      for (int axis : problem_.axes) q[axis] = between(robot_.axes()[axis].lower, robot_.axes()[axis].upper);
+    } while (!world_.check(q).free);
+    return q;
+  }
+
+  /// Somebody else, another start and goal.
+  void next_query() {
+    people_ = test::person_at({between(1.05, 1.15), between(-0.05, 0.05), 0});
+    world_.set_people(people_);
+    cost_.set_people(people_);
+    cost_.set_layers({std::make_shared<CostGrid>(maps_.make(people_.people[0], scene_.boxes)[2]), {}});
+    Vector goal;
+    for (bool in_the_way = false; !in_the_way;) {
+      problem_.start = draw();
+      goal = draw();
+      const double ends = std::min(cost_.parts(problem_.start).distance, cost_.parts(goal).distance);
+      for (double t = 0.02; t < 1 && !in_the_way; t += 0.02)
+        in_the_way = cost_.parts(problem_.start + t * (goal - problem_.start)).distance < ends - kNearer;
+    }
+    problem_.goals = {part(goal)};
+  }
+
+  /// Plans with the cost or, blind, as if nobody minded; people are obstacles all the same.
+  bool run(PlannerKind kind, bool blind, Record& record) {
+    problem_.planner = kind;
+    double begin = thread_time(), smoothing = begin;
+    Hooks hooks;
+    hooks.entered = [&](Stage stage) {
+      if (stage == Stage::smooth) smoothing = thread_time();
+    };
+    hooks.smooth_on = [&] { return thread_time() - smoothing < kSmoothing; };
+    const Result result = plan(robot_, world_, blind ? nobody_ : cost_, problem_, {}, hooks);
+    const double end = thread_time();
+    EXPECT_TRUE(result.solved) << result.reason;
+    if (!result.solved) return false;
+    const CostSettings weights;
+    const double ends =
+        std::max(weighted_cost(cost_.parts(problem_.start), weights), weighted_cost(cost_.parts(whole(problem_.goals[0])), weights));
+    double integral = 0, excess = 0, least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i < result.path.size(); ++i) {
+      const Vector along = result.path[i] - result.path[i - 1];
+      const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / 0.02)));
+      for (int k = 0; k < pieces; ++k) {
+        const CostParts parts = cost_.parts(whole(result.path[i - 1] + (k + 0.5) / pieces * along));
+        integral += weighted_cost(parts, weights) * along.norm() / pieces;
+        excess += std::max(0.0, weighted_cost(parts, weights) - ends) * along.norm() / pieces;
+        least = std::min(least, parts.distance);
+      }
+    }
+    record.integral.push_back(integral);
+    record.excess.push_back(excess);
+    record.least.push_back(least);
+    record.search.push_back(smoothing - begin);
+    record.smoothing.push_back(end - smoothing);
+    return true;
+  }
+
+  struct Comparison {
+    double ratio{}, p{}, larger{};
+  };
+  Comparison compare(const Record& careful, const Record& other, const char* name) {
+    int larger = 0, smaller = 0;
+    for (std::size_t i = 0; i < careful.least.size(); ++i) {
+      larger += careful.least[i] > other.least[i] + kSame;
+      smaller += careful.least[i] < other.least[i] - kSame;
+    }
+    Comparison c{sum(careful.excess) / sum(other.excess), wilcoxon_p(careful.excess, other.excess),
+                 static_cast<double>(larger) / std::max(1, larger + smaller)};
+    std::printf(
+        "T-RRT to %s: cost above the ends' %.3f (Wilcoxon p %.1e), whole integral %.3f; least distance larger in %d, smaller in %d of %zu; "
+        "search %.2f and %.2f ms, smoothing %.2f and %.2f ms (medians)\n",
+        name, c.ratio, c.p, sum(careful.integral) / sum(other.integral), larger, smaller, careful.least.size(),
+        1e3 * median(careful.search), 1e3 * median(other.search), 1e3 * median(careful.smoothing), 1e3 * median(other.smoothing));
+    return c;
+  }
+
+  RobotModel robot_{RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
+  CollisionWorld world_{robot_, nullptr};
+  HumanCost cost_{robot_, {}}, nobody_{robot_, {}};
+  costmap::MapMaker maps_{{}};
+  std::mt19937 random_{kSeed};
+  Scene scene_;
+  HumanState people_;
+  Problem problem_;
+};
+
+TEST_F(BesideTheTable, paths_of_t_rrt_cost_less_and_keep_farther_off_than_those_of_rrt_connect) {
+  const char* asked = std::getenv("HANDSEL_RUNS");
+  const int runs = asked != nullptr ? std::atoi(asked) : 60;
+  RecordProperty("seed", kSeed);
+  Record careful, blind, smoothed;
+  for (int i = 0; i < runs; ++i) {
+    next_query();
+    problem_.seed = kSeed + static_cast<unsigned>(i);
+    ASSERT_TRUE(run(PlannerKind::bitrrt, false, careful) && run(PlannerKind::rrt_connect, true, blind) &&
+                run(PlannerKind::rrt_connect, false, smoothed))
+        << "query " << i;
+  }
+  std::printf("seed %u, %d queries\n", kSeed, runs);
+  const Comparison to_blind = compare(careful, blind, "RRT-Connect with shortcuts");
+  const Comparison to_smoothed = compare(careful, smoothed, "RRT-Connect smoothed for the same cost");
+  EXPECT_LE(to_blind.ratio, 0.7);
+  EXPECT_LT(to_blind.p, 0.001);
+  EXPECT_GE(to_blind.larger, 0.8);
+  EXPECT_LT(to_smoothed.ratio, 1.0);
+}
+
+}  // namespace
+}  // namespace handsel::path_planner
