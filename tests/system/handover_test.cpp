@@ -1,7 +1,8 @@
 // The main job, judged by the simulator's oracle: over DDS and in lock-step, with people who take, who never move, who were recorded, and
-// a robot that never lets go.
+// a robot that never lets go. HANDSEL_RUNS: how many seeds over DDS (10).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -16,7 +17,13 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr int kSeeds = 10;
-constexpr int kAtLeast = 9;
+constexpr int kMayFail = 1;
+
+/// Over DDS, in real time; in lock-step it is always all of them. HANDSEL_RUNS: how many.
+int seeds_over_dds() {
+  const char* asked = std::getenv("HANDSEL_RUNS");
+  return asked != nullptr ? std::clamp(std::atoi(asked), 1, kSeeds) : kSeeds;
+}
 
 std::vector<Json> in_lockstep(const std::string& scenario, int seeds) {
   std::vector<Trial> trials;
@@ -62,12 +69,13 @@ int successes(const std::vector<Json>& lines) {
   return count;
 }
 
-TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
+TEST(Handover, seeds_succeed_over_dds_and_lockstep_agrees) {
+  const int seeds = seeds_over_dds();
   const std::vector<Json> lockstep = in_lockstep("give_mug", kSeeds);
   ASSERT_EQ(lockstep.size(), static_cast<std::size_t>(kSeeds));
-  EXPECT_GE(successes(lockstep), kAtLeast) << "in lock-step";
+  EXPECT_GE(successes(lockstep), kSeeds - kMayFail) << "in lock-step";
   int done = 0, agreed = 0;
-  for (int seed = 1; seed <= kSeeds; ++seed) {
+  for (int seed = 1; seed <= seeds; ++seed) {
     const Json report = over_dds("give_mug", seed);
     const std::string what = "seed " + std::to_string(seed);
     const bool success = report["success"];
@@ -84,8 +92,8 @@ TEST(Handover, ten_seeds_over_dds_succeed_and_lockstep_agrees) {
     EXPECT_GE(report["oracle"]["human_contact_before_release_s"].get<double>(), 0.2) << what;
     EXPECT_GE(report["oracle"]["human_alone_s"].get<double>(), 1.0) << what;
   }
-  EXPECT_GE(done, kAtLeast) << "over DDS";
-  EXPECT_GE(agreed, kAtLeast);
+  EXPECT_GE(done, seeds - kMayFail) << "over DDS";
+  EXPECT_GE(agreed, seeds - kMayFail);
 }
 
 void expect_failure(const Json& line, const std::string& what) {
