@@ -7,12 +7,17 @@
 
 namespace handsel::manipulation_planner {
 
+namespace {
+constexpr double kLookAgain = 0.5;  // [s]
+}
+
 Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human) {
   if (status_.holding && attachment_.object == object_id) co_return Outcome{};
   status_.phase = "looking for the object";
   const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
   Outcome last;
+  const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
   for (int round = 0; round < 2; ++round) {
     GraspList list = co_await ask_grasps(object_id, for_human);
     if (!list.outcome.good) {
@@ -20,7 +25,7 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
       continue;
     }
     if (person(for_human) != nullptr && !for_human.empty()) {
-      last = co_await keep_givable(list.grasps, object_id, for_human);
+      last = co_await keep_givable(list.grasps, object_id, for_human, patience);
       if (!last.good) continue;
     }
     int executed = 0;
@@ -35,8 +40,8 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
   co_return last;
 }
 
-Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, const std::string& object_id, const std::string& human) {
-  status_.phase = "looking ahead to the exchange";
+Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, const std::string& object_id, const std::string& human,
+                                                   TimePoint patience) {
   struct Ahead {
     std::size_t grasp;
     double cost;
@@ -46,24 +51,32 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
     Refusals refused;
   };
   auto result = std::make_shared<Result>();
-  const std::function<void()> job = [this, result, grasps, scene = scene_, layers = layers_.at(waiting_.now()), who = *person(human),
-                                     q = set_point_, T_world_object = object(object_id)->T_world_object] {
-    auto settings = settings_;
-    settings.set_exchange_goals(1);
-    for (std::size_t i = 0; i < grasps.size(); ++i) {
-      const ExchangeSearch search = find_exchange(*robot_, scene, who, layers, q, T_world_object, grasps[i].T_object_hand.inverse(),
-                                                  settings, barred_ways(grasps[i]));
-      if (search.poses.empty())
-        result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
-      else
-        result->givable.push_back({i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
-    }
-  };
-  Outcome worked = co_await work(job);
-  if (!worked.good) co_return worked;
+  while (person(human) != nullptr && object(object_id) != nullptr) {
+    status_.phase = "looking ahead to the exchange";
+    *result = {};
+    const std::function<void()> job = [this, result, grasps, scene = scene_, layers = layers_.at(waiting_.now()), who = *person(human),
+                                       q = set_point_, T_world_object = object(object_id)->T_world_object] {
+      auto settings = settings_;
+      settings.set_exchange_goals(1);
+      for (std::size_t i = 0; i < grasps.size(); ++i) {
+        const ExchangeSearch search = find_exchange(*robot_, scene, who, layers, q, T_world_object, grasps[i].T_object_hand.inverse(),
+                                                    settings, barred_ways(grasps[i]));
+        if (search.poses.empty())
+          result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
+        else
+          result->givable.push_back({i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
+      }
+    };
+    Outcome worked = co_await work(job);
+    if (!worked.good) co_return worked;
+    if (!result->givable.empty() || waiting_.now() >= patience) break;
+    status_.phase = "waiting for " + human + " to come within reach";
+    co_await waiting_.pause(kLookAgain);
+  }
   for (const auto& refusal : result->refused) refuse(refusal.what, refusal.reason);
   if (result->givable.empty())
-    co_return Outcome::failure("no grasp of " + object_id + " can be handed to " + human + ": " + result->refused.front().reason);
+    co_return Outcome::failure("no grasp of " + object_id + " can be handed to " + human +
+                               (result->refused.empty() ? ", who is out of sight" : ": " + result->refused.front().reason));
   std::stable_sort(result->givable.begin(), result->givable.end(), [](const Ahead& a, const Ahead& b) { return a.cost < b.cost; });
   std::vector<Grasp> givable;
   for (const Ahead& ahead : result->givable) givable.push_back(grasps[ahead.grasp]);
@@ -154,7 +167,9 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
 
   Outcome last;
   bool at_exchange = false;
-  for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange; ++attempt) {
+  const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
+  for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange;) {
+    status_.phase = "choosing the exchange point";
     const Person* whom = person(receiver);
     if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
     auto search = std::make_shared<ExchangeSearch>();
@@ -164,13 +179,18 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
       *search = find_exchange(*robot_, scene, who, layers, q, T_world_object, T, settings_, barred);
     };
     last = co_await work(job);
-    if (!last.good) continue;
-    if (search->poses.empty()) {
+    if (last.good && search->poses.empty()) {
       last = Outcome::failure(search->reason);
-      refuse("exchange point", last.reason);
-      co_await waiting_.pause(0.5);
+      if (waiting_.now() >= patience) {
+        refuse("exchange point", last.reason);
+        co_return last;
+      }
+      status_.phase = "waiting for " + receiver + " to come within reach";
+      co_await waiting_.pause(kLookAgain);
       continue;
     }
+    ++attempt;
+    if (!last.good) continue;
     Motion carry;
     carry.phase = "carry";
     carry.speed = settings_.carry_speed();

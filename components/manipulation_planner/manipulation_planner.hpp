@@ -99,7 +99,8 @@ class ManipulationPlanner {
   // Actions.
   Routine<Outcome> run(ActionGoal goal);
   Routine<Outcome> pick(const std::string& object, const std::string& for_human);
-  Routine<Outcome> keep_givable(std::vector<Grasp>& grasps, const std::string& object, const std::string& human);
+  /// Who is out of reach is waited for until `patience`.
+  Routine<Outcome> keep_givable(std::vector<Grasp>& grasps, const std::string& object, const std::string& human, TimePoint patience);
   Routine<Outcome> try_grasp(const std::string& object, const Grasp& grasp);
   Routine<Outcome> lift(const std::string& object);
   Routine<Outcome> give(const std::string& object, const std::string& human);
