@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint64_t kFirstShare = 40000;
 constexpr int kAttempts = 4;  // the first by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
+constexpr double kFiner = 0.1;      // of the step, from the third attempt on
 constexpr double kWideShare = 0.3;  // of the budget for the first
 constexpr double kNearEnds = 0.3;   // motions this close to start or goals are judged exactly by the first, too [rad]
 
@@ -78,7 +79,7 @@ class Planning {
     if (problem_.straight) return straight_line();
     for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
       const bool widely = attempt == 0;
-      space_.set_step(attempt < 2 ? settings_.step : std::min(settings_.step, settings_.verify_step));
+      space_.set_step(attempt < 2 ? settings_.step : kFiner * settings_.step);
       most_ = widely ? static_cast<std::uint64_t>(kWideShare * static_cast<double>(problem_.budget)) : problem_.budget;
       space_.limit(most_);
       if (widely) space_.judge_widely(goals_, kNearEnds);

@@ -12,7 +12,7 @@ namespace handsel::path_planner {
 
 struct Settings {
   double step{0.02};                  ///< states along a motion are judged at least this close while searching [rad, max norm]
-  double verify_step{0.001};          ///< and this close on the path that is returned [rad]
+  double verify_step{0.0002};          ///< and this close on the path that is returned [rad]
   double connect_range{0.7};          ///< longest edge of RRT and RRT-Connect [rad]
   double transition_range{0.3};       ///< longest edge of T-RRT and BiT-RRT [rad]
   double initial_temperature{0.002};  ///< of the transition test, in units of cost

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <numeric>
 #include <random>
 
@@ -12,20 +11,17 @@
 #include "components/costmap/layers.hpp"
 #include "components/path_planner/path_planner.hpp"
 #include "tests/support/standing_person.hpp"
+#include "tests/support/thread_time.hpp"
 
 namespace handsel::path_planner {
 namespace {
+
+using test::thread_time;
 
 constexpr unsigned kSeed = 2026;
 constexpr double kSmoothing = 0.004;  // [s] of this thread's time, for every path
 constexpr double kNearer = 0.1;       // the line between the ends comes this much nearer to the person than they are [m]
 constexpr double kSame = 0.001;       // distances that differ by less are the same [m]
-
-double thread_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 /// Two-sided, normal approximation, of pairs that differ.
 double wilcoxon_p(const std::vector<double>& a, const std::vector<double>& b) {

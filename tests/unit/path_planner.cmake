@@ -7,3 +7,7 @@ handsel_test(path_cost SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/path_cost_t
              LABEL unit)
 add_test(NAME path_cost_two_hundred COMMAND test_path_cost)
 set_tests_properties(path_cost_two_hundred PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=200)
+handsel_test(panda_paths SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/panda_paths_test.cpp LINK handsel_path_planner_core
+             nlohmann_json::nlohmann_json LABEL unit)
+add_test(NAME panda_paths_all COMMAND test_panda_paths)
+set_tests_properties(panda_paths_all PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT HANDSEL_RUNS=0)
