@@ -1,6 +1,7 @@
 #include "components/path_planner/path_planner.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
@@ -11,8 +12,8 @@ namespace handsel::path_planner {
 namespace {
 
 constexpr std::uint64_t kFirstShare = 40000;
-constexpr int kAttempts = 4;  // the first by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
-constexpr double kFiner = 0.1;      // of the step, from the third attempt on
+constexpr int kAttempts = 4;    // the first by the wide check alone; the fine check may refuse what the coarse one let pass: then finely
+constexpr double kFiner = 0.1;  // of the step, from the third attempt on
 constexpr double kWideShare = 0.3;  // of the budget for the first
 constexpr double kNearEnds = 0.3;   // motions this close to start or goals are judged exactly by the first, too [rad]
 
@@ -52,6 +53,12 @@ std::string contradiction(const RobotModel& robot, const Problem& problem) {
     if (!goal.allFinite()) return "a goal is not finite";
   }
   if (problem.budget == 0) return "the time limit is zero";
+  if (problem.upright) {
+    if (!(problem.upright->most > 0 && problem.upright->most < M_PI))
+      return format("what is held may lean %.3f rad, but the bound must be above 0 and below %.3f", problem.upright->most, M_PI);
+    if (!(problem.upright->axis_tool.norm() > 1e-9) || !(problem.upright->up_root.norm() > 1e-9))
+      return "the axis that stays upright, and up, must not be zero";
+  }
   return {};
 }
 
@@ -102,6 +109,7 @@ class Planning {
   bool ends_free() {
     const Vector start = space_.start();
     if (std::string why = space_.outside_limits(start); !why.empty()) return refuse("the start: " + why);
+    if (std::string why = leans(start); !why.empty()) return refuse("the start: " + why);
     const CollisionVerdict at_start = space_.verdict(start);
     if (!at_start.free) {
       result_.start_touches = at_start.id;
@@ -110,6 +118,7 @@ class Planning {
     std::string first;
     for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
       std::string why = space_.outside_limits(problem_.goals[i]);
+      if (why.empty()) why = leans(problem_.goals[i]);
       if (why.empty()) {
         const CollisionVerdict verdict = space_.verdict(problem_.goals[i]);
         if (verdict.free) {
@@ -130,7 +139,16 @@ class Planning {
     return true;
   }
 
+  std::string leans(const Vector& q) const {
+    if (space_.upright(q)) return {};
+    return format("what is held leans %.3f rad over, at most %.3f are allowed", space_.tilt(q), problem_.upright->most);
+  }
+
   Result straight_line() {
+    if (!space_.line_upright(space_.start(), goals_.front())) {
+      refuse("on the straight line what is held leans over too far");
+      return result_;
+    }
     result_.path = {space_.start(), goals_.front()};
     result_.goal = goal_index_.front();
     result_.planner = "straight";
@@ -229,6 +247,7 @@ class Planning {
   bool verified() {
     space_.enter(Stage::verify);
     for (std::size_t i = 1; i < result_.path.size(); ++i) {
+      if (!space_.line_upright(result_.path[i - 1], result_.path[i])) return refuse("what is held leans over too far on every path found");
       const CollisionVerdict verdict = space_.motion_verdict(result_.path[i - 1], result_.path[i], settings_.verify_step);
       if (verdict.free) continue;
       result_.reason = "every path found fails the fine check: " + contact(verdict);

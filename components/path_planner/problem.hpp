@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@ namespace handsel::path_planner {
 
 struct Settings {
   double step{0.02};                  ///< states along a motion are judged at least this close while searching [rad, max norm]
-  double verify_step{0.0002};          ///< and this close on the path that is returned [rad]
+  double verify_step{0.0002};         ///< and this close on the path that is returned [rad]
   double connect_range{0.7};          ///< longest edge of RRT and RRT-Connect [rad]
   double transition_range{0.3};       ///< longest edge of T-RRT and BiT-RRT [rad]
   double initial_temperature{0.002};  ///< of the transition test, in units of cost
@@ -24,6 +25,13 @@ struct Settings {
   double longest_edge{0.6};           ///< l_max: a perturbation replaces at most this much of the path to either side [rad]
 };
 
+/// What is held stays upright: an axis of the tool frame within an angle of up.
+struct Upright {
+  Vector3 axis_tool{Vector3::UnitZ()};
+  Vector3 up_root{Vector3::UnitZ()};  ///< up in the frame of the robot's root link
+  double most{};                      ///< [rad], in (0, pi)
+};
+
 /// One planning problem. Everything a result depends on is in here, in the collision world and in the cost.
 struct Problem {
   std::vector<int> axes;      ///< robot axes to plan for, in the order of `goals`
@@ -32,8 +40,9 @@ struct Problem {
   PlannerKind planner{PlannerKind::automatic};
   bool stock{};  ///< OMPL's planner of that name instead of ours, for comparison; automatic: as without
   std::uint64_t seed{1};
-  std::uint64_t budget{100000};  ///< states that may be judged
-  bool straight{};               ///< only the line from start to goals[0], checked
+  std::uint64_t budget{100000};      ///< states that may be judged
+  std::optional<Upright> upright{};  ///< holds everywhere on the path
+  bool straight{};                   ///< only the line from start to goals[0], checked
 };
 
 enum class Stage { search, smooth, verify };

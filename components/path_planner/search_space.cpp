@@ -8,6 +8,10 @@ namespace handsel::path_planner {
 
 namespace {
 
+constexpr double kTiltStep = 0.03;       // sum over the axes between two states whose tilt is judged [rad]
+constexpr double kTiltBetween = 5e-4;    // between them it is at most this much more [rad]
+constexpr double kUprightRange = 0.2;    // longest motion that is bent back to upright [rad]
+constexpr double kLeastProgress = 0.05;  // of its length
 constexpr double kForbiddenStep = 0.01;  // [rad] a meter away that is less than half a cell of our own grids
 
 }  // namespace
@@ -27,6 +31,7 @@ SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const H
       checks_before_(world.checks()),
       limit_(problem.budget),
       step_(settings.step),
+      tool_(robot.tool_link() >= 0 ? robot.tool_link() : static_cast<int>(robot.links().size()) - 1),
       bound_(cost.forbids() && cost.forbidden(problem.start).layer == nullptr) {
   for (int i = 0; i < size(); ++i) {
     const Axis& axis = robot.axes()[problem.axes[i]];
@@ -77,7 +82,9 @@ CollisionVerdict SearchSpace::verdict(const Vector& q) {
   return verdict.free && bound_ ? permitted(all_) : verdict;
 }
 
-bool SearchSpace::free(const Vector& q) { return world_.is_free(whole(q)) && !(bound_ && cost_.forbidden(all_).layer != nullptr); }
+bool SearchSpace::free(const Vector& q) {
+  return upright(q) && world_.is_free(whole(q)) && !(bound_ && cost_.forbidden(all_).layer != nullptr);
+}
 
 CollisionVerdict SearchSpace::motion_verdict(const Vector& from, const Vector& to, double step) {
   all_to_ = whole(to);
@@ -96,6 +103,7 @@ CollisionVerdict SearchSpace::permitted_on_line(double step) const {
 }
 
 bool SearchSpace::motion_free(const Vector& from, const Vector& to) {
+  if (!line_upright(from, to)) return false;
   if (ends_.empty()) return motion_verdict(from, to, step_).free;
   all_to_ = whole(to);
   if (world_.surely_free_at_steps(whole(from), all_to_, step_)) return !bound_ || permitted_on_line(step_).free;
@@ -108,6 +116,49 @@ void SearchSpace::judge_widely(std::vector<Vector> ends, double reach) {
   ends_ = std::move(ends);
   ends_.push_back(start());
   reach_ = reach;
+}
+
+double SearchSpace::tilt(const Vector& q) const {
+  if (!problem_.upright) return 0.0;
+  const Vector3 axis = robot_.link_pose(whole(q), tool_).linear() * problem_.upright->axis_tool.normalized();
+  return std::acos(std::clamp(axis.dot(problem_.upright->up_root.normalized()), -1.0, 1.0));
+}
+
+bool SearchSpace::line_upright(const Vector& from, const Vector& to) const {
+  if (!problem_.upright) return true;
+  const int last = std::max(1, static_cast<int>(std::ceil((to - from).cwiseAbs().sum() / kTiltStep)));
+  if (!upright(from) || !upright(to)) return false;
+  for (int i = 1; i < last; ++i)
+    if (tilt(from + (static_cast<double>(i) / last) * (to - from)) > problem_.upright->most - kTiltBetween) return false;
+  return true;
+}
+
+Vector SearchSpace::righted(Vector q) const {
+  if (!problem_.upright) return q;
+  constexpr int kRounds = 12;
+  constexpr double kAim = 0.9, kDifference = 1e-5;
+  for (int round = 0; round < kRounds; ++round) {
+    const double now = tilt(q), over = now - kAim * problem_.upright->most;
+    if (over <= 0) break;
+    Vector slope(size());
+    for (int i = 0; i < size(); ++i) {
+      Vector moved = q;
+      moved[i] += kDifference;
+      slope[i] = (tilt(moved) - now) / kDifference;
+    }
+    if (slope.squaredNorm() < 1e-9) break;
+    q = (q - slope * (over / slope.squaredNorm())).cwiseMax(lower_).cwiseMin(upper_);
+  }
+  return q;
+}
+
+Vector SearchSpace::toward(const Vector& from, const Vector& target, double range) const {
+  const double distance = (target - from).norm(), reach = problem_.upright ? std::min(range, kUprightRange) : range;
+  const Vector end = distance > reach ? Vector(from + (target - from) * (reach / distance)) : target;
+  if (!problem_.upright || line_upright(from, end)) return end;
+  const Vector bent = righted(end);
+  const bool nearer = (target - bent).norm() < distance - kLeastProgress * reach;
+  return nearer && line_upright(from, bent) ? bent : from;
 }
 
 double SearchSpace::cost(const Vector& q) const { return cost_.concerned() ? cost_(whole(q)) : 0.0; }

@@ -39,6 +39,17 @@ class SearchSpace {
   void set_step(double step) { step_ = step; }
   double step() const { return step_; }
 
+  /// How far what is held leans over [rad]; 0 where nothing asks for it to be upright.
+  double tilt(const Vector& q) const;
+  bool upright(const Vector& q) const { return !problem_.upright || tilt(q) <= problem_.upright->most; }
+  /// Everywhere on the straight line. Its ends may be on the bound, what is between is looked at every few hundredths of a radian.
+  bool line_upright(const Vector& from, const Vector& to) const;
+  /// The state made upright, near by and inside the limits; may fail, then it is not upright.
+  Vector righted(Vector q) const;
+  /// The end of a motion toward a target, at most `range` far [rad]; where an upright posture is asked for a short one, bent back to it.
+  /// `from` itself when there is none.
+  Vector toward(const Vector& from, const Vector& target, double range) const;
+
   double cost(const Vector& q) const;  ///< of one state, [0, 1]
   /// Of the ends of equal steps of a motion.
   const std::vector<double>& costs_at_steps(const Vector& from, const Vector& to, int steps) const;
@@ -77,6 +88,7 @@ class SearchSpace {
   mutable std::vector<double> at_, costs_;
   std::uint64_t checks_before_{}, limit_{}, charged_{};
   double step_{};
+  int tool_{-1};
   bool bound_{};              // by what outside layers forbid: not when it starts there, the arm must be able to leave
   std::vector<Vector> ends_;  // empty: every motion is judged exactly
   double reach_{};

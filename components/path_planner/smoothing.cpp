@@ -94,7 +94,7 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
       const Place from = line.at(std::max(0.0, s - half)), to = line.at(std::min(line.length(), s + half));
       const Vector center = line.point(line.at(s)), toward = random.within(space.lower(), space.upper()) - center;
       const double far = std::min(toward.norm(), random.between(0.1, 1.0) * half);
-      gained = toward.norm() > 1e-9 && replace(space, path, line, from, to, {center + toward * (far / toward.norm())});
+      gained = toward.norm() > 1e-9 && replace(space, path, line, from, to, {space.righted(center + toward * (far / toward.norm()))});
     }
     in_vain = gained ? 0 : in_vain + 1;
   }

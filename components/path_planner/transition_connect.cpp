@@ -32,7 +32,7 @@ class Search {
     while (!space_.exhausted() && found.path.empty()) {
       space_.charge(1);
       const int side = trees_[0].size() <= trees_[1].size() ? 0 : 1;
-      const Vector target = random_.within(space_.lower(), space_.upper());
+      const Vector target = space_.righted(random_.within(space_.lower(), space_.upper()));
       const int near = trees_[side].nearest(target);
       const int added = advance(side, near, target, space_.settings().connect_range);
       if (added == near) continue;
@@ -57,15 +57,14 @@ class Search {
  private:
   /// From a node toward a target, at most `range` far and as far as the transition test allows; the new node, or the old one.
   int advance(int side, int from, const Vector& target, double range, bool* reached = nullptr) {
-    const Vector start = trees_[side][from], along = target - start;
-    const double distance = along.norm(), length = std::min(distance, range);
+    const Vector start = trees_[side][from], stop = space_.toward(start, target, range);
+    const double length = (stop - start).norm();
     if (length < kLeastStep) {
-      if (reached == nullptr || distance >= kLeastStep || !space_.motion_free(start, target)) return from;
+      if (reached == nullptr || stop != target || !space_.motion_free(start, target)) return from;
       *reached = true;
       return add(side, from, target, space_.cost(target));
     }
     const int steps = std::max(1, static_cast<int>(std::ceil(length / space_.settings().cost_step)));
-    const Vector stop = length < distance ? Vector(start + along * (length / distance)) : target;
     const std::vector<double>& costs = space_.costs_at_steps(start, stop, steps);
     double last = cost_[side][static_cast<std::size_t>(from)];
     int allowed = 0;
@@ -74,7 +73,7 @@ class Search {
     if (allowed == 0) return from;
     const Vector q = allowed == steps ? stop : Vector(start + (stop - start) * (static_cast<double>(allowed) / steps));
     if (!space_.motion_free(start, q)) return from;
-    if (reached) *reached = allowed == steps && length == distance;
+    if (reached) *reached = allowed == steps && stop == target;
     return add(side, from, q, last);
   }
 

@@ -45,7 +45,7 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
     space.charge(1);
     const bool to_goal = random.unit() < kGoalBias;
     const std::size_t goal = static_cast<std::size_t>(random.unit() * static_cast<double>(goals.size()));
-    const Vector target = to_goal ? goals[goal] : random.within(space.lower(), space.upper());
+    const Vector target = to_goal ? goals[goal] : space.righted(random.within(space.lower(), space.upper()));
     const int near = nearest(tree, target);
     const double distance = (target - tree[near].q).norm();
     const bool refines = distance < range;

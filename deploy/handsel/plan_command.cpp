@@ -128,6 +128,7 @@ class Batch {
     for (const auto& [name, value] : start.items())
       if (!is_fixed(name)) problem.start[axis(name)] = number(start, name.c_str());
     read_goals(item, problem);
+    read_upright(item, problem);
     std::vector<Obstacle> obstacles;
     for (const json& one : item.value("obstacles", json::array())) obstacles.push_back(obstacle_of(one));
     const HumanState people = people_of(item);
@@ -191,6 +192,14 @@ class Batch {
                        [&](const Joint& j) { return j.name == name && j.kind == JointKind::fixed; });
   }
 
+  static void read_upright(const json& item, path_planner::Problem& problem) {
+    const auto upright = item.find("upright");
+    if (upright == item.end()) return;
+    problem.upright.emplace();
+    problem.upright->most = number(*upright, "most");
+    if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
+  }
+
   void read_goals(const json& item, path_planner::Problem& problem) const {
     const json& goals = field(item, "goals");
     if (!goals.is_array() || goals.empty()) throw LineError("\"goals\" must be a list of at least one goal");
@@ -248,7 +257,8 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   CLI::App* plan = app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
   plan->footer(
       R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
- "human": {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility", "comfort"}}; dims of a cylinder: height, radius.)");
+ "human": {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility", "comfort"},
+ "upright": {"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height, radius.)");
   plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
   plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
   plan->add_option("--group", options->group, "group of axes; where the robot names none, the axes of the goals");

@@ -11,3 +11,6 @@ handsel_test(panda_paths SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/panda_pat
              nlohmann_json::nlohmann_json LABEL unit)
 add_test(NAME panda_paths_all COMMAND test_panda_paths)
 set_tests_properties(panda_paths_all PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT HANDSEL_RUNS=0)
+handsel_test(upright_paths SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/upright_paths_test.cpp LINK handsel_path_planner_core LABEL unit)
+add_test(NAME upright_paths_hundred COMMAND test_upright_paths)
+set_tests_properties(upright_paths_hundred PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=100)
