@@ -69,6 +69,7 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
   const double duration = active_.rest.duration(), offset = duration - running.duration;
   const bool standing = at_rest();
   const double leave = active_.time + (standing ? 0.0 : settings_.replan_time());
+  if (!standing && leave <= offset) co_return Outcome::failure("it has not begun yet");
   if (leave + settings_.replan_time() > duration) co_return Outcome::failure("it is nearly there");
   const MotionState3 from = active_.rest.at(leave);
   const Vector start = RobotModel::with(posture(), arm_, from.position);

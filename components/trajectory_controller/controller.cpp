@@ -664,7 +664,7 @@ ActiveTrajectory Controller::active() const {
   if (arm_ != Arm::running) return a;
   a.trajectory = piece().id;
   a.time = runner_.time();
-  a.speed_factor = runner_.factor();
+  a.speed_factor = std::clamp(runner_.factor(), -1.0, 1.0);  // rounding
   a.axes = axes_;
   a.rest = runner_.path();
   a.allowed_contacts = piece().allowed_contacts;
