@@ -4,13 +4,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
-#include <random>
 
 #include <gtest/gtest.h>
 
-#include "components/costmap/layers.hpp"
 #include "components/path_planner/path_planner.hpp"
-#include "tests/support/standing_person.hpp"
+#include "tests/support/beside_the_table.hpp"
 #include "tests/support/thread_time.hpp"
 
 namespace handsel::path_planner {
@@ -20,7 +18,6 @@ using test::thread_time;
 
 constexpr unsigned kSeed = 2026;
 constexpr double kSmoothing = 0.004;  // [s] of this thread's time, for every path
-constexpr double kNearer = 0.1;       // the line between the ends comes this much nearer to the person than they are [m]
 constexpr double kSame = 0.001;       // distances that differ by less are the same [m]
 
 /// Two-sided, normal approximation, of pairs that differ.
@@ -48,76 +45,32 @@ struct Record {
   std::vector<double> integral, excess, least, search, smoothing;
 };
 
-class BesideTheTable : public ::testing::Test {
+class PathCost : public ::testing::Test, protected test::BesideTheTable {
  protected:
-  BesideTheTable() {
-    scene_.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
-    world_.set_scene(scene_);
-    problem_.axes = robot_.require_group("arm").axes;
-    problem_.budget = 2000000;
-  }
-
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
-
-  Vector part(const Vector& q) const {
-    Vector out(problem_.axes.size());
-    for (std::size_t i = 0; i < problem_.axes.size(); ++i) out[static_cast<Eigen::Index>(i)] = q[problem_.axes[i]];
-    return out;
-  }
-
-  Vector whole(const Vector& part) const {
-    Vector q = problem_.start;
-    for (std::size_t i = 0; i < problem_.axes.size(); ++i) q[problem_.axes[i]] = part[static_cast<Eigen::Index>(i)];
-    return q;
-  }
-
-  Vector draw() {
-    Vector q = robot_.rest_posture();
-    do {
-      for (int axis : problem_.axes) q[axis] = between(robot_.axes()[axis].lower, robot_.axes()[axis].upper);
-    } while (!world_.check(q).free);
-    return q;
-  }
-
-  /// Somebody else, another start and goal.
-  void next_query() {
-    people_ = test::person_at({between(1.05, 1.15), between(-0.05, 0.05), 0});
-    world_.set_people(people_);
-    cost_.set_people(people_);
-    cost_.set_layers({std::make_shared<CostGrid>(maps_.make(people_.people[0], scene_.boxes)[2]), {}});
-    Vector goal;
-    for (bool in_the_way = false; !in_the_way;) {
-      problem_.start = draw();
-      goal = draw();
-      const double ends = std::min(cost_.parts(problem_.start).distance, cost_.parts(goal).distance);
-      for (double t = 0.02; t < 1 && !in_the_way; t += 0.02)
-        in_the_way = cost_.parts(problem_.start + t * (goal - problem_.start)).distance < ends - kNearer;
-    }
-    problem_.goals = {part(goal)};
-  }
+  PathCost() : BesideTheTable(kSeed) {}
 
   /// Plans with the cost or, blind, as if nobody minded; people are obstacles all the same.
   bool run(PlannerKind kind, bool blind, Record& record) {
-    problem_.planner = kind;
+    problem.planner = kind;
     double begin = thread_time(), smoothing = begin;
     Hooks hooks;
     hooks.entered = [&](Stage stage) {
       if (stage == Stage::smooth) smoothing = thread_time();
     };
     hooks.smooth_on = [&] { return thread_time() - smoothing < kSmoothing; };
-    const Result result = plan(robot_, world_, blind ? nobody_ : cost_, problem_, {}, hooks);
+    const Result result = plan(robot, world, blind ? nobody_ : cost, problem, {}, hooks);
     const double end = thread_time();
     EXPECT_TRUE(result.solved) << result.reason;
     if (!result.solved) return false;
     const CostSettings weights;
     const double ends =
-        std::max(weighted_cost(cost_.parts(problem_.start), weights), weighted_cost(cost_.parts(whole(problem_.goals[0])), weights));
+        std::max(weighted_cost(cost.parts(problem.start), weights), weighted_cost(cost.parts(whole(problem.goals[0])), weights));
     double integral = 0, excess = 0, least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < result.path.size(); ++i) {
       const Vector along = result.path[i] - result.path[i - 1];
       const int pieces = std::max(1, static_cast<int>(std::ceil(along.norm() / 0.02)));
       for (int k = 0; k < pieces; ++k) {
-        const CostParts parts = cost_.parts(whole(result.path[i - 1] + (k + 0.5) / pieces * along));
+        const CostParts parts = cost.parts(whole(result.path[i - 1] + (k + 0.5) / pieces * along));
         integral += weighted_cost(parts, weights) * along.norm() / pieces;
         excess += std::max(0.0, weighted_cost(parts, weights) - ends) * along.norm() / pieces;
         least = std::min(least, parts.distance);
@@ -150,24 +103,17 @@ class BesideTheTable : public ::testing::Test {
     return c;
   }
 
-  RobotModel robot_{RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
-  CollisionWorld world_{robot_, nullptr};
-  HumanCost cost_{robot_, {}}, nobody_{robot_, {}};
-  costmap::MapMaker maps_{{}};
-  std::mt19937 random_{kSeed};
-  Scene scene_;
-  HumanState people_;
-  Problem problem_;
+  HumanCost nobody_{robot, {}};
 };
 
-TEST_F(BesideTheTable, paths_of_t_rrt_cost_less_and_keep_farther_off_than_those_of_rrt_connect) {
+TEST_F(PathCost, paths_of_t_rrt_cost_less_and_keep_farther_off_than_those_of_rrt_connect) {
   const char* asked = std::getenv("HANDSEL_RUNS");
   const int runs = asked != nullptr ? std::atoi(asked) : 60;
   RecordProperty("seed", kSeed);
   Record careful, blind, smoothed;
   for (int i = 0; i < runs; ++i) {
     next_query();
-    problem_.seed = kSeed + static_cast<unsigned>(i);
+    problem.seed = kSeed + static_cast<unsigned>(i);
     ASSERT_TRUE(run(PlannerKind::bitrrt, false, careful) && run(PlannerKind::rrt_connect, true, blind) &&
                 run(PlannerKind::rrt_connect, false, smoothed))
         << "query " << i;

@@ -1,0 +1,79 @@
+// Paths beside a person: ours (bidirectional T-RRT) against OMPL's BiT-RRT on the same costs, judged state by state by FCL; both searches
+// only, then ours with smoothing and the last check. One run, query by query in turn. Usage: bench_planner [queries]
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+
+#include "components/path_planner/path_planner.hpp"
+#include "components/path_planner/search.hpp"
+#include "tests/support/beside_the_table.hpp"
+#include "tests/support/thread_time.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+constexpr unsigned kSeed = 4;
+constexpr double kPatience = 2.0;  // [s] of a search of the peer
+
+double at(std::vector<double> times, double share) {
+  std::sort(times.begin(), times.end());
+  return 1e3 * times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
+}
+
+void compare(int queries) {
+  test::BesideTheTable table(kSeed);
+  CollisionWorld exact(table.robot, nullptr);
+  exact.set_scene(table.scene);
+  const Settings settings;
+  std::vector<double> search_times, all_times, peer_times;
+  int solved = 0, peer_solved = 0;
+  for (int i = 0; i < queries; ++i) {
+    table.next_query();
+    table.problem.seed = kSeed + static_cast<unsigned>(i);
+    double ours = std::numeric_limits<double>::infinity(), whole = ours;
+    bool found = false;
+    for (int repeat = 0; repeat < 3; ++repeat) {
+      const double begin = test::thread_time();
+      double smoothing = begin;
+      Hooks hooks;
+      hooks.entered = [&](Stage stage) {
+        if (stage == Stage::smooth) smoothing = test::thread_time();
+      };
+      found = plan(table.robot, table.world, table.cost, table.problem, settings, hooks).solved;
+      whole = std::min(whole, test::thread_time() - begin);
+      ours = std::min(ours, smoothing - begin);
+    }
+    solved += found;
+    search_times.push_back(ours);
+    all_times.push_back(whole);
+
+    exact.set_people(table.people);
+    HumanCost one_by_one(table.robot, {});
+    one_by_one.set_people(table.people);
+    one_by_one.set_layers(table.layers);
+    Problem problem = table.problem;
+    problem.stock = true;
+    problem.budget = UINT64_MAX / 2;
+    const double begin = test::thread_time();
+    Hooks hooks;
+    hooks.cancelled = [&] { return test::thread_time() - begin > kPatience; };
+    SearchSpace space(table.robot, exact, one_by_one, problem, settings, hooks);
+    peer_solved += !search(space, problem.goals, PlannerKind::bitrrt, true, problem.seed).path.empty();
+    peer_times.push_back(test::thread_time() - begin);
+  }
+  std::printf("%d queries, seed %u; times of the thread, ours the least of 3\n", queries, kSeed);
+  std::printf("ours, search              p50 %8.2f ms  p95 %8.2f ms  solved %d\n", at(search_times, 0.5), at(search_times, 0.95), solved);
+  std::printf("ours, smoothed and judged p50 %8.2f ms  p95 %8.2f ms\n", at(all_times, 0.5), at(all_times, 0.95));
+  std::printf("OMPL BiTRRT and FCL       p50 %8.2f ms  p95 %8.2f ms  solved %d\n", at(peer_times, 0.5), at(peer_times, 0.95), peer_solved);
+  std::printf("ratio of searches         p50 %8.1f x   p95 %8.1f x\n", at(peer_times, 0.5) / at(search_times, 0.5),
+              at(peer_times, 0.95) / at(search_times, 0.95));
+}
+
+}  // namespace
+}  // namespace handsel::path_planner
+
+int main(int argc, char** argv) {
+  handsel::path_planner::compare(argc > 1 ? std::max(1, std::atoi(argv[1])) : 40);
+  return 0;
+}
