@@ -364,9 +364,14 @@ std::vector<Json> run_all(int first, int count) {
   for (int k = 0; k < kProcesses; ++k) {
     const pid_t child = fork();
     if (child == 0) {
-      std::ofstream out(folder.path() / ("lines" + std::to_string(k)));
-      for (int i = k; i < count; i += kProcesses)
-        out << run(static_cast<std::uint64_t>(first + i), folder.path().string()).dump() << std::endl;
+      try {
+        std::ofstream out(folder.path() / ("lines" + std::to_string(k)));
+        for (int i = k; i < count; i += kProcesses)
+          out << run(static_cast<std::uint64_t>(first + i), folder.path().string()).dump() << std::endl;
+      } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        _exit(1);
+      }
       _exit(0);
     }
     children.push_back(child);

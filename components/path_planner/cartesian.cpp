@@ -1,0 +1,389 @@
+#include "components/path_planner/cartesian.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/model/srs_arm.hpp"
+#include "components/path_planner/random.hpp"
+#include "components/path_planner/search_space.hpp"
+#include "components/path_planner/transition_test.hpp"
+
+namespace handsel::path_planner {
+namespace {
+
+constexpr double kNearPi = 0.02;       // displacements this near to a turn by pi have no local path [rad]
+constexpr double kSamePosture = 1e-4;  // [rad]
+constexpr int kHalvings = 4;           // of a step before what the joints do is called a jump
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
+
+class Space {
+ public:
+  Space(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const CartesianProblem& problem,
+        const CartesianSettings& settings, const Hooks& hooks, const ik::Chain& chain, const ik::SrsArm& arm)
+      : arm_group_(robot.require_group("arm")),
+        world_(world),
+        cost_(cost),
+        problem_(problem),
+        settings_(settings),
+        hooks_(hooks),
+        chain_(chain),
+        arm_(arm),
+        checks_before_(world.checks()) {}
+
+  const CartesianSettings& settings() const { return settings_; }
+  bool concerns_people() const { return cost_.concerned(); }
+  double cost(const Vector& q) const { return cost_.concerned() ? cost_(q) : 0.0; }
+  bool free(const Vector& q) { return world_.is_free(q); }
+  std::uint64_t checks() const { return world_.checks() - checks_before_ + solved_; }
+  bool cancelled() const { return hooks_.cancelled && hooks_.cancelled(); }
+  bool exhausted() const { return checks() >= problem_.budget || cancelled(); }
+  void charge() { ++solved_; }
+
+  CartesianNode node_of(const Vector& q) const {
+    ik::Axes joints = RobotModel::part(q, arm_group_);
+    return {chain_.forward(joints, nullptr), arm_.elbow_angle(joints), q};
+  }
+
+  /// Shoulder, elbow and wrist bent the same way: no way in active variables leads from one branch to another.
+  bool same_branch(const Vector& a, const Vector& b) const {
+    constexpr double kStretched = 1e-3;
+    for (const std::size_t middle : {1, 3, 5}) {
+      const double x = a[arm_group_.axes[middle]], y = b[arm_group_.axes[middle]];
+      if (x * y < 0 && std::min(std::abs(x), std::abs(y)) > kStretched) return false;
+    }
+    return true;
+  }
+
+  /// Postures at a pose with this elbow angle, inside the limits; the other axes as in `all`.
+  std::vector<Vector> postures(const Pose& T, double elbow, const Vector& all) {
+    ++solved_;
+    std::vector<Vector> out;
+    for (const ik::Axes& q : arm_.branches(T, elbow))
+      if (auto inside = brought_inside(q, 0.5 * (chain_.lower() + chain_.upper())))
+        out.push_back(RobotModel::with(all, arm_group_, *inside));
+    return out;
+  }
+
+  double distance(const CartesianNode& a, const CartesianNode& b) const {
+    const double turn = Eigen::Quaterniond(a.T_root_tool.linear()).angularDistance(Eigen::Quaterniond(b.T_root_tool.linear()));
+    const double elbow = settings_.elbow * wrapped(b.elbow - a.elbow);
+    double sum = settings_.metre * settings_.metre * (a.T_root_tool.translation() - b.T_root_tool.translation()).squaredNorm() +
+                 turn * turn + elbow * elbow;
+    for (int axis : problem_.also) sum += (a.q[axis] - b.q[axis]) * (a.q[axis] - b.q[axis]);
+    return std::sqrt(sum);
+  }
+
+  /// At a share of the local path: the displacement of the tool, one axis and an angle, and the angle of the elbow.
+  struct Local {
+    Vector3 move, turn_axis;
+    double turn{}, elbow{};
+  };
+  std::optional<Local> local(const CartesianNode& a, const CartesianNode& b) const {
+    const Eigen::AngleAxisd turn(Eigen::Matrix3d(a.T_root_tool.linear().transpose() * b.T_root_tool.linear()));
+    if (turn.angle() > M_PI - kNearPi) return std::nullopt;
+    return Local{b.T_root_tool.translation() - a.T_root_tool.translation(), turn.axis(), turn.angle(), wrapped(b.elbow - a.elbow)};
+  }
+
+  /// From a along the local path to b, up to `far` of it; where it ends before, how far it came. Joints go on from a's on their branch;
+  /// every step is free. Samples are added when asked for.
+  double follow(const CartesianNode& a, const CartesianNode& b, double far, CartesianNode& at, std::vector<Vector>* samples = nullptr) {
+    at = a;
+    const std::optional<Local> way = local(a, b);
+    if (!way) return 0.0;
+    const int steps = std::max(1, static_cast<int>(std::ceil(far * distance(a, b) / settings_.step)));
+    double reached = 0;
+    for (int k = 1; k <= steps; ++k) {
+      const double to = far * k / steps;
+      if (!advance(a, b, *way, reached, to, at, samples, 0)) return reached;
+      reached = to;
+    }
+    return reached;
+  }
+
+ private:
+  std::optional<Vector> brought_inside(const ik::Axes& q, const Vector& near) const {
+    Vector out(7);
+    for (int i = 0; i < 7; ++i) {
+      out[i] = near[i] + wrapped(q[i] - near[i]);
+      if (out[i] < chain_.lower()[i]) out[i] += 2 * M_PI;
+      if (out[i] > chain_.upper()[i]) out[i] -= 2 * M_PI;
+      if (out[i] < chain_.lower()[i] || out[i] > chain_.upper()[i]) return std::nullopt;
+    }
+    return out;
+  }
+
+  bool advance(const CartesianNode& a, const CartesianNode& b, const Local& way, double from, double to, CartesianNode& at,
+               std::vector<Vector>* samples, int halved) {
+    CartesianNode next;
+    next.T_root_tool.linear() = a.T_root_tool.linear() * Eigen::AngleAxisd(to * way.turn, way.turn_axis).toRotationMatrix();
+    next.T_root_tool.translation() = a.T_root_tool.translation() + to * way.move;
+    next.elbow = wrapped(a.elbow + to * way.elbow);
+    const Vector now = RobotModel::part(at.q, arm_group_);
+    ++solved_;
+    double least = kInfinite;
+    Vector best;
+    for (const ik::Axes& q : arm_.branches(next.T_root_tool, next.elbow)) {
+      const auto inside = brought_inside(q, now);
+      if (!inside) continue;
+      const double apart = (*inside - now).lpNorm<Eigen::Infinity>();
+      if (apart >= least) continue;
+      least = apart;
+      best = *inside;
+    }
+    if (least > settings_.largest_step) {
+      if (halved == kHalvings || least == kInfinite) return false;
+      const double middle = 0.5 * (from + to);
+      return advance(a, b, way, from, middle, at, samples, halved + 1) && advance(a, b, way, middle, to, at, samples, halved + 1);
+    }
+    next.q = RobotModel::with(at.q, arm_group_, best);
+    for (int axis : problem_.also) next.q[axis] = a.q[axis] + to * (b.q[axis] - a.q[axis]);
+    if (!world_.check_motion(at.q, next.q, 0.02).free) return false;
+    at = next;
+    if (samples != nullptr) samples->push_back(at.q);
+    return true;
+  }
+
+  const Group& arm_group_;
+  CollisionWorld& world_;
+  const HumanCost& cost_;
+  const CartesianProblem& problem_;
+  const CartesianSettings& settings_;
+  const Hooks& hooks_;
+  const ik::Chain& chain_;
+  const ik::SrsArm& arm_;
+  std::uint64_t checks_before_, solved_{0};
+};
+
+struct TreeNode {
+  CartesianNode at;
+  int parent{-1};
+  double cost{};
+};
+using Tree = std::vector<TreeNode>;
+
+int nearest(const Space& space, const Tree& tree, const CartesianNode& to) {
+  int best = 0;
+  double least = kInfinite;
+  for (int i = 0; i < static_cast<int>(tree.size()); ++i) {
+    const double d = space.distance(tree[static_cast<std::size_t>(i)].at, to);
+    if (d >= least) continue;
+    least = d;
+    best = i;
+  }
+  return best;
+}
+
+std::vector<CartesianNode> branch(const Tree& tree, int leaf) {
+  std::vector<CartesianNode> out;
+  for (int i = leaf; i >= 0; i = tree[static_cast<std::size_t>(i)].parent) out.push_back(tree[static_cast<std::size_t>(i)].at);
+  return out;
+}
+
+class Search {
+ public:
+  Search(Space& space, const CartesianProblem& problem, Random& random, double reach, const Vector3& center)
+      : space_(space),
+        random_(random),
+        accepts_(space.settings().initial_temperature, random_),
+        problem_(problem),
+        reach_(reach),
+        center_(center) {}
+
+  std::vector<CartesianNode> run(const CartesianNode& start, const std::vector<CartesianNode>& goals) {
+    Tree trees[2];
+    trees[0].push_back({start, -1, space_.cost(start.q)});
+    for (const CartesianNode& goal : goals) trees[1].push_back({goal, -1, space_.cost(goal.q)});
+    for (const CartesianNode& goal : goals)
+      if (CartesianNode end; space_.follow(start, goal, 1.0, end) == 1.0 && same(end, goal) && !space_.concerns_people())
+        return {start, goal};
+    for (int round = 0; !space_.exhausted(); ++round) {
+      space_.charge();
+      const int grows = round % 2;
+      Tree &tree = trees[grows], &other = trees[1 - grows];
+      const CartesianNode target = random_.unit() < space_.settings().goal_bias
+                                       ? other[static_cast<std::size_t>(random_.unit() * static_cast<double>(other.size()))].at
+                                       : sample();
+      const int added = extend(tree, nearest(space_, tree, target), target);
+      if (added < 0) continue;
+      const CartesianNode fresh = tree[static_cast<std::size_t>(added)].at;
+      // Toward it from the other tree, as far as it goes.
+      int at = nearest(space_, other, fresh);
+      while (at >= 0 && !space_.exhausted()) {
+        const int next = extend(other, at, fresh);
+        if (next < 0) break;
+        at = next;
+        if (space_.distance(other[static_cast<std::size_t>(at)].at, fresh) > 1e-6) continue;
+        if (!same(other[static_cast<std::size_t>(at)].at, fresh)) break;  // the same pose on another branch
+        std::vector<CartesianNode> path = branch(trees[0], grows == 0 ? added : at);
+        std::reverse(path.begin(), path.end());
+        const std::vector<CartesianNode> rest = branch(trees[1], grows == 0 ? at : added);
+        path.insert(path.end(), rest.begin() + 1, rest.end());
+        return path;
+      }
+    }
+    return {};
+  }
+
+ private:
+  static bool same(const CartesianNode& a, const CartesianNode& b) { return (a.q - b.q).lpNorm<Eigen::Infinity>() < kSamePosture; }
+
+  CartesianNode sample() {
+    CartesianNode out;
+    Vector3 p;
+    do {
+      p = Vector3(random_.between(-1, 1), random_.between(-1, 1), random_.between(-1, 1));
+    } while (p.norm() > 1);
+    const Eigen::Quaterniond turn = Eigen::Quaterniond(random_.normal(), random_.normal(), random_.normal(), random_.normal()).normalized();
+    out.T_root_tool = make_pose(center_ + reach_ * p, turn);
+    out.elbow = random_.between(-M_PI, M_PI);
+    out.q = problem_.start;
+    for (std::size_t i = 0; i < problem_.also.size(); ++i)
+      out.q[problem_.also[i]] += random_.unit() * (problem_.also_goal[static_cast<Eigen::Index>(i)] - out.q[problem_.also[i]]);
+    return out;
+  }
+
+  /// One edge of at most `range`, shorter where it is blocked; -1: none.
+  int extend(Tree& tree, int near, const CartesianNode& target) {
+    const CartesianNode from = tree[static_cast<std::size_t>(near)].at;
+    const double far = space_.distance(from, target);
+    if (far < 1e-9) return -1;
+    CartesianNode at;
+    const double share = std::min(1.0, space_.settings().range / far), reached = space_.follow(from, target, share, at);
+    if (reached * far < 2 * space_.settings().step && reached < 1.0) return -1;
+    const double cost = space_.cost(at.q);
+    if (space_.concerns_people() && !accepts_(tree[static_cast<std::size_t>(near)].cost, cost)) return -1;
+    tree.push_back({at, near, cost});
+    return static_cast<int>(tree.size()) - 1;
+  }
+
+  Space& space_;
+  Random& random_;
+  TransitionTest accepts_;
+  const CartesianProblem& problem_;
+  double reach_;
+  Vector3 center_;
+};
+
+double integral(const Space& space, const std::vector<Vector>& samples) {
+  double sum = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    sum += space.cost(0.5 * (samples[i - 1] + samples[i])) * (samples[i] - samples[i - 1]).norm();
+  return sum;
+}
+
+/// The samples of the local paths; empty when they no longer meet their nodes.
+std::vector<Vector> samples_of(Space& space, const std::vector<CartesianNode>& nodes) {
+  std::vector<Vector> out = {nodes.front().q};
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    CartesianNode end;
+    if (space.follow(nodes[i - 1], nodes[i], 1.0, end, &out) < 1.0 || (end.q - nodes[i].q).lpNorm<Eigen::Infinity>() > kSamePosture)
+      return {};
+  }
+  return out;
+}
+
+void shorten(Space& space, std::vector<CartesianNode>& nodes, Random& random) {
+  for (int k = 0; k < space.settings().shortcuts && nodes.size() > 2 && !space.exhausted(); ++k) {
+    std::size_t a = static_cast<std::size_t>(random.unit() * static_cast<double>(nodes.size())),
+                b = static_cast<std::size_t>(random.unit() * static_cast<double>(nodes.size()));
+    if (a > b) std::swap(a, b);
+    if (b - a < 2) continue;
+    const std::vector<CartesianNode> direct = {nodes[a], nodes[b]};
+    const std::vector<Vector> samples = samples_of(space, direct);
+    if (samples.empty()) continue;
+    if (space.concerns_people() &&
+        integral(space, samples) >=
+            integral(space, samples_of(space, {nodes.begin() + static_cast<long>(a), nodes.begin() + static_cast<long>(b) + 1})))
+      continue;
+    nodes.erase(nodes.begin() + static_cast<long>(a) + 1, nodes.begin() + static_cast<long>(b));
+  }
+}
+
+}  // namespace
+
+CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
+                               const CartesianSettings& settings, const Hooks& hooks) {
+  CartesianResult result;
+  const auto refuse = [&result](const std::string& why) {
+    result.reason = why;
+    return result;
+  };
+  if (problem.start.size() != robot.dof() || !problem.start.allFinite()) return refuse("the start is not a posture of all axes");
+  if (problem.also_goal.size() != static_cast<Eigen::Index>(problem.also.size()))
+    return refuse("the further axes and their goals do not match");
+  if (!problem.T_root_goal.matrix().allFinite()) return refuse("the goal pose is not finite");
+  if (problem.budget == 0) return refuse("the time limit is zero");
+  const Group* group = robot.group("arm");
+  if (group == nullptr) return refuse("the robot has no group \"arm\"");
+  for (std::size_t i = 0; i < problem.also.size(); ++i) {
+    const int axis = problem.also[i];
+    if (axis < 0 || axis >= robot.dof() || std::count(group->axes.begin(), group->axes.end(), axis) > 0)
+      return refuse("axis " + std::to_string(axis) + " cannot be active besides the arm");
+    const double goal = problem.also_goal[static_cast<Eigen::Index>(i)];
+    if (!(goal >= robot.axes()[static_cast<std::size_t>(axis)].lower && goal <= robot.axes()[static_cast<std::size_t>(axis)].upper))
+      return refuse("the goal of axis " + robot.axes()[static_cast<std::size_t>(axis)].name + " is outside its limits");
+  }
+  const ik::Chain chain(robot, *group, problem.start);
+  const auto arm = ik::SrsArm::recognise(chain);
+  if (!arm) return refuse("the arm is not one of shoulder, elbow and wrist: its joints do not follow from tool pose and elbow angle");
+  std::vector<int> moving = group->axes;
+  moving.insert(moving.end(), problem.also.begin(), problem.also.end());
+  world.set_moving_axes(moving);
+  cost.set_moving_axes(moving);
+  Space space(robot, world, cost, problem, settings, hooks, chain, *arm);
+
+  if (const CollisionVerdict verdict = world.check(problem.start); !verdict.free)
+    return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
+  Vector at_goal = problem.start;
+  for (std::size_t i = 0; i < problem.also.size(); ++i) at_goal[problem.also[i]] = problem.also_goal[static_cast<Eigen::Index>(i)];
+  std::vector<CartesianNode> goals;
+  bool reachable = false, on_branch = false;
+  CollisionVerdict touched;
+  for (int k = 0; k < settings.goal_elbows; ++k) {
+    const double elbow = wrapped(2 * M_PI * k / settings.goal_elbows);
+    for (const Vector& q : space.postures(problem.T_root_goal, elbow, at_goal)) {
+      reachable = true;
+      if (!space.same_branch(problem.start, q)) continue;
+      on_branch = true;
+      const CollisionVerdict verdict = world.check(q);
+      if (verdict.free)
+        goals.push_back({problem.T_root_goal, elbow, q});
+      else if (touched.free)
+        touched = verdict;
+    }
+  }
+  if (!reachable) return refuse("no posture of the arm has the tool at the goal");
+  if (!on_branch)
+    return refuse("the arm would have to pass through a stretched shoulder, elbow or wrist to reach the goal: plan in joint space");
+  if (goals.empty()) return refuse("every posture at the goal is in collision, the first: " + touched.first + " touches " + touched.second);
+
+  Random random(problem.seed);
+  const CartesianNode start = space.node_of(problem.start);
+  const Vector3 shoulder = chain.elements().front().T_before.translation();
+  const double reach =
+      std::max((start.T_root_tool.translation() - shoulder).norm(), (problem.T_root_goal.translation() - shoulder).norm()) + 0.2;
+  result.nodes = Search(space, problem, random, reach, shoulder).run(start, goals);
+  if (result.nodes.empty()) {
+    result.checks = space.checks();
+    return refuse(space.cancelled() ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
+  }
+  std::vector<CartesianNode> found = result.nodes;
+  shorten(space, result.nodes, random);
+  result.samples = samples_of(space, result.nodes);
+  if (result.samples.empty()) {
+    result.nodes = std::move(found);
+    result.samples = samples_of(space, result.nodes);
+  }
+  result.checks = space.checks();
+  if (result.samples.empty()) return refuse("the path found does not lead back to its nodes");
+  result.cost = integral(space, result.samples);
+  result.length = path_length(result.samples);
+  result.solved = true;
+  return result;
+}
+
+}  // namespace handsel::path_planner

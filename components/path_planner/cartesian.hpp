@@ -1,0 +1,54 @@
+// Planning in the Cartesian space (chapter section 4.6.1). Active: where the tool is, how it is turned, the angle of the elbow about the
+// line from shoulder to wrist (the redundancy of an arm of seven axes), and other axes if asked for (hand, head). Passive: the arm's
+// joints, by closed-form inverse kinematics on the branch they are on, along every local path. Pure.
+#pragma once
+
+#include "components/path_planner/path_planner.hpp"
+
+namespace handsel::path_planner {
+
+struct CartesianProblem {
+  Vector start;                        ///< all axes of the robot [rad]
+  Pose T_root_goal{Pose::Identity()};  ///< of the tool, robot root frame; the elbow may end anywhere
+  std::vector<int> also;               ///< further active axes (hand, head)
+  Vector also_goal;                    ///< of those [rad]
+  std::uint64_t seed{1};
+  std::uint64_t budget{100000};  ///< states that may be judged; each solution of the inverse kinematics counts as one, too
+};
+
+struct CartesianSettings {
+  double metre{3.0};         ///< that many radians count as much as a metre [rad/m]
+  double elbow{0.5};         ///< weight of a radian of the elbow angle
+  double range{0.6};         ///< longest edge of the tree, in that measure
+  double step{0.04};         ///< the inverse kinematics is solved this often along a local path, in that measure
+  double largest_step{0.1};  ///< no joint moves farther between two samples, however close they are; farther is a jump, refused [rad]
+  double goal_bias{0.1};     ///< share of the samples that are goals
+  int goal_elbows{48};       ///< elbow angles tried at the goal
+  int shortcuts{60};         ///< tried on what was found
+  double initial_temperature{0.02};  ///< of the transition test, where people are concerned (T-RRT)
+};
+
+/// A configuration in active variables, with the passive ones that belong to it.
+struct CartesianNode {
+  Pose T_root_tool{Pose::Identity()};
+  double elbow{};  ///< on its circle, 0 = farthest along axis 1 [rad]
+  Vector q;        ///< all axes
+};
+
+struct CartesianResult {
+  bool solved{};
+  std::string reason;  ///< why not, one sentence
+  std::vector<CartesianNode> nodes;
+  std::vector<Vector> samples;  ///< all axes, along the local paths; neighbours differ by at most largest_step in every joint
+  double cost{};                ///< integral of the human-aware cost along the samples [rad]
+  double length{};              ///< of the samples, joint space [rad]
+  std::uint64_t checks{};
+};
+
+/// Two trees, RRT-Connect where nobody is there, with the transition test of T-RRT where somebody is. The arm must be one of shoulder,
+/// elbow and wrist (ik::SrsArm). The way from one orientation to another is their displacement: one axis and an angle up to pi; at pi,
+/// where the axis is not defined, there is no local path.
+CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
+                               const CartesianSettings& settings, const Hooks& hooks = {});
+
+}  // namespace handsel::path_planner
