@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kNearPi = 0.02;       // displacements this near to a turn by pi have no local path [rad]
 constexpr double kSamePosture = 1e-4;  // [rad]
+constexpr double kMotionStep = 0.005;  // states between two samples are judged this close [rad]
+constexpr double kVerifyStep = 0.001;  // and on what is returned [rad]
+constexpr int kAttempts = 3;           // the fine check may refuse what the coarse one let pass
 constexpr int kHalvings = 4;           // of a step before what the joints do is called a jump
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -141,7 +144,7 @@ class Space {
     }
     next.q = RobotModel::with(at.q, arm_group_, best);
     for (int axis : problem_.also) next.q[axis] = a.q[axis] + to * (b.q[axis] - a.q[axis]);
-    if (!world_.check_motion(at.q, next.q, 0.02).free) return false;
+    if (!world_.check_motion(at.q, next.q, kMotionStep).free) return false;
     at = next;
     if (samples != nullptr) samples->push_back(at.q);
     return true;
@@ -366,20 +369,30 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
   const Vector3 shoulder = chain.elements().front().T_before.translation();
   const double reach =
       std::max((start.T_root_tool.translation() - shoulder).norm(), (problem.T_root_goal.translation() - shoulder).norm()) + 0.2;
-  result.nodes = Search(space, problem, random, reach, shoulder).run(start, goals);
-  if (result.nodes.empty()) {
-    result.checks = space.checks();
-    return refuse(space.cancelled() ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
-  }
-  std::vector<CartesianNode> found = result.nodes;
-  shorten(space, result.nodes, random);
-  result.samples = samples_of(space, result.nodes);
-  if (result.samples.empty()) {
-    result.nodes = std::move(found);
+  const auto verified = [&](const std::vector<Vector>& samples) {
+    for (std::size_t i = 1; i < samples.size(); ++i)
+      if (!world.check_motion(samples[i - 1], samples[i], kVerifyStep).free) return false;
+    return !samples.empty();
+  };
+  bool sound = false;
+  for (int attempt = 0; attempt < kAttempts && !sound && !space.exhausted(); ++attempt) {
+    const std::vector<CartesianNode> found = Search(space, problem, random, reach, shoulder).run(start, goals);
+    if (found.empty()) break;
+    result.nodes = found;
+    shorten(space, result.nodes, random);
     result.samples = samples_of(space, result.nodes);
+    sound = verified(result.samples);
+    if (sound) break;
+    result.nodes = found;
+    result.samples = samples_of(space, result.nodes);
+    sound = verified(result.samples);
   }
   result.checks = space.checks();
-  if (result.samples.empty()) return refuse("the path found does not lead back to its nodes");
+  if (!sound) {
+    result.nodes.clear();
+    result.samples.clear();
+    return refuse(space.cancelled() ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
+  }
   result.cost = integral(space, result.samples);
   result.length = path_length(result.samples);
   result.solved = true;

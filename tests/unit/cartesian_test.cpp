@@ -93,7 +93,7 @@ TEST_F(Cartesian, reaches_poses_with_the_elbow_active_and_no_joint_jumps) {
     problem.start = random_posture();
     problem.T_root_goal = tool(random_posture_like(problem.start));
     problem.seed = kSeed + static_cast<unsigned>(k);
-    problem.budget = 300000;
+    problem.budget = 1000000;
     const CartesianResult result = plan_cartesian(robot_, world_, cost_, problem, settings_);
     if (!result.solved) {
       std::printf("query %d: %s\n", k, result.reason.c_str());
@@ -120,7 +120,7 @@ TEST_F(Cartesian, heeds_a_person_and_moves_hand_and_head_too) {
   problem.T_root_goal = tool(random_posture_like(problem.start));
   problem.also = robot_.require_group("head").axes;
   problem.also_goal = Vector::Constant(2, 0.2);
-  problem.budget = 300000;
+  problem.budget = 1000000;
   const CartesianResult result = plan_cartesian(robot_, world_, cost_, problem, settings_);
   ASSERT_TRUE(result.solved) << result.reason;
   expect_sound(problem, result);
@@ -140,7 +140,7 @@ TEST_F(Cartesian, says_why_not) {
   problem.T_root_goal = tool(random_posture_like(problem.start));
   problem.budget = 0;
   EXPECT_THAT(reason(), HasSubstr("time limit is zero"));
-  problem.budget = 300000;
+  problem.budget = 1000000;
   problem.also = {arm_.axes[0]};
   problem.also_goal = Vector::Zero(1);
   EXPECT_THAT(reason(), HasSubstr("besides the arm"));
@@ -156,7 +156,7 @@ TEST_F(Cartesian, the_same_seed_gives_the_same_path) {
   CartesianProblem problem;
   problem.start = random_posture();
   problem.T_root_goal = tool(random_posture_like(problem.start));
-  problem.budget = 300000;
+  problem.budget = 1000000;
   const CartesianResult a = plan_cartesian(robot_, world_, cost_, problem, settings_),
                         b = plan_cartesian(robot_, world_, cost_, problem, settings_);
   EXPECT_EQ(a.samples, b.samples);
