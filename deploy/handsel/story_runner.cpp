@@ -180,11 +180,24 @@ void StoryRunner::signal_process(const std::string& process, int signal) {
   ::kill(pid, signal);
 }
 
+std::string StoryRunner::evidence(const Condition& condition) const {
+  const GroundTruth& truth = system_->session().snapshot().truth.sample;
+  switch (condition.kind) {
+    case ConditionKind::no_limit_violations:
+      return ": " + std::to_string(truth.limit_violations) + " set-points broke a limit";
+    case ConditionKind::no_ssm_violations:
+      return ": for " + std::to_string(truth.ssm_violations) + " ms the robot came nearer faster than the distance allowed, least distance " +
+             std::to_string(truth.least_separation) + " m";
+    default:
+      return {};
+  }
+}
+
 void StoryRunner::await(const StoryStep& step) {
   const auto watch = std::find_if(watches_.begin(), watches_.end(), [&](const Watch& w) { return w.step == &step; });
   const TimePoint deadline = origin_ + step.limit;
   if (step.limit == Duration::zero()) {
-    if (!holds(*step.condition, system_->session().snapshot(), now())) throw Unfulfilled{"it does not hold"};
+    if (!holds(*step.condition, system_->session().snapshot(), now())) throw Unfulfilled{"it does not hold" + evidence(*step.condition)};
     watch->first = now();
   } else {
     if (step.kind == StepKind::wait) watch->held = false;

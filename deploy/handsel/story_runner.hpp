@@ -40,6 +40,8 @@ class StoryRunner {
   void send_sim(const StoryStep& step);
   void signal_process(const std::string& process, int signal);
   void await(const StoryStep& step);
+  /// What was seen against a condition; may be empty.
+  std::string evidence(const Condition& condition) const;
   void refute(const StoryStep& step);
   void stop();
   void begin_watching(std::size_t index);
