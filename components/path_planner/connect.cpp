@@ -38,6 +38,7 @@ Found connect(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_
     break;
   }
   found.nodes = static_cast<std::size_t>(trees[0].size() + trees[1].size());
+  if (space.hooks().searched) space.hooks().searched(trees[0], &trees[1]);
   return found;
 }
 

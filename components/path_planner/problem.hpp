@@ -47,12 +47,16 @@ struct Problem {
 
 enum class Stage { search, smooth, verify };
 
+class Tree;
+
 /// Where a caller looks in while planning runs. Any may be empty.
 struct Hooks {
   std::function<bool()> cancelled;     ///< asked between checks; true ends the plan
   std::function<void(Stage)> entered;  ///< a stage begins
   /// Smoothing goes on as long as this says so, whatever smoothing_rounds and patience are: any time that a caller has is used.
   std::function<bool()> smooth_on{};
+  /// A search of ours has ended with these trees: from the start and, where it grew one, from the goals.
+  std::function<void(const Tree& from_start, const Tree* from_goals)> searched{};
 };
 
 struct Result {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <fstream>
 #include <iostream>
 #include <map>
 #include <memory>
@@ -11,7 +12,9 @@
 
 #include "common/config/resources.hpp"
 #include "components/path_planner/path_planner.hpp"
+#include "components/path_planner/pose_goals.hpp"
 #include "deploy/handsel/json_lines.hpp"
+#include "deploy/handsel/landscape.hpp"
 
 namespace handsel {
 namespace {
@@ -20,11 +23,14 @@ using namespace command;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
+constexpr int kPosturesEach = 8;  // of a goal that is a pose
+
 struct Options {
   std::string robot, srdf, group, planner{"auto"};
   double time{5.0};
   std::uint64_t checks{0}, seed{1};
-  bool stock{false}, json_lines{false};
+  bool stock{false}, json_lines{false}, landscape{false};
+  std::string png;
 };
 
 const std::map<std::string, PlannerKind> kPlanners = {{"auto", PlannerKind::automatic},
@@ -127,7 +133,7 @@ class Batch {
     const json& start = field(item, "start");
     for (const auto& [name, value] : start.items())
       if (!is_fixed(name)) problem.start[axis(name)] = number(start, name.c_str());
-    read_goals(item, problem);
+    const std::string unreached = read_goals(item, problem);
     read_upright(item, problem);
     std::vector<Obstacle> obstacles;
     for (const json& one : item.value("obstacles", json::array())) obstacles.push_back(obstacle_of(one));
@@ -146,7 +152,9 @@ class Batch {
       if (stage == path_planner::Stage::smooth && !smoothed) smoothing = Clock::now();
       smoothed = smoothed || stage == path_planner::Stage::smooth;
     };
-    const path_planner::Result result = path_planner::plan(robot_, world_, cost, problem, {}, hooks);
+    path_planner::Result result;
+    result.reason = unreached;
+    if (unreached.empty()) result = path_planner::plan(robot_, world_, cost, problem, {}, hooks);
     const double total = seconds_since(begin);
     const double search = smoothed ? std::chrono::duration<double>(smoothing - begin).count() : total;
     ++asked_;
@@ -200,9 +208,11 @@ class Batch {
     if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
   }
 
-  void read_goals(const json& item, path_planner::Problem& problem) const {
+  /// Why no posture reaches the goals, or empty.
+  std::string read_goals(const json& item, path_planner::Problem& problem) const {
     const json& goals = field(item, "goals");
     if (!goals.is_array() || goals.empty()) throw LineError("\"goals\" must be a list of at least one goal");
+    if (goals[0].contains("pose")) return read_poses(goals, problem);
     if (group_ != nullptr) {
       problem.axes = group_->axes;
     } else {
@@ -218,6 +228,25 @@ class Batch {
         q[static_cast<Eigen::Index>(i)] = number(goal, robot_.axes()[problem.axes[i]].name.c_str());
       problem.goals.push_back(q);
     }
+    return {};
+  }
+
+  std::string read_poses(const json& goals, path_planner::Problem& problem) const {
+    if (group_ == nullptr || group_->tip < 0) throw LineError("goals that are poses need a --group with a tip link");
+    problem.axes = group_->axes;
+    std::vector<path_planner::PoseGoal> poses;
+    for (const json& goal : goals) {
+      const json& pose = field(goal, "pose");
+      path_planner::PoseGoal one;
+      one.T_root_tip = make_pose(vector3(pose, "p"), quaternion(pose, "q"));
+      if (goal.contains("slack")) one.slack = vector3(goal, "slack");
+      if (goal.contains("turn")) one.turn = number(goal, "turn");
+      if (one.slack.minCoeff() < 0 || one.turn < 0) throw LineError("\"slack\" and \"turn\" must not be negative");
+      poses.push_back(one);
+    }
+    path_planner::PoseGoals found = path_planner::reach(robot_, *group_, poses, problem.start, kPosturesEach, problem.seed);
+    problem.goals = std::move(found.goals);
+    return found.reason;
   }
 
   const Options& options_;
@@ -239,7 +268,28 @@ std::string row(const json& result) {
   return text;
 }
 
+int run_landscape(const Options& options) {
+  const LandscapeResult result = plan_on_landscape(kPlanners.at(options.planner), options.seed);
+  if (!options.png.empty()) {
+    std::ofstream file(options.png, std::ios::binary);
+    file << result.png;
+    if (!file.flush()) throw ConfigError(options.png + ": cannot be written");
+    std::fprintf(stderr, "wrote %s\n", options.png.c_str());
+  }
+  if (options.json_lines || isatty(STDOUT_FILENO) == 0) {
+    std::cout << result.answer.dump() << "\n";
+  } else {
+    std::printf("%s, %zu nodes, length %.3f, integral cost %.4f, work %.4f\n", result.answer["solved"].get<bool>() ? "a path" : "no path",
+                result.answer["nodes"].get<std::size_t>(), result.answer["length"].get<double>(), result.answer["cost"].get<double>(),
+                result.answer["work"].get<double>());
+  }
+  return result.answer["solved"].get<bool>() ? 0 : 1;
+}
+
 int run(const Options& options) {
+  if (options.landscape) return run_landscape(options);
+  if (!options.png.empty()) throw ConfigError("--png draws the planners on a landscape of costs: give --landscape, too");
+  if (options.robot.empty()) throw ConfigError("--robot is missing: a .urdf, or a robot description by name or file");
   if (!(options.time > 0)) throw ConfigError("--time must be greater than 0");
   Batch batch(options);
   const bool for_people = !options.json_lines && isatty(STDOUT_FILENO) != 0;
@@ -256,10 +306,11 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<Options>();
   CLI::App* plan = app.add_subcommand("plan", "Collision-free paths for problems on stdin, one JSON line each");
   plan->footer(
-      R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
+      R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}] or
+ [{"pose": {"p": [x, y, z], "q": [x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
  "human": {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility", "comfort"},
  "upright": {"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height, radius.)");
-  plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
+  plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file");
   plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
   plan->add_option("--group", options->group, "group of axes; where the robot names none, the axes of the goals");
   plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")->check(CLI::IsMember(kPlanners));
@@ -267,6 +318,8 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   plan->add_option("--time", options->time, "limit of a problem [s]");
   plan->add_option("--checks", options->checks, "limit in judged states instead: repeatable");
   plan->add_option("--seed", options->seed, "of every random choice");
+  plan->add_flag("--landscape", options->landscape, "instead of problems: trees and path on a landscape of costs over two axes");
+  plan->add_option("--png", options->png, "file to draw the landscape, the trees and the path to");
   plan->add_flag("--json", options->json_lines, "JSON Lines on a terminal, too");
   plan->callback([options, &exit_code] { exit_code = run(*options); });
 }

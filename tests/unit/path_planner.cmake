@@ -14,3 +14,5 @@ set_tests_properties(panda_paths_all PROPERTIES LABELS full TIMEOUT 1800 ENVIRON
 handsel_test(upright_paths SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/upright_paths_test.cpp LINK handsel_path_planner_core LABEL unit)
 add_test(NAME upright_paths_hundred COMMAND test_upright_paths)
 set_tests_properties(upright_paths_hundred PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=100)
+handsel_test(pose_goals SOURCES ${CMAKE_CURRENT_LIST_DIR}/pose_goals_test.cpp LINK handsel_path_planner_core LABEL unit)
+handsel_test(landscape SOURCES ${CMAKE_CURRENT_LIST_DIR}/landscape_test.cpp LINK handsel_landscape LABEL unit)
