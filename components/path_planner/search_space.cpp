@@ -39,8 +39,8 @@ SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const H
     lower_[i] = std::isfinite(axis.lower) ? axis.lower : center - 2 * M_PI;
     upper_[i] = std::isfinite(axis.upper) ? axis.upper : center + 2 * M_PI;
   }
-  level_ = cost(start());
-  for (const Vector& goal : problem.goals) level_ = std::min(level_, cost(goal));
+  level_ = this->cost(start());
+  for (const Vector& goal : problem.goals) level_ = std::min(level_, this->cost(goal));
 }
 
 Vector SearchSpace::part(const Vector& all) const {
