@@ -37,7 +37,7 @@ Found connect(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_
     found.goal = static_cast<std::size_t>(trees[1].root_of(b));
     break;
   }
-  found.nodes = static_cast<std::size_t>(trees[0].size() + trees[1].size());
+  found.nodes = static_cast<std::size_t>(trees[0].size()) + static_cast<std::size_t>(trees[1].size());
   if (space.hooks().searched) space.hooks().searched(trees[0], &trees[1]);
   return found;
 }

@@ -170,7 +170,7 @@ class Planning {
     for (std::uint64_t share = kFirstShare;; share *= 2) {
       const std::uint64_t before = space_.checks();
       space_.limit(std::min(limit, before + share));
-      const Found found = search(space_, goals_, kind, heed_cost, seed);
+      Found found = search(space_, goals_, kind, heed_cost, seed);
       seed += 104729;
       space_.limit(limit);
       if (!found.path.empty()) return found;

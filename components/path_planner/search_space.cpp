@@ -154,11 +154,12 @@ Vector SearchSpace::righted(Vector q) const {
 
 Vector SearchSpace::toward(const Vector& from, const Vector& target, double range) const {
   const double distance = (target - from).norm(), reach = problem_.upright ? std::min(range, kUprightRange) : range;
-  const Vector end = distance > reach ? Vector(from + (target - from) * (reach / distance)) : target;
+  Vector end = distance > reach ? Vector(from + (target - from) * (reach / distance)) : target;
   if (!problem_.upright || line_upright(from, end)) return end;
-  const Vector bent = righted(end);
+  Vector bent = righted(end);
   const bool nearer = (target - bent).norm() < distance - kLeastProgress * reach;
-  return nearer && line_upright(from, bent) ? bent : from;
+  if (!nearer || !line_upright(from, bent)) return from;
+  return bent;
 }
 
 double SearchSpace::cost(const Vector& q) const { return cost_.concerned() ? cost_(whole(q)) : 0.0; }

@@ -50,7 +50,7 @@ class Search {
         found.goal = static_cast<std::size_t>(trees_[1].root_of(b));
       }
     }
-    found.nodes = static_cast<std::size_t>(trees_[0].size() + trees_[1].size());
+    found.nodes = static_cast<std::size_t>(trees_[0].size()) + static_cast<std::size_t>(trees_[1].size());
     if (space_.hooks().searched) space_.hooks().searched(trees_[0], &trees_[1]);
     return found;
   }

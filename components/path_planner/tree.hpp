@@ -21,8 +21,8 @@ class Tree {
   int add(const Vector& q, int parent) {
     const int i = size();
     if (i == columns_.rows()) {
-      columns_.conservativeResize(2 * i, Eigen::NoChange);
-      distances_.resize(2 * i);
+      columns_.conservativeResize(Eigen::Index{2} * i, Eigen::NoChange);
+      distances_.resize(Eigen::Index{2} * i);
     }
     columns_.row(i) = q.cast<float>().transpose();
     states_.push_back(q);
