@@ -9,9 +9,10 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kStep = 0.02;    // the motion that leads over is judged this often [rad, max norm]
-constexpr double kReserve = 1.1;  // what a switch keeps of the limits it is given: so it keeps the comfort limits
-constexpr double kEarly = 0.04;   // the command must be with the controller this long before it is due [s]
+constexpr double kStep = 0.004;    // the motion that leads over is judged this often [rad, max norm]
+constexpr double kMargin = 0.005;  // furniture is taken for larger by this much on every side [m]
+constexpr double kReserve = 1.1;   // what a switch keeps of the limits it is given: so it keeps the comfort limits
+constexpr double kEarly = 0.04;    // the command must be with the controller this long before it is due [s]
 
 /// Whether `path` is, but for its first node, the end of `whole`.
 bool same_way(const std::vector<Vector>& path, const std::vector<Vector>& whole) {
@@ -37,7 +38,9 @@ double within_reach(const Trajectory& trajectory, const Vector& from, double rea
 /// From a state in motion onto the new trajectory, all of what leads over free; nullopt when that cannot be.
 std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, const Around& around, const MotionState3& from,
                                                          const Trajectory& to) const {
-  world.set_scene(around.scene);
+  Scene scene = around.scene;
+  for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * kMargin);
+  world.set_scene(scene);
   world.set_people(around.people);
   world.set_attachment(around.attachment, around.allowed);
   world.set_moving_axes(arm_.axes);

@@ -22,8 +22,8 @@ config::PathPlannerSettings load(const NodeContext& context) {
     if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share and the temperature must be > 0");
   if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
     throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
-  if (s.live_time() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0)
-    throw ConfigError("path_planner.txtpb: live_time, live_rounds and live_tries must be >= 0, live_gain in [0, 1)");
+  if (s.live_time() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0)
+    throw ConfigError("path_planner.txtpb: live_time, live_rounds, live_tries and live_margin must be >= 0, live_gain in [0, 1)");
   return s;
 }
 
@@ -71,6 +71,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   live_.least_gain = file.live_gain();
   live_.rounds = file.live_rounds();
   live_.tries = file.live_tries();
+  live_margin_ = file.live_margin();
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(
@@ -142,7 +143,10 @@ void Node::start(const PathRequest& request) {
     work->running = last->second.path;
 
   const auto compute = [this, work](const CancelToken& token) {
-    world_.set_scene(*work->scene);
+    Scene scene = *work->scene;
+    if (!work->running.empty())  // an arm in motion is not exactly where it is told to be
+      for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * live_margin_);
+    world_.set_scene(scene);
     world_.set_people(*work->people);
     world_.set_attachment(work->request.attachment, work->request.allowed_contacts);
     cost_.set_people(*work->people);

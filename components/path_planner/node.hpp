@@ -44,6 +44,7 @@ class Node {
   std::shared_ptr<const RobotModel> robot_;
   Settings settings_;
   LiveSettings live_;
+  double live_margin_{};
   std::map<std::uint64_t, Given> given_;  // by client
   std::array<std::uint64_t, 5> live_outcomes_{};
   Timing timing_;

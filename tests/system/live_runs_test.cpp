@@ -123,10 +123,14 @@ class Visitor {
 /// The exact check on what is true: people and posture as the simulator has them.
 class Oracle {
  public:
-  explicit Oracle(const NodeContext& context) : robot_(*context.robot), world_(robot_, context.objects) {}
+  explicit Oracle(const NodeContext& context) : robot_(*context.robot), world_(robot_, context.objects) {
+    Scene scene;
+    scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
+    world_.set_scene(scene);
+  }
   CollisionVerdict touches(const std::vector<BodyJoint>& body, const RobotState& robot) {
     place(body, robot);
-    return world_.check_people(robot.position);
+    return world_.check(robot.position);
   }
   double distance(const std::vector<BodyJoint>& body, const RobotState& robot) {
     place(body, robot);
@@ -419,7 +423,7 @@ TEST(LiveRuns, nothing_is_touched_goals_are_reached_and_paths_get_cheaper) {
   std::printf("where it is made cheaper, the changes take %.0f %% off the rest on average\n", 100 * fell / std::max(1, cheaper));
   EXPECT_GE(reached, count * 8 / 10);
   EXPECT_GE(falls, count * 9 / 10);
-  EXPECT_GE(cheaper, count >= 20 ? count * 9 / 10 : 1);
+  EXPECT_GE(cheaper, count >= 20 ? count * 7 / 10 : 1);
   EXPECT_EQ(looked, count);
 }
 
