@@ -14,6 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/path_planner/random.hpp"
@@ -239,13 +240,22 @@ Vector random_start(const NodeContext& context, Random& random) {
   }
 }
 
+/// The settings as shipped, with running paths looked at: shipped they are not.
+std::filesystem::path live_settings(const std::string& folder) {
+  const std::filesystem::path settings = std::filesystem::path(folder) / ("config" + std::to_string(getpid()));
+  if (std::filesystem::exists(settings)) return settings;
+  std::filesystem::copy(resource("config"), settings, std::filesystem::copy_options::recursive);
+  std::ofstream(settings / "manipulation_planner.txtpb", std::ios::app) << "live_period: 0.2\n";
+  return settings;
+}
+
 Json run(std::uint64_t seed, const std::string& folder) {
   Random random(seed);
   NodeContext context = system_context("give_mug", "", seed);
   const std::string file = folder + "/live_" + std::to_string(seed) + ".txtpb";
   const Vector start = random_start(context, random), rest_posture = context.robot->rest_posture();
   std::ofstream(file) << scenario_text(*context.robot, start);
-  LockstepSystem system(file, "", seed);
+  LockstepSystem system(system_context(file, "", seed, live_settings(folder)));
   Visitor visitor(
       random,
       context.robot->link_pose(start + random.between(0.4, 0.9) * (rest_posture - start), context.robot->tool_link()).translation());
