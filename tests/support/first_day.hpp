@@ -175,7 +175,7 @@ class FirstDay {
   std::string where() const {
     return std::string(name(status_.mode)) + ", " + status_.reason + "; drive " + std::to_string(static_cast<int>(robot_state_.mode)) +
            ", " + trouble_ + "; at " + std::to_string(angle()) + " rad; fake: " + (fake_ ? fake_->printed() : "") +
-           "; driver: " + driver_->said() + controller_->said();
+           "; driver: " + driver_->said() + controller_->said() + "; before that, newest last:" + history_;
   }
 
  private:
@@ -183,6 +183,11 @@ class FirstDay {
   double angle_of(const RobotState& s) const {
     const int axis = arm_.axes[static_cast<std::size_t>(plan_.axis)];
     return s.position.size() > axis ? s.position[axis] - robot_.rest_posture()[axis] : 0.0;
+  }
+  void remember(const std::string& what) {
+    constexpr std::size_t kLong = 2000;
+    history_ += "\n  " + std::to_string(to_seconds(bus_.now() - begun_)) + " s  " + what;
+    if (history_.size() > kLong) history_.erase(0, history_.find('\n', history_.size() - kLong));
   }
   std::unique_ptr<Background> start(const std::string& process) {
     return std::make_unique<Background>(std::vector<std::string>{plan_.binaries + "/" + process, "--robot", plan_.robot, "--config",
@@ -222,15 +227,21 @@ class FirstDay {
     command_out_ = bus_.advertise<TrajectoryCommand>();
     hand_out_ = bus_.advertise<HandCommand>();
     bus_.subscribe<RobotState>([this](const RobotState& m, const Receipt&) {
+      if (m.mode != robot_state_.mode) remember("drive " + std::to_string(static_cast<int>(m.mode)));
       robot_state_ = m;
       ++states_;
       fastest = std::max(fastest, speed());
       if (states_ % 5 == 0) least_room = std::min(least_room, wall_room());
     });
-    bus_.subscribe<ExecutionStatus>([this](const ExecutionStatus& m, const Receipt&) { status_ = m; });
+    bus_.subscribe<ExecutionStatus>([this](const ExecutionStatus& m, const Receipt&) {
+      if (m.mode != status_.mode || m.causes != status_.causes) remember(std::string(name(m.mode)) + " " + m.reason);
+      status_ = m;
+    });
     bus_.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& m, const Receipt&) { active_ = m; });
     bus_.subscribe<ComponentHealth>([this](const ComponentHealth& m, const Receipt&) {
-      if (m.component == "driver") trouble_ = m.reason;
+      if (m.component != "driver") return;
+      if (m.reason != trouble_) remember("driver says: " + m.reason);
+      trouble_ = m.reason;
     });
     bus_.every(std::chrono::milliseconds(33), [this](TimePoint) { people_out_->publish(people_); });
     bus_.every(std::chrono::milliseconds(100), [this](TimePoint) { go_out_->publish(go_); });
@@ -258,7 +269,8 @@ class FirstDay {
   Go go_;
   AttentionAdvice advice_;
   TrajectoryForecast forecast_;
-  std::string trouble_{"not heard of yet"};
+  std::string trouble_{"not heard of yet"}, history_;
+  TimePoint begun_{bus_.now()};
   std::uint64_t id_{}, hand_id_{}, states_{};
   TimePoint asked_{};
   std::unique_ptr<Publisher<HumanState>> people_out_;
