@@ -53,12 +53,13 @@ class FirstDay {
     const std::filesystem::path controller = folder_.path() / "trajectory_controller.txtpb";
     std::ostringstream shipped;
     shipped << std::ifstream(controller).rdbuf();
-    std::ofstream(controller) << std::regex_replace(shipped.str(), std::regex("late_limit: [0-9]+"), "late_limit: 500")
+    std::ofstream(controller) << std::regex_replace(std::regex_replace(shipped.str(), std::regex("late_limit: [0-9]+"), "late_limit: 500"),
+                                                    std::regex("robot_state: [0-9.]+"), "robot_state: 0.3")
                               << "walls { nx: " << -toward_wall_.x() << " ny: " << -toward_wall_.y() << " nz: " << -toward_wall_.z()
                               << " offset: " << -wall_ << " }\n";
     port_ = drivers::UdpPort(0).port();
     const std::string common = "common { port: " + std::to_string(port_) + " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
-                               " max_setpoint_gap: 0.02 wire_jitter: 0.005 fade_share: 0.1 }\n";
+                               " max_setpoint_gap: 0.3 wire_jitter: 0.005 fade_share: 0.1 }\n";
     folder_.write("position_arm.txtpb", common + "cycle: 0.005\n");
     folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_share: 0.95 lost_cycles: 100\n" + plan.gripper);
     go_.epoch = 1;
