@@ -14,8 +14,8 @@ namespace handsel::sim {
 /// Between two set-points n periods h apart, with t = n h and |jerk| <= J:
 /// |a1 - a0| <= J t, |v1 - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower <= p <= upper at
 /// each. The period is measured from the first 100 set-points or more (arrival span / sequence span), until it is near a usual rate or
-/// 3200 have come; the continuity of those is judged too, once it is known. A stream that starts anew (other writer, sequence not growing, silence beyond the watch) must
-/// continue from the posture the robot is in.
+/// 3200 have come; the continuity of those is judged too, once it is known. A stream that starts anew (other writer, sequence not growing,
+/// silence beyond the watch) must continue from the posture the robot is in.
 class LimitsOracle {
  public:
   LimitsOracle(const RobotModel&, double restart_after, double period = 0);

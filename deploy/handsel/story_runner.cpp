@@ -186,8 +186,8 @@ std::string StoryRunner::evidence(const Condition& condition) const {
     case ConditionKind::no_limit_violations:
       return ": " + std::to_string(truth.limit_violations) + " set-points broke a limit";
     case ConditionKind::no_ssm_violations:
-      return ": for " + std::to_string(truth.ssm_violations) + " ms the robot came nearer faster than the distance allowed, least distance " +
-             std::to_string(truth.least_separation) + " m";
+      return ": for " + std::to_string(truth.ssm_violations) +
+             " ms the robot came nearer faster than the distance allowed, least distance " + std::to_string(truth.least_separation) + " m";
     default:
       return {};
   }
