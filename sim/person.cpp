@@ -319,8 +319,7 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   if (!wants_grip_) return give_up();
   sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
   if (sore_time_ > 0.3) return give_up();
-  // What sticks is not torn out: the hand waits, and goes along with a hand that draws away.
-  progress_ = std::max(0.0, progress_ + dt / duration_ * std::clamp(1 - (view.grip_force.norm() - kFirm) / kFirm, -1.0, 1.0));
+  progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
   feet_ = home_ - s * kStepBack * forward();

@@ -7,7 +7,6 @@
 
 namespace handsel::sim {
 
-inline constexpr double kFirm = 8.0;        ///< what one has taken is drawn away at full speed up to this, not at all at twice as much [N]
 inline constexpr double kSoreForce = 30.0;  ///< beyond this the person lets go [N]
 
 inline double min_jerk(double s) {
