@@ -10,13 +10,20 @@ constexpr double kTolerance = 1e-6;    // relative
 constexpr double kRounding = 1e-12;    // of positions [rad]
 constexpr double kRestartJump = 0.05;  // from the robot's posture [rad]
 constexpr std::size_t kLearn = 100, kLearnAtMost = 3200;
+constexpr std::array kUsual{0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020};
 
-/// 0: none.
-double usual_near(double period) {
-  for (double usual : {0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.020}) {
-    if (std::abs(period - usual) < 0.04 * usual) return usual;
+/// The usual period that most intervals are near, if more than half are, or `any`; 0: none. A busy machine leaves out cycles and delays
+/// others, which moves a mean but not where most intervals are.
+double period_of(const std::vector<LimitsOracle::Held>& stream, bool any) {
+  std::array<std::size_t, kUsual.size()> votes{};
+  for (std::size_t i = 1; i < stream.size(); ++i) {
+    const double interval =
+        (stream[i].time - stream[i - 1].time) / static_cast<double>(stream[i].command.sequence - stream[i - 1].command.sequence);
+    for (std::size_t k = 0; k < kUsual.size(); ++k) votes[k] += std::abs(interval - kUsual[k]) < 0.1 * kUsual[k];
   }
-  return 0;
+  const auto most = std::max_element(votes.begin(), votes.end());
+  if (*most == 0 || (!any && 2 * *most < stream.size())) return 0;
+  return kUsual[static_cast<std::size_t>(most - votes.begin())];
 }
 
 }  // namespace
@@ -79,16 +86,9 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
   if (period_ > 0) {
     if (!starts) judge_step(previous_, command);
   } else {
-    if (starts) {
-      waiting_.clear();
-      first_time_ = now;
-      first_sequence_ = command.sequence;
-    }
-    waiting_.push_back({command, starts});
-    if (waiting_.size() >= kLearn) {  // a busy machine delays some of them: the more there are, the less it matters
-      const double period = (now - first_time_) / static_cast<double>(command.sequence - first_sequence_);
-      period_ = waiting_.size() < kLearnAtMost ? usual_near(period) : period;
-    }
+    if (starts) waiting_.clear();
+    waiting_.push_back({command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now});
+    if (waiting_.size() % kLearn == 0) period_ = period_of(waiting_, waiting_.size() >= kLearnAtMost);
     if (period_ > 0) {
       for (std::size_t i = 1; i < waiting_.size(); ++i) judge_step(waiting_[i - 1].command, waiting_[i].command);
       waiting_.clear();

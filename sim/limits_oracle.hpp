@@ -13,11 +13,16 @@ namespace handsel::sim {
 
 /// Between two set-points n periods h apart, with t = n h and |jerk| <= J:
 /// |a1 - a0| <= J t, |v1 - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower <= p <= upper at
-/// each. The period is measured from the first 100 set-points or more (arrival span / sequence span), until it is near a usual rate or
-/// 3200 have come; the continuity of those is judged too, once it is known. A stream that starts anew (other writer, sequence not growing,
-/// silence beyond the watch) must continue from the posture the robot is in.
+/// each. The period is the usual one that most intervals between the set-points' stamps (arrivals where there are none) are near, once 100
+/// have come, 3200 where a stalling machine leaves it unclear; the continuity of those is judged too, once it is known. A stream that
+/// starts anew (other writer, sequence not growing, silence beyond the watch) must continue from the posture the robot is in.
 class LimitsOracle {
  public:
+  struct Held {  ///< a set-point, judged when the period is known
+    JointCommand command;
+    double time{};  ///< [s] of whichever clock
+  };
+
   LimitsOracle(const RobotModel&, double restart_after, double period = 0);
 
   void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual);
@@ -33,19 +38,15 @@ class LimitsOracle {
   double period() const { return period_; }            ///< 0 while not known
 
  private:
-  struct Held {
-    JointCommand command;
-    bool starts{};
-  };
   void judge_step(const JointCommand& from, const JointCommand& to);
   void judge_bounds(const JointCommand&);
   void violated(const char* what, Eigen::Index axis, double value, double bound);
 
   const RobotModel& model_;
   KinematicLimits limits_;
-  double restart_after_, period_, longest_gap_{0}, first_time_{0}, last_time_{0};
+  double restart_after_, period_, longest_gap_{0}, last_time_{0};
   std::array<double, 3> shares_{};
-  std::uint64_t violations_{0}, count_{0}, last_writer_{0}, first_sequence_{0};
+  std::uint64_t violations_{0}, count_{0}, last_writer_{0};
   bool bad_{false};
   std::set<std::uint64_t> writers_;
   std::vector<Held> waiting_;

@@ -34,7 +34,6 @@ constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
 constexpr Duration kRetryPeriod = std::chrono::milliseconds(5);
 constexpr std::size_t kQueueBound = 64;  // requests and replies that wait for room in the transport
 constexpr int kSamplesPerTurn = 64;      // then other topics have their turn
-constexpr int kRealtimePriority = 20;
 
 Stamp system_now() {
   timespec t{};
@@ -300,7 +299,7 @@ void DdsBus::Impl::enter_realtime() {
     return;
   }
   sched_param parameter{};
-  parameter.sched_priority = kRealtimePriority;
+  parameter.sched_priority = static_cast<int>(settings.urgency);
   if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0)
     realtime_note = std::string("SCHED_FIFO is not permitted: ") + std::strerror(errno);
   if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)

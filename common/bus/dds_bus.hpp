@@ -12,12 +12,17 @@
 
 namespace handsel {
 
+/// Priorities under SCHED_FIFO. Threads of equal priority do not interrupt each other: what computes for milliseconds now and then must
+/// not share one with what answers every cycle.
+enum class Urgency : int { perceive = 20, control = 40 };
+
 struct DdsBusSettings {
   std::string component;
   std::uint32_t domain{0};
   bool realtime{false};  ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
-  int cpu{-1};           ///< pins the executor; -1: none
-  bool health{true};     ///< publishes ComponentHealth (tools do not)
+  Urgency urgency{Urgency::perceive};
+  int cpu{-1};        ///< pins the executor; -1: none
+  bool health{true};  ///< publishes ComponentHealth (tools do not)
 };
 
 /// Sets CYCLONEDDS_URI to dds/loopback.xml of the resource root when the environment has none.

@@ -37,12 +37,13 @@ int complain(const char* component, const std::exception& error, int code) {
   return code;
 }
 
-int run(int argc, char** argv, const char* component, const NodeFactory& make_node) {
+int run(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency) {
   std::string robot, scenario, config;
   std::uint64_t seed = 1;
   bool standby = false;
   DdsBusSettings settings;
   settings.component = component;
+  settings.urgency = urgency;
   settings.domain = static_cast<std::uint32_t>(default_domain());
 
   CLI::App app{std::string("handsel component ") + component};
@@ -93,14 +94,14 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
 
 }  // namespace
 
-int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node) {
+int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency) {
   struct sigaction action {};
   action.sa_handler = on_signal;
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGINT, &action, nullptr);
   signal(SIGPIPE, SIG_IGN);
   try {
-    return run(argc, argv, component, make_node);
+    return run(argc, argv, component, make_node, urgency);
   } catch (const ConfigError& error) {
     return complain(component, error, 2);
   } catch (const MissingError& error) {

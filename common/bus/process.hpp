@@ -5,21 +5,24 @@
 #include <memory>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/dds_bus.hpp"
 #include "common/bus/node_context.hpp"
 
 namespace handsel {
 
 using NodeFactory = std::function<std::shared_ptr<void>(Bus&, const NodeContext&)>;
 
-/// Options: --robot NAME|FILE (jido), --scenario NAME|FILE, --domain N (environment HANDSEL_DOMAIN, else 0), --config DIR, --seed N,
+/// Options: --robot NAME|FILE (the scenario's, else jido), --scenario NAME|FILE, --domain N (environment HANDSEL_DOMAIN, else 0), --config
+/// DIR, --seed N,
 /// --realtime (SCHED_FIFO and locked memory where permitted), --cpu-affinity N, --standby (start beside a living twin).
 /// Prints one line when ready, runs until SIGTERM or SIGINT, then returns 0 within a second. Returns 2 on ConfigError and when the domain
 /// already has this component, 3 on MissingError, each with one sentence on stderr.
-int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node);
+int run_process(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency = Urgency::perceive);
 
 template <class Node>
-int run_process(int argc, char** argv, const char* component) {
-  return run_process(argc, argv, component, [](Bus& bus, const NodeContext& context) { return std::make_shared<Node>(bus, context); });
+int run_process(int argc, char** argv, const char* component, Urgency urgency = Urgency::perceive) {
+  return run_process(
+      argc, argv, component, [](Bus& bus, const NodeContext& context) { return std::make_shared<Node>(bus, context); }, urgency);
 }
 
 }  // namespace handsel

@@ -5,11 +5,12 @@
 int main(int argc, char** argv) {
   using namespace handsel;
   using namespace handsel::drivers;
-  return run_process(argc, argv, "driver", [](Bus& bus, const NodeContext& context) {
+  const auto make = [](Bus& bus, const NodeContext& context) {
     ReflexSettings settings;
     const Place place = load_settings(context.settings, *context.robot, settings);
     auto source = std::make_unique<UdpSource<UdpReflexLink>>(place.port);
     auto arm = std::make_unique<ReflexArm>(*context.robot, place.axes, source->link, settings);
     return std::make_shared<DriverNode>(bus, context, std::move(source), std::move(arm), ReflexArm::kCycle);
-  });
+  };
+  return run_process(argc, argv, "driver", make, Urgency::control);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <poll.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -28,6 +29,8 @@ class Background {
     pid_ = fork();
     if (pid_ == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
+      const sched_param ordinary{};
+      sched_setscheduler(0, SCHED_OTHER, &ordinary);  // whatever the test itself runs under
       if (!std::freopen(log_.c_str(), "w", stderr) || !std::freopen(out_.c_str(), "w", stdout)) _exit(127);
       execv(argv[0], argv.data());
       _exit(127);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <fstream>
 #include <memory>
-#include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -48,20 +46,14 @@ class FirstDay {
         bus_({.component = "first_day", .domain = plan.domain, .realtime = true, .health = false}) {
     place_wall();
     for (const auto& file : std::filesystem::directory_iterator(resource("config"))) std::filesystem::copy(file, folder_.path());
-    // A machine that runs tests stands still for some tens of milliseconds now and then; what late cycles and silence do is shown
-    // elsewhere.
-    const std::filesystem::path controller = folder_.path() / "trajectory_controller.txtpb";
-    std::ostringstream shipped;
-    shipped << std::ifstream(controller).rdbuf();
-    std::ofstream(controller) << std::regex_replace(std::regex_replace(shipped.str(), std::regex("late_limit: [0-9]+"), "late_limit: 500"),
-                                                    std::regex("robot_state: [0-9.]+"), "robot_state: 0.3")
-                              << "walls { nx: " << -toward_wall_.x() << " ny: " << -toward_wall_.y() << " nz: " << -toward_wall_.z()
-                              << " offset: " << -wall_ << " }\n";
+    std::ofstream(folder_.path() / "trajectory_controller.txtpb", std::ios::app)
+        << "walls { nx: " << -toward_wall_.x() << " ny: " << -toward_wall_.y() << " nz: " << -toward_wall_.z() << " offset: " << -wall_
+        << " }\n";
     port_ = drivers::UdpPort(0).port();
     const std::string common = "common { port: " + std::to_string(port_) + " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
-                               " max_setpoint_gap: 0.3 wire_jitter: 0.005 fade_share: 0.1 }\n";
+                               " max_setpoint_gap: 0.02 wire_jitter: 0.005 fade_share: 0.1 }\n";
     folder_.write("position_arm.txtpb", common + "cycle: 0.005\n");
-    folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_share: 0.95 lost_cycles: 100\n" + plan.gripper);
+    folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_share: 0.95 lost_cycles: 20\n" + plan.gripper);
     go_.epoch = 1;
     go_.allowed = true;
     people_.covered = true;

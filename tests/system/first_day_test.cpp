@@ -7,12 +7,14 @@
 
 #include "tests/support/first_day.hpp"
 #include "tests/support/small_robot.hpp"
+#include "tests/support/stall_watch.hpp"
 
 namespace handsel {
 namespace {
 
 using test::FirstDay;
 using test::FirstDayPlan;
+using test::in_real_time;
 using testing::HasSubstr;
 
 constexpr double kAway = -0.3;  // of the motions [rad]; the wall is on the other side
@@ -46,11 +48,18 @@ class FirstDayOf : public testing::Test {
     day_ = std::make_unique<FirstDay>(A::make());
   }
   static void TearDownTestSuite() { day_.reset(); }
+  template <class Story>
+  static void tell(const Story& story) {
+    in_real_time([&] { story(*day_); },
+                 [] {
+                   day_.reset();
+                   day_ = std::make_unique<FirstDay>(A::make());
+                 });
+  }
 
   /// Stops in the middle of a motion by `event`; the robot stands, a new permission alone does not help, a person's word and a new
   /// permission after it do.
-  void stopped_by(const std::string& event, DriveMode mode, const std::string& said) {
-    FirstDay& day = *day_;
+  static void stopped_by(FirstDay& day, const std::string& event, DriveMode mode, const std::string& said) {
     day.play("moving 0.2 " + event + " on\nstanding 0.3 " + event + " off\n");
     ASSERT_TRUE(day.ready()) << day.where();
     day.move_to(kAway);
@@ -80,11 +89,10 @@ class FirstDayOf : public testing::Test {
     EXPECT_TRUE(day.stays(waits, 100)) << "nobody has given a new permission: " << day.where();
     day.give_go(false);
     ASSERT_TRUE(day.wait([&] { return day.status().mode < Mode::hold; })) << day.where();
-    go_back();
+    go_back(day);
   }
   /// To the rest posture; then the maker's side must have had nothing to complain about.
-  void go_back() {
-    FirstDay& day = *day_;
+  static void go_back(FirstDay& day) {
     day.move_to(0.0);
     ASSERT_TRUE(day.wait([&] { return day.arrived() && std::abs(day.angle()) < 0.005; })) << day.where();
     EXPECT_THAT(day.account(), HasSubstr("violations 0")) << day.where();
@@ -107,58 +115,68 @@ TYPED_TEST(FirstDayOf, dry_run_is_everything_but_the_output) {
   this->day_.reset();
   FirstDayPlan plan = TypeParam::make();
   plan.dry_run = true;
-  {
-    FirstDay day(plan);
-    day.play("");
-    ASSERT_TRUE(day.ready()) << day.where();
-    day.move_to(kAway);
-    EXPECT_TRUE(day.wait([&] { return day.arrived() && std::abs(day.angle() - kAway) < 0.005; })) << day.where();
-    EXPECT_GT(day.fastest, 0.1) << "the posture it would have is reported";
-    EXPECT_THAT(day.account(), HasSubstr("moved 0 cycles, violations 0, sessions 0")) << "but the arm was told nothing";
-  }
+  in_real_time(
+      [&] {
+        FirstDay day(plan);
+        day.play("");
+        ASSERT_TRUE(day.ready()) << day.where();
+        day.move_to(kAway);
+        EXPECT_TRUE(day.wait([&] { return day.arrived() && std::abs(day.angle() - kAway) < 0.005; })) << day.where();
+        EXPECT_GT(day.fastest, 0.1) << "the posture it would have is reported";
+        EXPECT_THAT(day.account(), HasSubstr("moved 0 cycles, violations 0, sessions 0")) << "but the arm was told nothing";
+      },
+      [] {});
   this->day_ = std::make_unique<FirstDay>(TypeParam::make());
 }
 
 TYPED_TEST(FirstDayOf, walls_are_not_passed) {
-  FirstDay& day = *this->day_;
-  day.play("");
-  ASSERT_TRUE(day.ready()) << day.where();
-  day.least_room = day.wall_room();
-  ASSERT_GT(day.least_room, 0.05);
-  day.move_to(FirstDay::kFar);
-  ASSERT_TRUE(day.wait([&] { return day.angle() > 0.05 && day.has(Cause::wall); })) << day.where();
-  EXPECT_EQ(day.status().mode, Mode::slow);
-  ASSERT_TRUE(day.wait([&] { return day.angle() > 0.1 && day.speed() < 2e-3; })) << day.where();
-  EXPECT_FALSE(day.arrived());
-  EXPECT_GE(day.least_room, 0.0);
-  day.cancel();
-  ASSERT_TRUE(day.wait([&] { return day.status().motion == MotionState::stopped && day.standing(); })) << day.where();
-  this->go_back();
+  this->tell([](FirstDay& day) {
+    day.play("");
+    ASSERT_TRUE(day.ready()) << day.where();
+    day.least_room = day.wall_room();
+    ASSERT_GT(day.least_room, 0.05);
+    day.move_to(FirstDay::kFar);
+    ASSERT_TRUE(day.wait([&] { return day.angle() > 0.05 && day.has(Cause::wall); })) << day.where();
+    EXPECT_EQ(day.status().mode, Mode::slow);
+    ASSERT_TRUE(day.wait([&] { return day.angle() > 0.1 && day.speed() < 2e-3; })) << day.where();
+    EXPECT_FALSE(day.arrived());
+    EXPECT_GE(day.least_room, 0.0);
+    day.cancel();
+    ASSERT_TRUE(day.wait([&] { return day.status().motion == MotionState::stopped && day.standing(); })) << day.where();
+    TestFixture::go_back(day);
+  });
 }
 
 TYPED_TEST(FirstDayOf, override_of_ten_percent_is_a_tenth_of_the_speed) {
-  FirstDay& day = *this->day_;
-  day.play("");
-  day.override_speed(0.1);
-  ASSERT_TRUE(day.ready()) << day.where();
-  day.fastest = 0.0;
-  const Trajectory plan = day.move_to(kAway);
-  double planned = 0.0;
-  for (double t = 0.0; t < plan.duration(); t += 0.001) planned = std::max(planned, plan.at(t).velocity.cwiseAbs().maxCoeff());
-  ASSERT_TRUE(day.wait([&] { return day.angle() < -0.02; })) << day.where();
-  EXPECT_TRUE(day.has(Cause::override_slow)) << day.where();
-  EXPECT_EQ(day.status().mode, Mode::slow);
-  EXPECT_LT(day.fastest, 0.1 * planned + 0.01) << "planned: " << planned;
-  EXPECT_GT(day.fastest, 0.01);
-  day.override_speed(1.0);
-  ASSERT_TRUE(day.wait([&] { return day.arrived(); })) << day.where();
-  EXPECT_GT(day.fastest, 0.3 * planned) << "back at full speed";
-  this->go_back();
+  this->tell([](FirstDay& day) {
+    day.play("");
+    day.override_speed(0.1);
+    ASSERT_TRUE(day.ready()) << day.where();
+    day.fastest = 0.0;
+    const Trajectory plan = day.move_to(kAway);
+    double planned = 0.0;
+    for (double t = 0.0; t < plan.duration(); t += 0.001) planned = std::max(planned, plan.at(t).velocity.cwiseAbs().maxCoeff());
+    ASSERT_TRUE(day.wait([&] { return day.angle() < -0.02; })) << day.where();
+    EXPECT_TRUE(day.has(Cause::override_slow)) << day.where();
+    EXPECT_EQ(day.status().mode, Mode::slow);
+    EXPECT_LT(day.fastest, 0.1 * planned + 0.01) << "planned: " << planned;
+    EXPECT_GT(day.fastest, 0.01);
+    day.override_speed(1.0);
+    ASSERT_TRUE(day.wait([&] { return day.arrived(); })) << day.where();
+    EXPECT_GT(day.fastest, 0.3 * planned) << "back at full speed";
+    TestFixture::go_back(day);
+  });
 }
 
-TYPED_TEST(FirstDayOf, emergency_stop) { this->stopped_by("emergency_stop", DriveMode::emergency_stop, "emergency stop"); }
-TYPED_TEST(FirstDayOf, user_stop) { this->stopped_by("user_stop", DriveMode::user_stop, "user stop"); }
-TYPED_TEST(FirstDayOf, brake) { this->stopped_by("brake", DriveMode::braked, "brakes"); }
+TYPED_TEST(FirstDayOf, emergency_stop) {
+  this->tell([](FirstDay& day) { TestFixture::stopped_by(day, "emergency_stop", DriveMode::emergency_stop, "emergency stop"); });
+}
+TYPED_TEST(FirstDayOf, user_stop) {
+  this->tell([](FirstDay& day) { TestFixture::stopped_by(day, "user_stop", DriveMode::user_stop, "user stop"); });
+}
+TYPED_TEST(FirstDayOf, brake) {
+  this->tell([](FirstDay& day) { TestFixture::stopped_by(day, "brake", DriveMode::braked, "brakes"); });
+}
 
 }  // namespace
 }  // namespace handsel

@@ -68,6 +68,22 @@ TEST(LimitsOracleTest, LateSetPointsAreNoViolation) {
   EXPECT_DOUBLE_EQ(judge.oracle.period(), 0.001);
 }
 
+TEST(LimitsOracleTest, LeftOutCyclesAndAClockThatFallsBehindAreNoViolation) {
+  LimitsOracle oracle{jido(), 0.02};
+  Stream stream(0.99);
+  double simulated = 0.0;
+  Stamp stamp = 1'000'000'000;
+  for (int i = 0; i < 5000; ++i) {
+    JointCommand c = stream.next();
+    stamp += i % 9 == 4 ? 2'000'000 : 1'000'000;  // no sequence number is left out with the cycle
+    simulated += i % 3 == 0 ? 0.0 : 0.001;
+    c.stamp = stamp;
+    oracle.observe(c, 1, simulated, c.position);
+  }
+  EXPECT_EQ(oracle.violations(), 0u) << oracle.last_violation();
+  EXPECT_DOUBLE_EQ(oracle.period(), 0.001);
+}
+
 TEST(LimitsOracleTest, LostSetPointsAreNoViolation) {
   Judge judge;
   Stream stream(0.99);

@@ -71,11 +71,6 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (realtime) {
-    sched_param urgent{};
-    urgent.sched_priority = 60;
-    if (sched_setscheduler(0, SCHED_FIFO, &urgent) != 0) std::fprintf(stderr, "handsel_fake_arm: SCHED_FIFO is not permitted\n");
-  }
   const RobotModel model = RobotModel::load(robot_description(robot));
   const std::vector<int>& axes = model.require_group("arm").axes;
   FakeScript played(script.empty() ? std::vector<FakeLine>{} : load_fake_script(script));
@@ -84,6 +79,11 @@ int run(int argc, char** argv) {
     arm = std::make_unique<FakeCyclicArm>(model, axes, cycle);
   else
     arm = std::make_unique<FakeReflexArm>(model, axes, deceleration);
+  if (realtime) {
+    sched_param urgent{};
+    urgent.sched_priority = 60;
+    if (sched_setscheduler(0, SCHED_FIFO, &urgent) != 0) std::fprintf(stderr, "handsel_fake_arm: SCHED_FIFO is not permitted\n");
+  }
   std::printf("ready\n");
   std::fflush(stdout);
   play(*arm, played, port);
