@@ -28,13 +28,32 @@ struct Attachment {
 
 enum class PlannerKind : std::uint8_t { automatic, rrt, rrt_connect, trrt, bitrrt };
 
-/// Topic PathRequest, profile request. Plans for one group of axes; the other axes stay as in `start`.
+/// What is sampled: the axes of the group, or place of the tool and angle of the elbow (chapter section 4.6.1).
+enum class PlanSpace : std::uint8_t { joint, cartesian };
+
+/// A place of the group's tip, or the region around it.
+struct TipGoal {
+  Pose T_world_tip{Pose::Identity()};
+  Vector3 slack{Vector3::Zero()};  ///< half extents of a box along the pose's axes [m]
+  double turn{};                   ///< about the pose's z axis either way [rad]
+};
+
+/// Topic PathRequest, profile request. Plans for one group of axes; the other axes stay as in `start`. Beside the groups of the
+/// description there are "platform" (x, y [m], heading [rad] in the world) and "robot" (the platform, then the arm).
 struct PathRequest {
   Stamp stamp{};
   RequestId id;
-  std::string group;          ///< "arm"
-  Vector start;               ///< all axes of the robot [rad]
-  std::vector<Vector> goals;  ///< alternatives, group axes only [rad]
+  std::string group;  ///< "arm"
+  PlanSpace space{PlanSpace::joint};
+  /// All axes of the robot [rad]; where the platform is planned for, its x, y, heading may follow: else it starts where it stands.
+  Vector start;
+  std::vector<Vector> goals;        ///< alternatives, group axes only [rad]; or
+  std::vector<TipGoal> poses;       ///< alternatives, places of the tip
+  std::vector<std::uint32_t> also;  ///< Cartesian: robot axes that move along with the arm (hand, head), and
+  Vector also_goal;                 ///< where those end [rad]
+  bool upright{};                   ///< `upright_axis` (tool frame) stays within `most_tilt` [rad] of up everywhere on the path
+  Vector3 upright_axis{Vector3::UnitZ()};
+  double most_tilt{};
   Attachment attachment;
   /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms are no obstacle because
   /// the exchange with them is engaged. The same meaning wherever this field appears.
@@ -43,6 +62,17 @@ struct PathRequest {
   double time_limit{2.0};  ///< [s] a budget in checks is derived from it
   std::uint64_t seed{};
   bool straight{};  ///< only the straight line from start to goals[0] is wanted, checked
+  bool live{};      ///< go on along the path this client was given last; `start` is a place on it that the arm has not reached yet
+};
+
+/// How a path came about; all but the first are of live requests.
+enum class PathOutcome : std::uint8_t {
+  planned,
+  kept,       ///< free, and nothing cheaper was found
+  improved,   ///< free, and cheaper than before
+  repaired,   ///< was blocked; led around what blocks it
+  replanned,  ///< another goal, or nothing of it could be saved
+  blocked,    ///< no way was found: the arm must stop
 };
 
 /// Topic PathReply, profile reply.
@@ -52,10 +82,11 @@ struct PathReply {
   bool solved{};
   std::string reason;         ///< why not, one sentence
   std::string start_touches;  ///< id of the object, box or person the robot touches at the start; empty: none
-  std::uint32_t goal{};       ///< index of the goal reached
-  std::vector<Vector> path;   ///< group axes, path.front() = start
-  double cost{}, length{};    ///< integral human-aware cost; joint-space length [rad]
-  std::uint64_t checks{};     ///< states judged
+  PathOutcome outcome{PathOutcome::planned};
+  std::uint32_t goal{};             ///< index of the goal or pose reached
+  std::vector<Vector> path;         ///< group axes, then those of `also`; path.front() = start
+  double cost{}, work{}, length{};  ///< integral human-aware cost, the sum of its rises; joint-space length [rad]
+  std::uint64_t checks{};           ///< states judged
 };
 
 /// Topic TrajectoryRequest, profile request: a broken line to soft motion.

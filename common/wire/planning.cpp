@@ -5,7 +5,10 @@
 namespace handsel {
 namespace {
 constexpr const char* kPlanners[] = {"automatic", "rrt", "rrt_connect", "trrt", "bitrrt"};
-}
+constexpr const char* kSpaces[] = {"joint", "cartesian"};
+constexpr const char* kOutcomes[] = {"planned", "kept", "improved", "repaired", "replanned", "blocked"};
+constexpr Range kTurn{0, 3.1416};  // [rad]
+}  // namespace
 
 void describe(WireIo& io, Contact& m, handsel_Contact& w) {
   io.integer("finger", m.finger, w.finger);
@@ -35,18 +38,33 @@ void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
            "has not as many values as hand_joints");
 }
 
+void describe(WireIo& io, TipGoal& m, handsel_TipGoal& w) {
+  io.pose("T_world_tip", m.T_world_tip, w.T_world_tip);
+  io.point("slack", m.slack, w.slack, {0, 1e4});
+  io.number("turn", m.turn, w.turn, kTurn);
+}
+
 void describe(WireIo& io, PathRequest& m, handsel_PathRequest& w) {
   io.stamp(m.stamp, w.stamp);
   io.part("id", m.id, w.id);
   io.text("group", m.group, w.group, Text::name);
+  io.choice("space", m.space, w.space, kSpaces);
   io.vector("start", m.start, w.start, kCoordinate);
   io.list("goals", m.goals, w.goals, 64);
+  io.list("poses", m.poses, w.poses, 64);
+  io.indices("also", m.also, w.also, kMaxAxes, kMaxAxes - 1);
+  io.vector("also_goal", m.also_goal, w.also_goal, kCoordinate);
+  io.flag("upright", m.upright, w.upright);
+  io.direction("upright_axis", m.upright_axis, w.upright_axis, m.upright);
+  io.number("most_tilt", m.most_tilt, w.most_tilt, kTurn);
   io.part("attachment", m.attachment, w.attachment);
   describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
   io.choice("planner", m.planner, w.planner, kPlanners);
   io.number("time_limit", m.time_limit, w.time_limit, kPeriod);
   io.integer("seed", m.seed, w.seed);
   io.flag("straight", m.straight, w.straight);
+  io.flag("live", m.live, w.live);
+  io.check(static_cast<std::size_t>(m.also_goal.size()) == m.also.size(), "also_goal", "has not as many values as also");
   io.check(m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
   io.check(equally_wide(m.goals), "goals", "have different numbers of axes");
 }
@@ -57,9 +75,11 @@ void describe(WireIo& io, PathReply& m, handsel_PathReply& w) {
   io.flag("solved", m.solved, w.solved);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.text("start_touches", m.start_touches, w.start_touches, Text::maybe_empty);
+  io.choice("outcome", m.outcome, w.outcome, kOutcomes);
   io.integer("goal", m.goal, w.goal, 0, 63);
   io.list("path", m.path, w.path, 4096);
   io.number("cost", m.cost, w.cost, {0, 1e9});
+  io.number("work", m.work, w.work, {0, 1e9});
   io.number("length", m.length, w.length, {0, 1e9});
   io.integer("checks", m.checks, w.checks);
   io.check(equally_wide(m.path), "path", "has points with different numbers of axes");

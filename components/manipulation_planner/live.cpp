@@ -88,6 +88,7 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
   request.allowed_contacts = motion.allowed;
   request.time_limit = settings_.live_time();
   request.seed = goal_.id + requests_;
+  request.live = true;
   path_reply_.reset();
   ++live_counts_.looks;
   out_->path_requests.push_back(request);

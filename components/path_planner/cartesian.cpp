@@ -394,6 +394,8 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
     return refuse(space.cancelled() ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
   }
   result.cost = integral(space, result.samples);
+  for (std::size_t i = 1; i < result.samples.size(); ++i)
+    result.work += std::max(0.0, space.cost(result.samples[i]) - space.cost(result.samples[i - 1]));
   result.length = path_length(result.samples);
   result.solved = true;
   return result;

@@ -41,6 +41,7 @@ struct CartesianResult {
   std::vector<CartesianNode> nodes;
   std::vector<Vector> samples;  ///< all axes, along the local paths; neighbours differ by at most largest_step in every joint
   double cost{};                ///< integral of the human-aware cost along the samples [rad]
+  double work{};                ///< sum of the rises of that cost
   double length{};              ///< of the samples, joint space [rad]
   std::uint64_t checks{};
 };

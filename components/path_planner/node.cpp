@@ -6,7 +6,9 @@
 #include "common/config/path_planner.pb.h"
 #include "common/config/resources.hpp"
 #include "common/cost/cost_settings.hpp"
+#include "components/path_planner/cartesian.hpp"
 #include "components/path_planner/path_planner.hpp"
+#include "components/path_planner/request.hpp"
 
 namespace handsel::path_planner {
 namespace {
@@ -22,8 +24,8 @@ config::PathPlannerSettings load(const NodeContext& context) {
     if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share and the temperature must be > 0");
   if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
     throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
-  if (s.live_time() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0)
-    throw ConfigError("path_planner.txtpb: live_time, live_rounds, live_tries and live_margin must be >= 0, live_gain in [0, 1)");
+  if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0)
+    throw ConfigError("path_planner.txtpb: live_rounds, live_tries and live_margin must be >= 0, live_gain in [0, 1)");
   return s;
 }
 
@@ -43,6 +45,19 @@ Settings core_settings(const config::PathPlannerSettings& s) {
   return out;
 }
 
+/// The columns of the group's axes, then of those that move along.
+Result in_joints(const CartesianResult& found, const std::vector<int>& axes) {
+  Result out;
+  out.solved = found.solved;
+  out.reason = found.reason;
+  out.cost = found.cost;
+  out.work = found.work;
+  out.length = found.length;
+  out.checks = found.checks;
+  for (const Vector& sample : found.samples) out.path.push_back(sample(axes));
+  return out;
+}
+
 PathReply reply_of(const PathRequest& request, const Result& result) {
   PathReply reply;
   reply.id = request.id;
@@ -52,6 +67,7 @@ PathReply reply_of(const PathRequest& request, const Result& result) {
   reply.goal = static_cast<std::uint32_t>(result.goal);
   reply.path = result.path;
   reply.cost = result.cost;
+  reply.work = result.work;
   reply.length = result.length;
   reply.checks = result.checks;
   return reply;
@@ -67,7 +83,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       cost_(*context.robot, load_cost_settings(context.settings)) {
   const config::PathPlannerSettings file = load(context);
   settings_ = core_settings(file);
-  timing_ = {file.check_time(), file.longest_time(), file.live_time(), from_seconds(file.max_scene_age())};
+  timing_ = {file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())};
   live_.least_gain = file.live_gain();
   live_.rounds = file.live_rounds();
   live_.tries = file.live_tries();
@@ -98,8 +114,8 @@ void Node::on_request(const PathRequest& request) {
     refuse(request, why);
     return;
   }
-  if (robot_->group(request.group) == nullptr) {
-    refuse(request, "the robot has no group \"" + request.group + "\"");
+  if (const std::string why = contradiction(*robot_, request); !why.empty()) {
+    refuse(request, why);
     return;
   }
   start(request);
@@ -129,17 +145,11 @@ void Node::start(const PathRequest& request) {
   work->people = people_;
   work->layers = layers_.at(bus_.now());
   Problem& problem = work->problem;
-  problem.axes = robot_->group(request.group)->axes;
-  problem.start = request.start;
-  problem.goals = request.goals;
-  problem.planner = request.planner;
-  problem.seed = request.seed;
-  problem.straight = request.straight;
+  problem = problem_of(*robot_, request, scene_->T_world_base);
   const double time = std::clamp(request.time_limit, 0.0, timing_.longest_time);
   problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
 
-  if (const auto last = given_.find(request.id.client);
-      last != given_.end() && request.time_limit <= timing_.live_time && !request.straight && last->second.group == request.group)
+  if (const auto last = given_.find(request.id.client); last != given_.end() && request.live && last->second.group == request.group)
     work->running = last->second.path;
 
   const auto compute = [this, work](const CancelToken& token) {
@@ -154,7 +164,7 @@ void Node::start(const PathRequest& request) {
     cost_.set_base(work->scene->T_world_base);
     const Hooks hooks{[&token] { return token.cancelled(); }, {}};
     if (work->running.empty()) {
-      work->result = plan(*robot_, world_, cost_, work->problem, settings_, hooks);
+      work->result = from_nothing(work->request, work->problem, work->scene->T_world_base, hooks);
     } else {
       LiveResult live = go_on(*robot_, world_, cost_, work->problem, work->running, settings_, live_, hooks);
       work->outcome = live.outcome;
@@ -170,8 +180,13 @@ void Node::start(const PathRequest& request) {
     PathReply reply = reply_of(work->request, work->result);
     if (!reply.solved && reply.reason == "cancelled" && desk_.superseded(id))
       reply.reason = "superseded by a newer request of the same client";
-    if (!work->running.empty()) ++live_outcomes_[static_cast<std::size_t>(work->outcome)];
-    if (reply.solved) {
+    if (!work->running.empty()) {
+      ++live_outcomes_[static_cast<std::size_t>(work->outcome)];
+      reply.outcome = static_cast<PathOutcome>(static_cast<int>(work->outcome) + static_cast<int>(PathOutcome::kept));
+    } else if (!reply.solved) {
+      reply.outcome = PathOutcome::blocked;
+    }
+    if (reply.solved && work->request.space == PlanSpace::joint) {
       if (given_.size() >= kClients && given_.count(id.client) == 0) given_.erase(given_.begin());
       given_[id.client] = {work->request.group, reply.path};
     }
@@ -181,10 +196,35 @@ void Node::start(const PathRequest& request) {
   running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, answer));
 }
 
+Result Node::from_nothing(const PathRequest& request, Problem& problem, const Pose& T_world_base, const Hooks& hooks) {
+  const std::vector<PoseGoal> poses = pose_goals(request, T_world_base);
+  if (request.space == PlanSpace::cartesian) {
+    CartesianProblem cartesian;
+    cartesian.start = problem.start;
+    cartesian.T_root_goal = poses.front().T_root_tip;
+    cartesian.also.assign(request.also.begin(), request.also.end());
+    cartesian.also_goal = request.also_goal;
+    cartesian.seed = problem.seed;
+    cartesian.budget = problem.budget;
+    std::vector<int> columns = problem.axes;
+    columns.insert(columns.end(), cartesian.also.begin(), cartesian.also.end());
+    return in_joints(plan_cartesian(*robot_, world_, cost_, cartesian, {}, hooks), columns);
+  }
+  if (poses.empty()) return plan(*robot_, world_, cost_, problem, settings_, hooks);
+  PoseGoals found = reach(*robot_, *robot_->group(request.group), poses, problem.start, problem.seed);
+  problem.goals = std::move(found.goals);
+  Result result;
+  result.reason = found.reason;
+  if (!problem.goals.empty()) result = plan(*robot_, world_, cost_, problem, settings_, hooks);
+  if (result.solved) result.goal = found.pose[result.goal];
+  return result;
+}
+
 void Node::refuse(const PathRequest& request, const std::string& reason) {
   PathReply reply;
   reply.id = request.id;
   reply.reason = reason;
+  reply.outcome = PathOutcome::blocked;
   desk_.close(reply);
   reply_out_->publish(reply);
 }

@@ -27,7 +27,7 @@ class Node {
 
  private:
   struct Timing {
-    double check_time{}, longest_time{}, live_time{};
+    double check_time{}, longest_time{};
     Duration max_scene_age{};
   };
   /// The path a client was given last.
@@ -37,6 +37,7 @@ class Node {
   };
   void on_request(const PathRequest& request);
   void start(const PathRequest& request);
+  Result from_nothing(const PathRequest& request, Problem& problem, const Pose& T_world_base, const Hooks& hooks);
   void refuse(const PathRequest& request, const std::string& reason);
   std::string not_ready() const;
 

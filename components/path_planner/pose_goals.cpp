@@ -12,8 +12,8 @@ constexpr double kSame = 0.05;  // postures nearer to each other are one [rad]
 
 }  // namespace
 
-PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses, const Vector& q_start, int each,
-                std::uint64_t seed) {
+PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<PoseGoal>& poses, const Vector& q_start, std::uint64_t seed,
+                int each) {
   PoseGoals found;
   Random random(seed);
   IkOptions options;

@@ -23,8 +23,6 @@ using namespace command;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kPosturesEach = 8;  // of a goal that is a pose
-
 struct Options {
   std::string robot, srdf, group, planner{"auto"};
   double time{5.0};
@@ -244,7 +242,7 @@ class Batch {
       if (one.slack.minCoeff() < 0 || one.turn < 0) throw LineError("\"slack\" and \"turn\" must not be negative");
       poses.push_back(one);
     }
-    path_planner::PoseGoals found = path_planner::reach(robot_, *group_, poses, problem.start, kPosturesEach, problem.seed);
+    path_planner::PoseGoals found = path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
     problem.goals = std::move(found.goals);
     return found.reason;
   }

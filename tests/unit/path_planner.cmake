@@ -15,4 +15,5 @@ handsel_test(upright_paths SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/upright
 add_test(NAME upright_paths_hundred COMMAND test_upright_paths)
 set_tests_properties(upright_paths_hundred PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=100)
 handsel_test(pose_goals SOURCES ${CMAKE_CURRENT_LIST_DIR}/pose_goals_test.cpp LINK handsel_path_planner_core LABEL unit)
+handsel_test(path_request SOURCES ${CMAKE_CURRENT_LIST_DIR}/path_request_test.cpp LINK handsel_path_planner LABEL unit)
 handsel_test(landscape SOURCES ${CMAKE_CURRENT_LIST_DIR}/landscape_test.cpp LINK handsel_landscape LABEL unit)

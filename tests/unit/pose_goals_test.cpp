@@ -29,7 +29,7 @@ TEST_F(PoseGoalsOfJido, postures_reach_their_poses_and_regions) {
   std::vector<PoseGoal> poses(10);
   for (PoseGoal& pose : poses) pose.T_root_tip = somewhere(random);
   for (std::size_t i = 5; i < 10; ++i) poses[i].slack = Vector3(0.03, 0, 0.01), poses[i].turn = 0.4;
-  const PoseGoals found = reach(robot_, arm_, poses, start_, 6, 1);
+  const PoseGoals found = reach(robot_, arm_, poses, start_, 1, 6);
   ASSERT_EQ(found.goals.size(), found.pose.size());
   std::vector<int> of_pose(poses.size(), 0);
   for (std::size_t k = 0; k < found.goals.size(); ++k) {
@@ -42,15 +42,15 @@ TEST_F(PoseGoalsOfJido, postures_reach_their_poses_and_regions) {
   }
   EXPECT_GE(std::count_if(of_pose.begin(), of_pose.end(), [](int n) { return n > 1; }), 8);
   EXPECT_TRUE(found.reason.empty());
-  EXPECT_EQ(reach(robot_, arm_, poses, start_, 6, 1).goals, found.goals);
+  EXPECT_EQ(reach(robot_, arm_, poses, start_, 1, 6).goals, found.goals);
 }
 
 TEST_F(PoseGoalsOfJido, what_no_posture_reaches_is_said) {
   PoseGoal far;
   far.T_root_tip = make_pose({4, 0, 1});
-  EXPECT_THAT(reach(robot_, arm_, {far}, start_, 3, 1).reason, testing::HasSubstr("no posture of the group \"arm\" reaches the goal"));
-  EXPECT_THAT(reach(robot_, arm_, {far, far}, start_, 3, 1).reason, testing::HasSubstr("of the 2 goals none"));
-  EXPECT_THAT(reach(robot_, arm_, {}, start_, 3, 1).reason, testing::HasSubstr("no goal"));
+  EXPECT_THAT(reach(robot_, arm_, {far}, start_, 1, 3).reason, testing::HasSubstr("no posture of the group \"arm\" reaches the goal"));
+  EXPECT_THAT(reach(robot_, arm_, {far, far}, start_, 1, 3).reason, testing::HasSubstr("of the 2 goals none"));
+  EXPECT_THAT(reach(robot_, arm_, {}, start_, 1, 3).reason, testing::HasSubstr("no goal"));
 }
 
 }  // namespace

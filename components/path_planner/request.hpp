@@ -1,0 +1,22 @@
+// From what is asked on the bus to a problem. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/messages/planning.hpp"
+#include "components/path_planner/pose_goals.hpp"
+#include "components/path_planner/problem.hpp"
+
+namespace handsel::path_planner {
+
+/// Why nobody could plan for this request, one sentence; empty: it makes sense. What needs the scene is not looked at.
+std::string contradiction(const RobotModel& robot, const PathRequest& request);
+
+/// The places of the tip in the frame of the robot's root link.
+std::vector<PoseGoal> pose_goals(const PathRequest& request, const Pose& T_world_root);
+
+/// Without goals and budget. The request is without contradiction.
+Problem problem_of(const RobotModel& robot, const PathRequest& request, const Pose& T_world_root);
+
+}  // namespace handsel::path_planner
