@@ -62,7 +62,9 @@ struct PathRequest {
   double time_limit{2.0};  ///< [s] a budget in checks is derived from it
   std::uint64_t seed{};
   bool straight{};  ///< only the straight line from start to goals[0] is wanted, checked
-  bool live{};      ///< go on along the path this client was given last; `start` is a place on it that the arm has not reached yet
+  /// The path that runs: it is gone on along from `start`, a place on it that the arm has not reached yet. Empty: plan from nothing.
+  std::vector<Vector> running;
+  bool cancel{};  ///< stop the request of this id and all older ones of the client; their replies say so
 };
 
 /// How a path came about; all but the first are of live requests.

@@ -63,10 +63,12 @@ void describe(WireIo& io, PathRequest& m, handsel_PathRequest& w) {
   io.number("time_limit", m.time_limit, w.time_limit, kPeriod);
   io.integer("seed", m.seed, w.seed);
   io.flag("straight", m.straight, w.straight);
-  io.flag("live", m.live, w.live);
+  io.list("running", m.running, w.running, 4096);
+  io.flag("cancel", m.cancel, w.cancel);
   io.check(static_cast<std::size_t>(m.also_goal.size()) == m.also.size(), "also_goal", "has not as many values as also");
-  io.check(m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
+  io.check(m.cancel || m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
   io.check(equally_wide(m.goals), "goals", "have different numbers of axes");
+  io.check(equally_wide(m.running), "running", "has points with different numbers of axes");
 }
 
 void describe(WireIo& io, PathReply& m, handsel_PathReply& w) {

@@ -2,8 +2,9 @@
 // sections 2.1 and 4.1.1). The path planner keeps what lies before the place where the old path is left; the controller is told that place.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "common/trajectory/switch.hpp"
+#include "common/trajectory/broken_line.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
 namespace handsel::manipulation_planner {
@@ -13,13 +14,6 @@ constexpr double kStep = 0.004;    // the motion that leads over is judged this 
 constexpr double kMargin = 0.005;  // furniture is taken for larger by this much on every side [m]
 constexpr double kReserve = 1.1;   // what a switch keeps of the limits it is given: so it keeps the comfort limits
 constexpr double kEarly = 0.04;    // the command must be with the controller this long before it is due [s]
-
-/// Whether `path` is, but for its first node, the end of `whole`.
-bool same_way(const std::vector<Vector>& path, const std::vector<Vector>& whole) {
-  if (path.size() < 2 || path.size() > whole.size() + 1) return false;
-  return std::equal(path.begin() + 1, path.end(), whole.end() - static_cast<std::ptrdiff_t>(path.size()) + 1,
-                    [](const Vector& a, const Vector& b) { return a.size() == b.size() && (a - b).cwiseAbs().maxCoeff() < 1e-9; });
-}
 
 /// Until when the trajectory has not been farther than `reach` from where it begins [s].
 double within_reach(const Trajectory& trajectory, const Vector& from, double reach) {
@@ -35,25 +29,29 @@ double within_reach(const Trajectory& trajectory, const Vector& from, double rea
 
 }  // namespace
 
-/// From a state in motion onto the new trajectory, all of what leads over free; nullopt when that cannot be.
+/// From a state in motion onto the trajectory.
+Switched ManipulationPlanner::join(const MotionState3& from, const Trajectory& to) const {
+  KinematicLimits limits = robot_->comfort_limits();
+  for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = kReserve * RobotModel::part(*part, arm_);
+  SwitchSettings settings;
+  settings.reserve = kReserve;
+  settings.last = within_reach(to, from.position, settings_.live_reach());
+  return switch_to(from, to, limits, settings);
+}
+
+/// The same, all of what leads over free; nullopt when that cannot be.
 std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, const Around& around, const MotionState3& from,
                                                          const Trajectory& to) const {
+  const Switched over = join(from, to);
+  if (!over.ok()) return std::nullopt;
   Scene scene = around.scene;
   for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * kMargin);
   world.set_scene(scene);
   world.set_people(around.people);
   world.set_attachment(around.attachment, around.allowed);
   world.set_moving_axes(arm_.axes);
-  KinematicLimits limits = robot_->comfort_limits();
-  for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = kReserve * RobotModel::part(*part, arm_);
-  SwitchSettings settings;
-  settings.reserve = kReserve;
-  settings.last = within_reach(to, from.position, settings_.live_reach());
-  Switched over = switch_to(from, to, limits, settings);
-  if (!over.ok()) return std::nullopt;
-  double rate = 0;
+  double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
   for (const AxisTrajectory& axis : over.trajectory.axes) rate = std::max(rate, std::abs(axis.start.velocity));
-  rate = std::max(rate, limits.velocity.maxCoeff());
   const int looks = std::max(2, static_cast<int>(std::ceil(rate * over.connecting / kStep)));
   for (int k = 0; k <= looks; ++k) {
     const Vector q = over.trajectory.at(over.connecting * k / looks).position;
@@ -79,17 +77,9 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
   const Running* now = &running;
   const auto ended = [this, now] { return execution_->trajectory != now->command || execution_->motion != MotionState::running; };
 
-  PathRequest request;
-  request.id = next_request();
-  request.group = arm_.name;
-  request.start = start;
-  request.goals = motion.goals;
-  request.attachment = attachment_;
-  request.allowed_contacts = motion.allowed;
+  PathRequest request = path_request(start, motion);
+  request.running = running.nodes;
   request.time_limit = settings_.live_time();
-  request.seed = goal_.id + requests_;
-  request.live = true;
-  path_reply_.reset();
   ++live_counts_.looks;
   out_->path_requests.push_back(request);
   const bool planned = co_await waiting_.until([this, ended] { return path_reply_.has_value() || ended(); }, settings_.replan_time());
@@ -98,34 +88,53 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
     ++live_counts_.refused;
     co_return Outcome::failure(path_reply_->reason);
   }
-  const std::vector<Vector> nodes = path_reply_->path;
-  if (same_way(nodes, running.nodes)) {
+  if (path_reply_->outcome == PathOutcome::kept) {
     ++live_counts_.kept;
     co_return Outcome{};
   }
+  const bool only_cheaper = path_reply_->outcome == PathOutcome::improved;
+  const std::vector<Vector> nodes = path_reply_->path;
+  if (only_cheaper) {
+    const TrajectoryRequest as_before = trajectory_request(remainder(running.nodes, from.position, settings_.live_reach()), start, motion);
+    comparison_ = as_before.id;
+    comparison_reply_.reset();
+    out_->trajectory_requests.push_back(as_before);
+  }
   out_->trajectory_requests.push_back(trajectory_request(nodes, start, motion));
-  const bool timed = co_await waiting_.until([this, ended] { return trajectory_reply_.has_value() || ended(); }, settings_.replan_time());
+  const bool timed = co_await waiting_.until(
+      [this, ended, only_cheaper] { return (trajectory_reply_ && (!only_cheaper || comparison_reply_)) || ended(); },
+      settings_.replan_time());
   if (!timed || ended()) co_return Outcome::failure("no trajectory came in time");
   if (!trajectory_reply_->solved) {
     ++live_counts_.refused;
     co_return Outcome::failure(trajectory_reply_->reason);
   }
-  auto over = std::make_shared<std::optional<Trajectory>>(trajectory_reply_->trajectory);
+  struct Ways {
+    std::optional<Trajectory> over;
+    double longest{std::numeric_limits<double>::infinity()};  // that it may last [s]
+  };
+  auto ways = std::make_shared<Ways>();
+  ways->over = trajectory_reply_->trajectory;
+  const double slower = 1 + settings_.live_slower();
+  if (only_cheaper && comparison_reply_->solved) ways->longest = slower * comparison_reply_->trajectory.duration();
   if (!standing) {
     if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-    const std::function<void()> job = [this, over, world = world_, from, to = trajectory_reply_->trajectory,
+    const Trajectory as_before = only_cheaper && comparison_reply_->solved ? comparison_reply_->trajectory : Trajectory{};
+    const std::function<void()> job = [this, ways, slower, as_before, world = world_, from, to = trajectory_reply_->trajectory,
                                        around = Around{scene_, people_, attachment_, motion.allowed, start}] {
-      *over = lead_over(*world, around, from, to);
+      ways->over = lead_over(*world, around, from, to);
+      if (as_before.size() == 0) return;
+      if (const Switched along = join(from, as_before); along.ok()) ways->longest = slower * along.trajectory.duration();
     };
     Outcome worked = co_await work(job);
     if (!worked.good) co_return worked;
-    if (!*over) {
+    if (!ways->over) {
       ++live_counts_.refused;
       co_return Outcome::failure("no free motion leads over to the new path");
     }
   }
   if (ended()) co_return Outcome::failure("the motion has ended");
-  if (blocked_for_ == 0 && (*over)->duration() > (1 + settings_.live_slower()) * (duration - leave)) {
+  if (ways->over->duration() > ways->longest) {
     ++live_counts_.slower;
     co_return Outcome::failure("the new path takes longer than it is worth");
   }
@@ -133,7 +142,7 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
     ++live_counts_.refused;
     co_return Outcome::failure("the new path came too late");
   }
-  TrajectoryCommand command = command_for(**over, motion);
+  TrajectoryCommand command = command_for(*ways->over, motion);
   command.switch_at = standing ? 0.0 : leave - offset;
   Outcome heard = co_await send(command);
   if (!heard.good) co_return heard;

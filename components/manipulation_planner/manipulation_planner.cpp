@@ -25,16 +25,14 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
 void ManipulationPlanner::on(const ActionGoal& goal) {
   if (goal.cancel) {
     if (goal.id != status_.id || status_.state != ActionState::running) return;
-    action_ = {};
-    waiting_.clear();
+    drop_action();
     status_.state = ActionState::cancelled;
     status_.exchange_engaged = false;
     status_.reason = "cancelled on request";
     return;
   }
   if (goal.id == status_.id) return;
-  action_ = {};
-  waiting_.clear();
+  drop_action();
   goal_ = goal;
   const bool holding = status_.holding;
   status_ = {};
@@ -45,6 +43,13 @@ void ManipulationPlanner::on(const ActionGoal& goal) {
   status_.human = goal.human;
   status_.state = ActionState::running;
   status_.holding = holding;
+}
+
+/// What it has asked for is wanted no more.
+void ManipulationPlanner::drop_action() {
+  action_ = {};
+  waiting_.clear();
+  drop_path_ = path_awaited_;
 }
 
 void ManipulationPlanner::on(const ExecutionStatus& status) { execution_ = status; }
@@ -59,10 +64,13 @@ void ManipulationPlanner::on(const GraspReply& reply) {
   if (reply.id == RequestId{client_, requests_}) grasp_reply_ = reply;
 }
 void ManipulationPlanner::on(const PathReply& reply) {
-  if (reply.id == RequestId{client_, requests_}) path_reply_ = reply;
+  if (reply.id != RequestId{client_, requests_}) return;
+  path_reply_ = reply;
+  path_awaited_ = false;
 }
 void ManipulationPlanner::on(const TrajectoryReply& reply) {
   if (reply.id == RequestId{client_, requests_}) trajectory_reply_ = reply;
+  if (reply.id == comparison_) comparison_reply_ = reply;
 }
 
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
@@ -71,6 +79,14 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   if (!blocked) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
+  if (drop_path_) {
+    PathRequest request;
+    request.id = {client_, requests_};
+    request.group = arm_.name;
+    request.cancel = true;
+    out.path_requests.push_back(request);
+    drop_path_ = path_awaited_ = false;
+  }
   if (status_.state == ActionState::running && !action_) {
     action_ = run(goal_);
     action_.start();
@@ -177,7 +193,7 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const st
   co_return none;
 }
 
-Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const Vector& start, const Motion& motion) {
+PathRequest ManipulationPlanner::path_request(const Vector& start, const Motion& motion) {
   PathRequest request;
   request.id = next_request();
   request.group = arm_.name;
@@ -189,6 +205,12 @@ Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const V
   request.seed = goal_.id + requests_;
   request.straight = motion.straight;
   path_reply_.reset();
+  path_awaited_ = true;
+  return request;
+}
+
+Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const Vector& start, const Motion& motion) {
+  const PathRequest request = path_request(start, motion);
   PlannedPath planned;
   for (double waited = 0; waited < settings_.request_timeout(); waited += settings_.request_retry()) {
     out_->path_requests.push_back(request);

@@ -16,6 +16,7 @@
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/robot_model.hpp"
+#include "common/trajectory/switch.hpp"
 #include "components/manipulation_planner/exchange.hpp"
 #include "components/manipulation_planner/routine.hpp"
 
@@ -114,6 +115,7 @@ class ManipulationPlanner {
   Routine<Outcome> execute(const std::vector<Vector>& nodes, const Motion& motion);
   Routine<Outcome> send(const TrajectoryCommand& command);
   Routine<Outcome> go_on(Running& running, const Motion& motion);
+  PathRequest path_request(const Vector& start, const Motion& motion);
   TrajectoryRequest trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion);
   TrajectoryCommand command_for(const Trajectory& trajectory, const Motion& motion);
   /// What a motion that leads over from one trajectory to another is judged in.
@@ -124,6 +126,7 @@ class ManipulationPlanner {
     std::vector<std::string> allowed;
     Vector posture;  // axes that are not the arm's
   };
+  Switched join(const MotionState3& from, const Trajectory& to) const;
   std::optional<Trajectory> lead_over(CollisionWorld& world, const Around& around, const MotionState3& from, const Trajectory& to) const;
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr);
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
@@ -139,6 +142,7 @@ class ManipulationPlanner {
   bool lost(const std::string& id) const;                    // a person who might be anywhere near where they were last seen
   void hold(const SceneObject& object);
   void release_object();
+  void drop_action();
   void refuse(const std::string& what, const std::string& reason);
   RequestId next_request() { return {client_, ++requests_}; }
   Pose T_world_tool() const;
@@ -168,7 +172,10 @@ class ManipulationPlanner {
   double blocked_for_{0};  // how long the forecast has held the robot back [s]
   std::optional<GraspReply> grasp_reply_;
   std::optional<PathReply> path_reply_;
-  std::optional<TrajectoryReply> trajectory_reply_;
+  std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
+  RequestId comparison_;      // for the time that the path which runs would take from now on
+  bool path_awaited_{false};  // the newest path request is without a reply
+  bool drop_path_{false};     // and nobody wants it any more
 
   Attachment attachment_;
   std::optional<Grasp> grasp_;

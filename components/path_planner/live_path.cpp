@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "common/trajectory/broken_line.hpp"
 #include "components/path_planner/random.hpp"
 #include "components/path_planner/search.hpp"
 #include "components/path_planner/search_space.hpp"
@@ -293,30 +294,6 @@ const char* name(LiveOutcome outcome) {
     default:
       return "blocked";
   }
-}
-
-std::vector<Vector> remainder(const std::vector<Vector>& path, const Vector& q, double reach) {
-  if (path.size() < 2 || path.front().size() != q.size()) return {};
-  double least = kInfinite;
-  std::size_t next = 0;
-  bool at_end = false;
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const Vector edge = path[i] - path[i - 1];
-    const double share = edge.squaredNorm() > 0 ? std::clamp((q - path[i - 1]).dot(edge) / edge.squaredNorm(), 0.0, 1.0) : 0.0;
-    const double distance = (path[i - 1] + share * edge - q).lpNorm<Eigen::Infinity>();
-    if (distance >= least) continue;
-    least = distance;
-    next = share == 1.0 ? i + 1 : i;
-    at_end = next == path.size();
-  }
-  if (least > reach || (at_end && (path.back() - q).lpNorm<Eigen::Infinity>() < kSame)) return {};
-  if (at_end) --next;
-  std::vector<Vector> rest = {q};
-  for (std::size_t i = next; i < path.size(); ++i)
-    if ((path[i] - rest.back()).lpNorm<Eigen::Infinity>() > kSame) rest.push_back(path[i]);
-  if (rest.size() < 2) return {};
-  rest.back() = path.back();
-  return rest;
 }
 
 LiveResult go_on(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem,

@@ -33,9 +33,6 @@ struct LiveResult {
   double after{};   ///< price of the path returned
 };
 
-/// Where on `path` (nodes) the arm will go on: `q` and the nodes after the point nearest to it; empty when `q` is not on it, or at its end.
-std::vector<Vector> remainder(const std::vector<Vector>& path, const Vector& q, double reach);
-
 /// `running`: the path the arm runs along. `problem.start`: where it can be left at the earliest (on it, t_now + t_replan ahead: what comes
 /// before stays as it is). `problem.goals`: as they are wanted now. Deterministic for the problem's seed. When the start is not on the
 /// path, or nothing of it can be saved, the problem is planned anew with what is left of the budget.

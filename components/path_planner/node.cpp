@@ -13,7 +13,7 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr std::size_t kClients = 16;  // whose last path is remembered
+constexpr const char* kCancelled = "cancelled on request";
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
 config::PathPlannerSettings load(const NodeContext& context) {
@@ -97,6 +97,10 @@ Node::Node(Bus& bus, const NodeContext& context)
 }
 
 void Node::on_request(const PathRequest& request) {
+  if (request.cancel) {
+    cancel(request.id);
+    return;
+  }
   switch (desk_.admit(request.id)) {
     case RequestDesk::Admission::under_way:
       return;
@@ -104,21 +108,31 @@ void Node::on_request(const PathRequest& request) {
       reply_out_->publish(*desk_.answer(request.id));
       return;
     case RequestDesk::Admission::superseded:
-      refuse(request, "superseded by a newer request of the same client");
+      refuse(request.id, "superseded by a newer request of the same client");
+      return;
+    case RequestDesk::Admission::cancelled:
+      refuse(request.id, kCancelled);
       return;
     case RequestDesk::Admission::fresh:
       break;
   }
   for (auto& [number, token] : running_[request.id.client]) token.cancel();
   if (const std::string why = not_ready(); !why.empty()) {
-    refuse(request, why);
+    refuse(request.id, why);
     return;
   }
   if (const std::string why = contradiction(*robot_, request); !why.empty()) {
-    refuse(request, why);
+    refuse(request.id, why);
     return;
   }
   start(request);
+}
+
+/// What is asked for is answered at once; the work for it ends with its next check.
+void Node::cancel(const RequestId& id) {
+  for (auto& [number, token] : running_[id.client])
+    if (number <= id.number) token.cancel();
+  for (const RequestId& open : desk_.cancel(id)) refuse(open, kCancelled);
 }
 
 std::string Node::not_ready() const {
@@ -135,7 +149,6 @@ void Node::start(const PathRequest& request) {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const HumanState> people;
     LayersNow layers;
-    std::vector<Vector> running;  // empty: none, plan
     LiveOutcome outcome{};
     Result result;
   };
@@ -149,12 +162,9 @@ void Node::start(const PathRequest& request) {
   const double time = std::clamp(request.time_limit, 0.0, timing_.longest_time);
   problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
 
-  if (const auto last = given_.find(request.id.client); last != given_.end() && request.live && last->second.group == request.group)
-    work->running = last->second.path;
-
   const auto compute = [this, work](const CancelToken& token) {
     Scene scene = *work->scene;
-    if (!work->running.empty())  // an arm in motion is not exactly where it is told to be
+    if (!work->request.running.empty())  // an arm in motion is not exactly where it is told to be
       for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * live_margin_);
     world_.set_scene(scene);
     world_.set_people(*work->people);
@@ -163,10 +173,10 @@ void Node::start(const PathRequest& request) {
     cost_.set_layers(work->layers);
     cost_.set_base(work->scene->T_world_base);
     const Hooks hooks{[&token] { return token.cancelled(); }, {}};
-    if (work->running.empty()) {
+    if (work->request.running.empty()) {
       work->result = from_nothing(work->request, work->problem, work->scene->T_world_base, hooks);
     } else {
-      LiveResult live = go_on(*robot_, world_, cost_, work->problem, work->running, settings_, live_, hooks);
+      LiveResult live = go_on(*robot_, world_, cost_, work->problem, work->request.running, settings_, live_, hooks);
       work->outcome = live.outcome;
       work->result = std::move(live.result);
     }
@@ -177,18 +187,15 @@ void Node::start(const PathRequest& request) {
     auto& of_client = running_[id.client];
     of_client.erase(id.number);
     if (of_client.empty()) running_.erase(id.client);
+    if (desk_.answer(id) != nullptr) return;  // cancelled
     PathReply reply = reply_of(work->request, work->result);
     if (!reply.solved && reply.reason == "cancelled" && desk_.superseded(id))
       reply.reason = "superseded by a newer request of the same client";
-    if (!work->running.empty()) {
+    if (!work->request.running.empty()) {
       ++live_outcomes_[static_cast<std::size_t>(work->outcome)];
       reply.outcome = static_cast<PathOutcome>(static_cast<int>(work->outcome) + static_cast<int>(PathOutcome::kept));
     } else if (!reply.solved) {
       reply.outcome = PathOutcome::blocked;
-    }
-    if (reply.solved && work->request.space == PlanSpace::joint) {
-      if (given_.size() >= kClients && given_.count(id.client) == 0) given_.erase(given_.begin());
-      given_[id.client] = {work->request.group, reply.path};
     }
     desk_.close(reply);
     reply_out_->publish(reply);
@@ -220,9 +227,9 @@ Result Node::from_nothing(const PathRequest& request, Problem& problem, const Po
   return result;
 }
 
-void Node::refuse(const PathRequest& request, const std::string& reason) {
+void Node::refuse(const RequestId& id, const std::string& reason) {
   PathReply reply;
-  reply.id = request.id;
+  reply.id = id;
   reply.reason = reason;
   reply.outcome = PathOutcome::blocked;
   desk_.close(reply);

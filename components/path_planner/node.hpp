@@ -30,15 +30,11 @@ class Node {
     double check_time{}, longest_time{};
     Duration max_scene_age{};
   };
-  /// The path a client was given last.
-  struct Given {
-    std::string group;
-    std::vector<Vector> path;
-  };
   void on_request(const PathRequest& request);
+  void cancel(const RequestId& id);
   void start(const PathRequest& request);
   Result from_nothing(const PathRequest& request, Problem& problem, const Pose& T_world_base, const Hooks& hooks);
-  void refuse(const PathRequest& request, const std::string& reason);
+  void refuse(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
 
   Bus& bus_;
@@ -46,7 +42,6 @@ class Node {
   Settings settings_;
   LiveSettings live_;
   double live_margin_{};
-  std::map<std::uint64_t, Given> given_;  // by client
   std::array<std::uint64_t, 5> live_outcomes_{};
   Timing timing_;
   std::unique_ptr<Publisher<PathReply>> reply_out_;

@@ -1,6 +1,7 @@
-// Who asked what: makes asking twice harmless and lets a newer request of a client replace its older ones. Pure.
+// Who asked what: makes asking twice harmless and lets a newer request of a client replace its older ones, and a client cancel. Pure.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -21,11 +22,13 @@ class RequestDesk {
     under_way,   ///< asked before, the answer will come
     answered,    ///< asked before, see `answer`
     superseded,  ///< the client has asked something newer since
+    cancelled,   ///< the client wants it no more
   };
   Admission admit(const RequestId& id) {
     if (answer(id) != nullptr) return Admission::answered;
     for (const RequestId& open : open_)
       if (open == id) return Admission::under_way;
+    if (const auto last = cancelled_.find(id.client); last != cancelled_.end() && id.number <= last->second) return Admission::cancelled;
     std::uint64_t& newest = newest_[id.client];
     if (id.number < newest) return Admission::superseded;
     newest = id.number;
@@ -35,6 +38,15 @@ class RequestDesk {
   bool superseded(const RequestId& id) const {
     const auto found = newest_.find(id.client);
     return found != newest_.end() && found->second > id.number;
+  }
+  /// This request and all older ones of the client are wanted no more: those that are not answered yet.
+  std::vector<RequestId> cancel(const RequestId& id) {
+    std::uint64_t& last = cancelled_[id.client];
+    last = std::max(last, id.number);
+    std::vector<RequestId> unanswered;
+    for (const RequestId& open : open_)
+      if (open.client == id.client && open.number <= id.number) unanswered.push_back(open);
+    return unanswered;
   }
   void close(const PathReply& reply) {
     std::erase(open_, reply.id);
@@ -52,7 +64,7 @@ class RequestDesk {
   std::size_t remembered_;
   std::vector<RequestId> open_;
   std::deque<PathReply> answers_;
-  std::map<std::uint64_t, std::uint64_t> newest_;
+  std::map<std::uint64_t, std::uint64_t> newest_, cancelled_;  // numbers, by client
 };
 
 }  // namespace handsel::path_planner

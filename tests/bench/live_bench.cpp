@@ -9,6 +9,7 @@
 #include <functional>
 #include <random>
 
+#include "common/trajectory/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "tests/support/standing_person.hpp"
 

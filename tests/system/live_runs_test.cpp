@@ -16,6 +16,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
+#include "common/trajectory/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/path_planner/random.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
@@ -27,7 +28,6 @@ namespace {
 using Json = nlohmann::json;
 using path_planner::Random;
 
-constexpr double kLiveTime = 0.25;  // requests with at most this time limit go on along a path
 constexpr double kKeepsOff = 0.12;  // nobody pushes a hand or their body nearer than this to the robot [m]
 constexpr double kLimit = 45;       // of one run [s]
 
@@ -158,7 +158,7 @@ class Judge {
   /// Integral cost of what remains of the path, for the people now [rad].
   double remaining(const PathRequest& request, const std::vector<Vector>& path, const HumanState& people) {
     cost_.set_people(people);
-    return integral(request.start, path_planner::remainder(path, RobotModel::part(request.start, arm_), 0.5));
+    return integral(request.start, remainder(path, RobotModel::part(request.start, arm_), 0.5));
   }
   struct Change {
     bool was_blocked{}, rejoins{};
@@ -171,7 +171,7 @@ class Judge {
     world_.set_attachment(request.attachment, request.allowed_contacts);
     cost_.set_people(people);
     cost_.set_base(scene.T_world_base);
-    const std::vector<Vector> rest = path_planner::remainder(old, RobotModel::part(request.start, arm_), 0.5);
+    const std::vector<Vector> rest = remainder(old, RobotModel::part(request.start, arm_), 0.5);
     Change change;
     change.before = integral(request.start, rest);
     change.after = integral(request.start, taken);
@@ -281,8 +281,9 @@ Json run(std::uint64_t seed, const std::string& folder) {
   seat.subscribe<Scene>([&](const Scene& s, const Receipt&) { scene = s; });
   seat.subscribe<HumanState>([&](const HumanState& s, const Receipt&) { people = s; });
   seat.subscribe<PathRequest>([&](const PathRequest& r, const Receipt&) {
+    if (r.cancel) return;
     request = r;
-    live = r.time_limit <= kLiveTime;
+    live = !r.running.empty();
     people_then = people;
     looks += live;
     if (live && !path.empty() && people.people.size() == 1) remaining.push_back(judge.remaining(r, path, people));

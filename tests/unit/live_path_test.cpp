@@ -6,7 +6,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/trajectory/broken_line.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/sound_path.hpp"
 #include "tests/support/standing_person.hpp"
 
 namespace handsel::path_planner {
@@ -38,12 +40,7 @@ class LivePath : public ::testing::Test {
     cost_.set_people(people);
   }
   LiveResult go() { return go_on(robot_, world_, cost_, problem_, running_, settings_, live_, hooks_); }
-  void expect_sound(const Result& result) {
-    ASSERT_TRUE(result.solved) << result.reason;
-    EXPECT_EQ(result.path.front(), problem_.start);
-    EXPECT_EQ(result.path.back(), problem_.goals[result.goal]);
-    for (std::size_t i = 1; i < result.path.size(); ++i) EXPECT_TRUE(world_.check_motion(result.path[i - 1], result.path[i], 0.002).free);
-  }
+  void expect_sound(const Result& result) { test::expect_sound(result, problem_, world_); }
 
   RobotModel robot_{test::planar_arm()};
   CollisionWorld world_{robot_, nullptr};

@@ -94,6 +94,8 @@ class Rig {
     if (grasp_planner_lives) planner.on(reply);
   }
   void answer(const PathRequest& request) {
+    last_path = request;
+    if (request.cancel || !path_planner_lives) return;
     ++path_requests;
     PathReply reply;
     reply.id = request.id;
@@ -151,7 +153,8 @@ class Rig {
   TimePoint now{};
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0};
-  bool grasps_exist{true}, grasp_planner_lives{true}, grasp_holds{true}, person_takes{true};
+  PathRequest last_path;
+  bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
 };
@@ -289,6 +292,40 @@ TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoAndTakesTheNextAction) {
   rig.start(ActionKind::go_to);
   rig.run(10);
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded);
+}
+
+TEST(ManipulationPlanner, WithTheActionGoesWhatItHasAskedThePathPlannerFor) {
+  for (const bool replaced : {false, true}) {
+    Rig rig;
+    rig.path_planner_lives = false;
+    rig.start(ActionKind::go_to);
+    rig.run(0.5);
+    const RequestId asked = rig.last_path.id;
+    ASSERT_FALSE(rig.last_path.cancel);
+    if (replaced) {
+      rig.execution.mode = Mode::hold;  // so that the next one asks for nothing yet
+      rig.start(ActionKind::go_to);
+    } else {
+      ActionGoal cancel;
+      cancel.id = rig.actions;
+      cancel.cancel = true;
+      rig.planner.on(cancel);
+    }
+    rig.cycle();
+    EXPECT_TRUE(rig.last_path.cancel);
+    EXPECT_EQ(rig.last_path.id, asked);
+    rig.last_path = {};
+    rig.cycle();
+    EXPECT_FALSE(rig.last_path.cancel) << "once is enough";
+  }
+  Rig rig;
+  rig.start(ActionKind::go_to);
+  rig.run(10);
+  ASSERT_EQ(rig.planner.status().state, ActionState::succeeded);
+  rig.start(ActionKind::go_to);
+  rig.execution.mode = Mode::hold;
+  rig.cycle();
+  EXPECT_FALSE(rig.last_path.cancel) << "all was answered";
 }
 
 TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {

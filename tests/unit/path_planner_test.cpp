@@ -8,6 +8,7 @@
 
 #include "components/path_planner/request_desk.hpp"
 #include "tests/support/planar_arm.hpp"
+#include "tests/support/sound_path.hpp"
 
 namespace handsel::path_planner {
 namespace {
@@ -36,13 +37,7 @@ class Planning : public ::testing::Test {
     cost_.set_people(state);
   }
   Result solve() { return plan(robot_, world_, cost_, problem_, settings_); }
-  void expect_sound(const Result& result) {
-    ASSERT_TRUE(result.solved) << result.reason;
-    ASSERT_GE(result.path.size(), 2u);
-    EXPECT_EQ(result.path.front(), problem_.start);
-    EXPECT_EQ(result.path.back(), problem_.goals[result.goal]);
-    for (std::size_t i = 1; i < result.path.size(); ++i) EXPECT_TRUE(world_.check_motion(result.path[i - 1], result.path[i], 0.002).free);
-  }
+  void expect_sound(const Result& result) { test::expect_sound(result, problem_, world_); }
 
   RobotModel robot_{test::planar_arm()};
   CollisionWorld world_{robot_, nullptr};

@@ -158,7 +158,7 @@ TEST_F(PathRequests, in_the_cartesian_space_the_head_may_move_along) {
   for (std::size_t i = 1; i < reply.path.size(); ++i) EXPECT_LE((reply.path[i] - reply.path[i - 1]).cwiseAbs().maxCoeff(), 0.1 + 1e-9);
 }
 
-TEST_F(PathRequests, a_live_one_goes_on_along_the_path_given_last) {
+TEST_F(PathRequests, a_live_one_goes_on_along_the_path_that_runs) {
   PathRequest r = request();
   r.goals = {moved(0.3)};
   const PathReply first = ask(r);
@@ -166,12 +166,12 @@ TEST_F(PathRequests, a_live_one_goes_on_along_the_path_given_last) {
   r = request();
   r.goals = {moved(0.3)};
   r.start = RobotModel::with(r.start, arm_, 0.7 * first.path[0] + 0.3 * first.path[1]);
-  r.live = true;
+  r.running = first.path;
   const PathReply on = ask(r);
   ASSERT_TRUE(on.solved) << on.reason;
   EXPECT_EQ(on.outcome, PathOutcome::kept);
   r.id = request().id;
-  r.live = false;
+  r.running.clear();
   EXPECT_EQ(ask(r).outcome, PathOutcome::planned);
 }
 
@@ -204,9 +204,12 @@ TEST_F(PathRequests, what_contradicts_itself_is_refused_with_its_reason) {
   });
   refused("no angle it may lean over", [](PathRequest& r) { r.upright = true; });
   refused("the time limit is zero", [](PathRequest& r) { r.time_limit = 0; });
-  refused("asks for a straight line", [](PathRequest& r) { r.live = r.straight = true; });
+  refused("asks for a straight line", [](PathRequest& r) {
+    r.running = r.goals;
+    r.straight = true;
+  });
   refused("its goal is a pose", [&](PathRequest& r) {
-    r.live = true;
+    r.running = r.goals;
     r.goals.clear();
     r.poses = {pose};
   });

@@ -140,6 +140,37 @@ TEST_F(PathNode, an_older_request_than_one_already_asked_is_superseded) {
   EXPECT_THAT(heard_.messages[1].reason, HasSubstr("superseded"));
 }
 
+TEST_F(PathNode, what_is_cancelled_is_answered_at_once_and_planned_no_more) {
+  network_.run_for(milliseconds(200));
+  const auto cancel = [this](std::uint64_t number) {
+    PathRequest r;
+    r.id = {9, number};
+    r.group = "all";
+    r.cancel = true;
+    request_out_->publish(r);
+  };
+  request_out_->publish(request(1));
+  ASSERT_TRUE(wait(1));
+  PathRequest hard = request(3);
+  hard.start = Vector3(-0.6, 0, 0);
+  request_out_->publish(hard);
+  network_.run_for(milliseconds(2));
+  cancel(3);
+  network_.run_for(milliseconds(20));
+  ASSERT_EQ(heard_.messages.size(), 2u);
+  EXPECT_EQ(heard_.messages[1].id, (RequestId{9, 3}));
+  EXPECT_FALSE(heard_.messages[1].solved);
+  EXPECT_THAT(heard_.messages[1].reason, HasSubstr("cancelled"));
+  request_out_->publish(request(2));  // came late
+  ASSERT_TRUE(wait(3));
+  EXPECT_THAT(heard_.messages[2].reason, HasSubstr("cancelled"));
+  request_out_->publish(request(4));
+  ASSERT_TRUE(wait(4));
+  EXPECT_TRUE(heard_.messages[3].solved);
+  network_.run_for(seconds(3));
+  EXPECT_EQ(heard_.messages.size(), 4u);
+}
+
 /// The way of the arm's end from one side to the other, and somebody outside who would rather it did not go straight.
 class PathNodeAndOutsider : public PathNode {
  protected:
