@@ -26,7 +26,8 @@ ObjectLibrary load_object_library() {
 
 NodeContext load_context(const std::string& robot, const std::string& scenario, const std::filesystem::path& settings, std::uint64_t seed) {
   NodeContext context;
-  context.robot = std::make_shared<const RobotModel>(RobotModel::load(robot_description(robot.empty() ? scenario_robot(scenario) : robot)));
+  context.description = robot_description(robot.empty() ? scenario_robot(scenario) : robot);
+  context.robot = std::make_shared<const RobotModel>(RobotModel::load(context.description));
   context.objects = load_object_library();
   if (!scenario.empty()) context.scenario = scenario_file(scenario);
   context.settings = settings.empty() ? resource("config") : settings;

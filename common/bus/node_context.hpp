@@ -17,10 +17,11 @@ using ObjectLibrary = std::function<const ObjectModel*(const std::string&)>;
 
 struct NodeContext {
   std::shared_ptr<const RobotModel> robot;
-  ObjectLibrary objects;           ///< every description under objects/, read at start
-  std::filesystem::path scenario;  ///< scenario file; empty: none was named
-  std::filesystem::path settings;  ///< directory of <box>.txtpb
-  std::uint64_t seed{1};           ///< of every random choice of the node
+  std::filesystem::path description{};  ///< file the robot came from; empty: made by hand
+  ObjectLibrary objects;                ///< every description under objects/, read at start
+  std::filesystem::path scenario;       ///< scenario file; empty: none was named
+  std::filesystem::path settings;       ///< directory of <box>.txtpb
+  std::uint64_t seed{1};                ///< of every random choice of the node
 };
 
 /// Reads every objects/*/*.txtpb under the resource root. Throws ConfigError naming the file.

@@ -41,6 +41,9 @@ class RobotModelBuilder {
   void require_masses() const;
   RobotModel finish();
 
+  /// on_platform of common/model/platform.hpp.
+  static RobotModel on_platform(const RobotModel& robot, double speed, double turn_speed);
+
  private:
   int joint_index(const std::string& name) const;
   int axis_of(const std::string& joint) const;

@@ -18,52 +18,53 @@ constexpr double kSamePosture = 1e-4;  // [rad]
 constexpr double kMotionStep = 0.005;  // states between two samples are judged this close [rad]
 constexpr double kVerifyStep = 0.001;  // and on what is returned [rad]
 constexpr int kAttempts = 3;           // the fine check may refuse what the coarse one let pass
+constexpr int kBends = 24;             // postures tried on another branch
+constexpr double kBendAway = 1.0;      // the last of them is up to this far from the start's, shoulder, elbow and wrist bent over [rad]
+constexpr double kLeastBend = 0.2;     // [rad]
+constexpr double kJointSample = 0.05;  // of a path of the joints [rad]
 constexpr int kHalvings = 4;           // of a step before what the joints do is called a jump
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
 
-class Space {
+class Space : public Budget {
  public:
   Space(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const CartesianProblem& problem,
         const CartesianSettings& settings, const Hooks& hooks, const ik::Chain& chain, const ik::SrsArm& arm)
-      : arm_group_(robot.require_group("arm")),
+      : Budget(world, problem.budget, hooks),
+        arm_group_(robot.require_group("arm")),
         world_(world),
         cost_(cost),
         problem_(problem),
         settings_(settings),
-        hooks_(hooks),
         chain_(chain),
-        arm_(arm),
-        checks_before_(world.checks()) {}
+        arm_(arm) {}
 
   const CartesianSettings& settings() const { return settings_; }
   bool concerns_people() const { return cost_.concerned(); }
   double cost(const Vector& q) const { return cost_.concerned() ? cost_(q) : 0.0; }
   bool free(const Vector& q) { return world_.is_free(q); }
-  std::uint64_t checks() const { return world_.checks() - checks_before_ + solved_; }
-  bool cancelled() const { return hooks_.cancelled && hooks_.cancelled(); }
-  bool exhausted() const { return checks() >= problem_.budget || cancelled(); }
-  void charge() { ++solved_; }
 
   CartesianNode node_of(const Vector& q) const {
     ik::Axes joints = RobotModel::part(q, arm_group_);
     return {chain_.forward(joints, nullptr), arm_.elbow_angle(joints), q};
   }
 
-  /// Shoulder, elbow and wrist bent the same way: no way in active variables leads from one branch to another.
-  bool same_branch(const Vector& a, const Vector& b) const {
+  /// How many of shoulder, elbow and wrist are bent the other way: no way in active variables leads from one branch to another.
+  int bends(const Vector& a, const Vector& b) const {
     constexpr double kStretched = 1e-3;
+    int other = 0;
     for (const std::size_t middle : {1, 3, 5}) {
       const double x = a[arm_group_.axes[middle]], y = b[arm_group_.axes[middle]];
-      if (x * y < 0 && std::min(std::abs(x), std::abs(y)) > kStretched) return false;
+      other += x * y < 0 && std::min(std::abs(x), std::abs(y)) > kStretched;
     }
-    return true;
+    return other;
   }
+  bool same_branch(const Vector& a, const Vector& b) const { return bends(a, b) == 0; }
 
   /// Postures at a pose with this elbow angle, inside the limits; the other axes as in `all`.
   std::vector<Vector> postures(const Pose& T, double elbow, const Vector& all) {
-    ++solved_;
+    charge(1);
     std::vector<Vector> out;
     for (const ik::Axes& q : arm_.branches(T, elbow))
       if (auto inside = brought_inside(q, 0.5 * (chain_.lower() + chain_.upper())))
@@ -126,7 +127,7 @@ class Space {
     next.T_root_tool.translation() = a.T_root_tool.translation() + to * way.move;
     next.elbow = wrapped(a.elbow + to * way.elbow);
     const Vector now = RobotModel::part(at.q, arm_group_);
-    ++solved_;
+    charge(1);
     double least = kInfinite;
     Vector best;
     for (const ik::Axes& q : arm_.branches(next.T_root_tool, next.elbow)) {
@@ -155,10 +156,8 @@ class Space {
   const HumanCost& cost_;
   const CartesianProblem& problem_;
   const CartesianSettings& settings_;
-  const Hooks& hooks_;
   const ik::Chain& chain_;
   const ik::SrsArm& arm_;
-  std::uint64_t checks_before_, solved_{0};
 };
 
 struct TreeNode {
@@ -204,7 +203,7 @@ class Search {
       if (CartesianNode end; space_.follow(start, goal, 1.0, end) == 1.0 && same(end, goal) && !space_.concerns_people())
         return {start, goal};
     for (int round = 0; !space_.exhausted(); ++round) {
-      space_.charge();
+      space_.charge(1);
       const int grows = round % 2;
       Tree &tree = trees[grows], &other = trees[1 - grows];
       const CartesianNode target = random_.unit() < space_.settings().goal_bias
@@ -306,6 +305,47 @@ void shorten(Space& space, std::vector<CartesianNode>& nodes, Random& random) {
   }
 }
 
+bool verified(CollisionWorld& world, const std::vector<Vector>& samples) {
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (!world.check_motion(samples[i - 1], samples[i], kVerifyStep).free) return false;
+  return !samples.empty();
+}
+
+/// Samples of a path of the joints from the start to a posture bent as the goal asks: through a stretched shoulder, elbow or wrist no local
+/// path leads. Empty when none was found.
+std::vector<Vector> other_branch(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& cartesian,
+                                 const Group& arm, const Vector& like, std::uint64_t budget, Random& random, const Hooks& hooks) {
+  Problem problem;
+  problem.axes = arm.axes;
+  problem.start = cartesian.start;
+  problem.seed = random.bits();
+  problem.budget = std::max<std::uint64_t>(1, budget);
+  for (int k = 0; k < kBends; ++k) {
+    Vector q = RobotModel::part(cartesian.start, arm);
+    const double away = kBendAway * k / kBends;
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[static_cast<std::size_t>(i)])];
+      const double wanted = like[arm.axes[static_cast<std::size_t>(i)]];
+      const bool middle = i == 1 || i == 3 || i == 5;
+      if (middle && q[i] * wanted < 0) q[i] = std::copysign(std::max(kLeastBend, std::abs(q[i])), wanted);
+      const double moved = q[i] + away * random.between(-1, 1);
+      q[i] = middle && moved * wanted < 0 ? q[i] : std::clamp(moved, axis.lower, axis.upper);
+    }
+    problem.goals.push_back(q);
+  }
+  Hooks quiet;
+  quiet.cancelled = hooks.cancelled;
+  const Result found = plan(robot, world, cost, problem, {}, quiet);
+  std::vector<Vector> samples;
+  for (std::size_t i = 1; i < found.path.size(); ++i) {
+    const Vector along = found.path[i] - found.path[i - 1];
+    const int pieces = std::max(1, static_cast<int>(std::ceil(along.lpNorm<Eigen::Infinity>() / kJointSample)));
+    for (int piece = i == 1 ? 0 : 1; piece <= pieces; ++piece)
+      samples.push_back(RobotModel::with(cartesian.start, arm, found.path[i - 1] + (static_cast<double>(piece) / pieces) * along));
+  }
+  return samples;
+}
+
 }  // namespace
 
 CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
@@ -343,49 +383,68 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
     return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
   Vector at_goal = problem.start;
   for (std::size_t i = 0; i < problem.also.size(); ++i) at_goal[problem.also[i]] = problem.also_goal[static_cast<Eigen::Index>(i)];
-  std::vector<CartesianNode> goals;
-  bool reachable = false, on_branch = false;
+  std::vector<std::vector<CartesianNode>> goals(1);  // by branch, that of the start first
+  bool reachable = false;
   CollisionVerdict touched;
   for (int k = 0; k < settings.goal_elbows; ++k) {
     const double elbow = wrapped(2 * M_PI * k / settings.goal_elbows);
     for (const Vector& q : space.postures(problem.T_root_goal, elbow, at_goal)) {
       reachable = true;
-      if (!space.same_branch(problem.start, q)) continue;
-      on_branch = true;
       const CollisionVerdict verdict = world.check(q);
-      if (verdict.free)
-        goals.push_back({problem.T_root_goal, elbow, q});
-      else if (touched.free)
-        touched = verdict;
+      if (!verdict.free) {
+        if (touched.free) touched = verdict;
+        continue;
+      }
+      std::size_t branch = 0;
+      if (!space.same_branch(problem.start, q))
+        for (branch = 1; branch < goals.size() && !space.same_branch(goals[branch].front().q, q);) ++branch;
+      if (branch == goals.size()) goals.emplace_back();
+      goals[branch].push_back({problem.T_root_goal, elbow, q});
     }
   }
   if (!reachable) return refuse("no posture of the arm has the tool at the goal");
-  if (!on_branch)
-    return refuse("the arm would have to pass through a stretched shoulder, elbow or wrist to reach the goal: plan in joint space");
-  if (goals.empty()) return refuse("every posture at the goal is in collision, the first: " + touched.first + " touches " + touched.second);
+  if (goals.size() == 1 && goals[0].empty())
+    return refuse("every posture at the goal is in collision, the first: " + touched.first + " touches " + touched.second);
+  std::stable_sort(goals.begin() + 1, goals.end(),
+                   [&](const auto& a, const auto& b) { return space.bends(problem.start, a[0].q) < space.bends(problem.start, b[0].q); });
 
   Random random(problem.seed);
-  const CartesianNode start = space.node_of(problem.start);
   const Vector3 shoulder = chain.elements().front().T_before.translation();
-  const double reach =
-      std::max((start.T_root_tool.translation() - shoulder).norm(), (problem.T_root_goal.translation() - shoulder).norm()) + 0.2;
-  const auto verified = [&](const std::vector<Vector>& samples) {
-    for (std::size_t i = 1; i < samples.size(); ++i)
-      if (!world.check_motion(samples[i - 1], samples[i], kVerifyStep).free) return false;
-    return !samples.empty();
+  const auto lead = [&](const CartesianNode& start, const std::vector<CartesianNode>& ends) {
+    const double reach =
+        std::max((start.T_root_tool.translation() - shoulder).norm(), (problem.T_root_goal.translation() - shoulder).norm()) + 0.2;
+    for (int attempt = 0; attempt < kAttempts && !space.exhausted(); ++attempt) {
+      const std::vector<CartesianNode> found = Search(space, problem, random, reach, shoulder).run(start, ends);
+      if (found.empty()) return false;
+      result.nodes = found;
+      shorten(space, result.nodes, random);
+      for (const bool shortened : {true, false}) {
+        if (!shortened) result.nodes = found;
+        result.samples = samples_of(space, result.nodes);
+        if (verified(world, result.samples)) return true;
+      }
+    }
+    return false;
   };
   bool sound = false;
-  for (int attempt = 0; attempt < kAttempts && !sound && !space.exhausted(); ++attempt) {
-    const std::vector<CartesianNode> found = Search(space, problem, random, reach, shoulder).run(start, goals);
-    if (found.empty()) break;
-    result.nodes = found;
-    shorten(space, result.nodes, random);
-    result.samples = samples_of(space, result.nodes);
-    sound = verified(result.samples);
-    if (sound) break;
-    result.nodes = found;
-    result.samples = samples_of(space, result.nodes);
-    sound = verified(result.samples);
+  for (std::size_t branch = 0; branch < goals.size() && !sound && !space.cancelled(); ++branch) {
+    const double left = static_cast<double>(problem.budget - std::min(problem.budget, space.checks()));
+    const auto parts = static_cast<double>(branch == 0 ? std::min<std::size_t>(2, goals.size()) : goals.size() - branch);
+    const auto share = static_cast<std::uint64_t>(left / parts);
+    if (goals[branch].empty()) continue;
+    space.limit(space.checks() + share);
+    if (branch == 0) {
+      sound = lead(space.node_of(problem.start), goals[0]);
+      continue;
+    }
+    const std::vector<Vector> bridge = other_branch(robot, world, cost, problem, *group, goals[branch].front().q, share / 3, random, hooks);
+    world.set_moving_axes(moving);
+    cost.set_moving_axes(moving);
+    if (bridge.empty() || !lead(space.node_of(bridge.back()), goals[branch])) continue;
+    sound = true;
+    result.in_joints = bridge.size() - 1;
+    result.nodes.insert(result.nodes.begin(), space.node_of(problem.start));
+    result.samples.insert(result.samples.begin(), bridge.begin(), bridge.end() - 1);
   }
   result.checks = space.checks();
   if (!sound) {
@@ -399,6 +458,19 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
   result.length = path_length(result.samples);
   result.solved = true;
   return result;
+}
+
+Result in_joints(const CartesianResult& found, const std::vector<int>& axes) {
+  Result out;
+  out.solved = found.solved;
+  out.reason = found.reason;
+  out.cost = found.cost;
+  out.work = found.work;
+  out.length = found.length;
+  out.checks = found.checks;
+  out.planner = "cartesian";
+  for (const Vector& sample : found.samples) out.path.push_back(sample(axes));
+  return out;
 }
 
 }  // namespace handsel::path_planner

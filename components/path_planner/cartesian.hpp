@@ -40,16 +40,21 @@ struct CartesianResult {
   std::string reason;  ///< why not, one sentence
   std::vector<CartesianNode> nodes;
   std::vector<Vector> samples;  ///< all axes, along the local paths; neighbours differ by at most largest_step in every joint
+  std::size_t in_joints{};      ///< this many motions of the samples, the first, are of the joints: they bend the arm the goal's way
   double cost{};                ///< integral of the human-aware cost along the samples [rad]
   double work{};                ///< sum of the rises of that cost
   double length{};              ///< of the samples, joint space [rad]
   std::uint64_t checks{};
 };
 
+/// Goals on the branch of the start come first; where none is reached, the arm goes over to another branch in joint space before.
 /// Two trees, RRT-Connect where nobody is there, with the transition test of T-RRT where somebody is. The arm must be one of shoulder,
 /// elbow and wrist (ik::SrsArm). The way from one orientation to another is their displacement: one axis and an angle up to pi; at pi,
 /// where the axis is not defined, there is no local path.
 CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
                                const CartesianSettings& settings, const Hooks& hooks = {});
+
+/// The same as a path of these axes.
+Result in_joints(const CartesianResult& found, const std::vector<int>& axes);
 
 }  // namespace handsel::path_planner

@@ -1,6 +1,7 @@
 #include "components/path_planner/connect.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "components/path_planner/random.hpp"
@@ -38,7 +39,7 @@ Found connect(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_
     break;
   }
   found.nodes = static_cast<std::size_t>(trees[0].size()) + static_cast<std::size_t>(trees[1].size());
-  if (space.hooks().searched) space.hooks().searched(trees[0], &trees[1]);
+  found.trees.assign(std::make_move_iterator(trees), std::make_move_iterator(trees + 2));
   return found;
 }
 

@@ -20,8 +20,8 @@ config::PathPlannerSettings load(const NodeContext& context) {
   config::PathPlannerSettings s;
   load_text_proto(context.settings / "path_planner.txtpb", s);
   for (double positive : {s.step(), s.verify_step(), s.connect_range(), s.transition_range(), s.initial_temperature(), s.search_share(),
-                          s.cost_step(), s.longest_edge(), s.check_time(), s.longest_time(), s.max_scene_age()})
-    if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share and the temperature must be > 0");
+                          s.cost_step(), s.longest_edge(), s.check_time(), s.longest_time(), s.max_scene_age(), s.roam()})
+    if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share, the temperature and roam must be > 0");
   if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
     throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
   if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0)
@@ -42,19 +42,6 @@ Settings core_settings(const config::PathPlannerSettings& s) {
   out.smoothing_rounds = s.smoothing_rounds();
   out.patience = s.patience();
   out.longest_edge = s.longest_edge();
-  return out;
-}
-
-/// The columns of the group's axes, then of those that move along.
-Result in_joints(const CartesianResult& found, const std::vector<int>& axes) {
-  Result out;
-  out.solved = found.solved;
-  out.reason = found.reason;
-  out.cost = found.cost;
-  out.work = found.work;
-  out.length = found.length;
-  out.checks = found.checks;
-  for (const Vector& sample : found.samples) out.path.push_back(sample(axes));
   return out;
 }
 
@@ -80,7 +67,10 @@ Node::Node(Bus& bus, const NodeContext& context)
       robot_(context.robot),
       reply_out_(bus.advertise<PathReply>()),
       world_(*context.robot, context.objects),
-      cost_(*context.robot, load_cost_settings(context.settings)) {
+      cost_(*context.robot, load_cost_settings(context.settings)),
+      objects_(context.objects),
+      weights_(load_cost_settings(context.settings)) {
+  if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
   const config::PathPlannerSettings file = load(context);
   settings_ = core_settings(file);
   timing_ = {file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())};
@@ -88,6 +78,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   live_.rounds = file.live_rounds();
   live_.tries = file.live_tries();
   live_margin_ = file.live_margin();
+  roam_ = file.roam();
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(
@@ -121,11 +112,27 @@ void Node::on_request(const PathRequest& request) {
     refuse(request.id, why);
     return;
   }
-  if (const std::string why = contradiction(*robot_, request); !why.empty()) {
+  PathRequest whole = request;
+  if (const std::string why = complete(whole); !why.empty()) {
     refuse(request.id, why);
     return;
   }
-  start(request);
+  start(whole);
+}
+
+/// Where a platform drives it begins where it stands, unless told. Why the request makes no sense, or empty.
+std::string Node::complete(PathRequest& request) const {
+  if (!on_platform_ || !drives(request.group)) return contradiction(*robot_, request);
+  constexpr double kLevel = 0.02;  // [rad]
+  if (!(scene_->T_world_base.linear()(2, 2) > std::cos(kLevel))) return "the platform does not stand level: it cannot be planned for";
+  if (request.start.size() == robot_->dof()) request.start = with_platform(request.start, scene_->T_world_base);
+  return contradiction(*on_platform_, request);
+}
+
+Node::Seat Node::seat_for(const std::string& group) {
+  if (!on_platform_ || !drives(group)) return {*robot_, world_, cost_, nullptr};
+  if (!mobile_) mobile_ = std::make_unique<Mobile>(*on_platform_, objects_, weights_);
+  return {*on_platform_, mobile_->world, mobile_->cost, &mobile_->navigation};
 }
 
 /// What is asked for is answered at once; the work for it ends with its next check.
@@ -158,25 +165,34 @@ void Node::start(const PathRequest& request) {
   work->people = people_;
   work->layers = layers_.at(bus_.now());
   Problem& problem = work->problem;
-  problem = problem_of(*robot_, request, scene_->T_world_base);
+  Pose T_world_root = scene_->T_world_base;
+  const bool driving = on_platform_ && drives(request.group);
+  if (driving) T_world_root = make_pose({0, 0, scene_->T_world_base.translation().z()});
+  problem = problem_of(driving ? *on_platform_ : *robot_, request, T_world_root);
   const double time = std::clamp(request.time_limit, 0.0, timing_.longest_time);
   problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
 
-  const auto compute = [this, work](const CancelToken& token) {
+  const auto compute = [this, work, T_world_root](const CancelToken& token) {
+    const Seat seat = seat_for(work->request.group);
     Scene scene = *work->scene;
+    scene.T_world_base = T_world_root;
     if (!work->request.running.empty())  // an arm in motion is not exactly where it is told to be
       for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * live_margin_);
-    world_.set_scene(scene);
-    world_.set_people(*work->people);
-    world_.set_attachment(work->request.attachment, work->request.allowed_contacts);
-    cost_.set_people(*work->people);
-    cost_.set_layers(work->layers);
-    cost_.set_base(work->scene->T_world_base);
+    seat.world.set_scene(scene);
+    seat.world.set_people(*work->people);
+    seat.world.set_attachment(work->request.attachment, work->request.allowed_contacts);
+    seat.cost.set_people(*work->people);
+    seat.cost.set_layers(work->layers);
+    seat.cost.set_base(T_world_root);
+    if (seat.navigation != nullptr) {
+      seat.navigation->set_people(*work->people);
+      drive(seat.robot, *seat.navigation, roam_, work->problem);
+    }
     const Hooks hooks{[&token] { return token.cancelled(); }, {}};
     if (work->request.running.empty()) {
-      work->result = from_nothing(work->request, work->problem, work->scene->T_world_base, hooks);
+      work->result = from_nothing(seat, work->request, work->problem, T_world_root, hooks);
     } else {
-      LiveResult live = go_on(*robot_, world_, cost_, work->problem, work->request.running, settings_, live_, hooks);
+      LiveResult live = go_on(seat.robot, seat.world, seat.cost, work->problem, work->request.running, settings_, live_, hooks);
       work->outcome = live.outcome;
       work->result = std::move(live.result);
     }
@@ -203,8 +219,8 @@ void Node::start(const PathRequest& request) {
   running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, answer));
 }
 
-Result Node::from_nothing(const PathRequest& request, Problem& problem, const Pose& T_world_base, const Hooks& hooks) {
-  const std::vector<PoseGoal> poses = pose_goals(request, T_world_base);
+Result Node::from_nothing(const Seat& seat, const PathRequest& request, Problem& problem, const Pose& T_world_root, const Hooks& hooks) {
+  const std::vector<PoseGoal> poses = pose_goals(request, T_world_root);
   if (request.space == PlanSpace::cartesian) {
     CartesianProblem cartesian;
     cartesian.start = problem.start;
@@ -215,14 +231,16 @@ Result Node::from_nothing(const PathRequest& request, Problem& problem, const Po
     cartesian.budget = problem.budget;
     std::vector<int> columns = problem.axes;
     columns.insert(columns.end(), cartesian.also.begin(), cartesian.also.end());
-    return in_joints(plan_cartesian(*robot_, world_, cost_, cartesian, {}, hooks), columns);
+    return in_joints(plan_cartesian(seat.robot, seat.world, seat.cost, cartesian, {}, hooks), columns);
   }
-  if (poses.empty()) return plan(*robot_, world_, cost_, problem, settings_, hooks);
-  PoseGoals found = reach(*robot_, *robot_->group(request.group), poses, problem.start, problem.seed);
+  if (poses.empty()) return plan(seat.robot, seat.world, seat.cost, problem, settings_, hooks);
+  PoseGoals found = seat.navigation != nullptr ? reach_driving(seat.robot, seat.world, poses, problem.start, problem.seed)
+                                               : reach(seat.robot, *seat.robot.group(request.group), poses, problem.start, problem.seed);
   problem.goals = std::move(found.goals);
   Result result;
   result.reason = found.reason;
-  if (!problem.goals.empty()) result = plan(*robot_, world_, cost_, problem, settings_, hooks);
+  if (seat.navigation != nullptr) drive(seat.robot, *seat.navigation, roam_, problem);
+  if (!problem.goals.empty()) result = plan(seat.robot, seat.world, seat.cost, problem, settings_, hooks);
   if (result.solved) result.goal = found.pose[result.goal];
   return result;
 }

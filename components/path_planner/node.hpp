@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
+#include "components/path_planner/driving.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/path_planner/request_desk.hpp"
 
@@ -33,7 +35,24 @@ class Node {
   void on_request(const PathRequest& request);
   void cancel(const RequestId& id);
   void start(const PathRequest& request);
-  Result from_nothing(const PathRequest& request, Problem& problem, const Pose& T_world_base, const Hooks& hooks);
+  /// The robot on its platform.
+  struct Mobile {
+    Mobile(const RobotModel& mobile, const ObjectLibrary& objects, const CostSettings& weights)
+        : world(mobile, objects), cost(mobile, weights), navigation(mobile, weights) {}
+    CollisionWorld world;
+    HumanCost cost;
+    NavigationCost navigation;
+  };
+  /// What plans for a request: the robot where it stands, or on its platform.
+  struct Seat {
+    const RobotModel& robot;
+    CollisionWorld& world;
+    HumanCost& cost;
+    NavigationCost* navigation{};  ///< null: it stands
+  };
+  Seat seat_for(const std::string& group);
+  std::string complete(PathRequest& request) const;
+  Result from_nothing(const Seat& seat, const PathRequest& request, Problem& problem, const Pose& T_world_root, const Hooks& hooks);
   void refuse(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
 
@@ -41,7 +60,7 @@ class Node {
   std::shared_ptr<const RobotModel> robot_;
   Settings settings_;
   LiveSettings live_;
-  double live_margin_{};
+  double live_margin_{}, roam_{};
   std::array<std::uint64_t, 5> live_outcomes_{};
   Timing timing_;
   std::unique_ptr<Publisher<PathReply>> reply_out_;
@@ -54,6 +73,10 @@ class Node {
   // Used by jobs only, which run one after the other.
   CollisionWorld world_;
   HumanCost cost_;
+  ObjectLibrary objects_;
+  CostSettings weights_;
+  std::optional<RobotModel> on_platform_;  // read only
+  std::unique_ptr<Mobile> mobile_;         // from the first request that drives on
 };
 
 }  // namespace handsel::path_planner

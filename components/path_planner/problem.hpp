@@ -1,12 +1,15 @@
 // What the path planner is asked, and what it answers. Plain data.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "common/cost/navigation_cost.hpp"
 #include "common/messages/planning.hpp"
 
 namespace handsel::path_planner {
@@ -32,6 +35,13 @@ struct Upright {
   double most{};                      ///< [rad], in (0, pi)
 };
 
+/// The platform is among the axes that are planned for: which they are (x, y, heading), and what people think of it where it drives. What
+/// they think of the arm counts where axes of the arm are planned for, too; the worse of the two.
+struct Driving {
+  std::array<int, 3> axes{};
+  const NavigationCost* cost{};
+};
+
 /// One planning problem. Everything a result depends on is in here, in the collision world and in the cost.
 struct Problem {
   std::vector<int> axes;      ///< robot axes to plan for, in the order of `goals`
@@ -43,6 +53,8 @@ struct Problem {
   std::uint64_t budget{100000};      ///< states that may be judged
   std::optional<Upright> upright{};  ///< holds everywhere on the path
   bool straight{};                   ///< only the line from start to goals[0], checked
+  std::optional<Driving> driving{};
+  std::optional<std::pair<Vector, Vector>> room{};  ///< `axes` stay within these, too
 };
 
 enum class Stage { search, smooth, verify };

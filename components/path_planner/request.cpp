@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/model/platform.hpp"
+
 namespace handsel::path_planner {
 namespace {
 
@@ -21,6 +23,7 @@ std::string of_cartesian(const PathRequest& request) {
   if (!request.goals.empty()) return "goals are given as postures, but a path in the Cartesian space leads to a pose";
   if (request.straight) return "a straight line of the joints is asked for, but in the Cartesian space";
   if (!request.running.empty()) return "the request goes on along a path of the joints, but in the Cartesian space";
+  if (request.group != "arm") return "the Cartesian space is that of the group \"arm\", not of \"" + request.group + "\"";
   if (request.planner != PlannerKind::automatic) return "the Cartesian space has one planner: leave the choice to it";
   if (request.upright) return "what is held is kept upright in the joint space only";
   if (request.poses.size() != 1 || !request.poses[0].slack.isZero() || request.poses[0].turn > 0)
@@ -46,8 +49,15 @@ std::string contradiction(const RobotModel& robot, const PathRequest& request) {
       return "the path that runs has " + std::to_string(node.size()) + " axes, the group \"" + group->name + "\" has " +
              std::to_string(group->axes.size());
   if (!request.poses.empty() && group->tip < 0) return "the group \"" + group->name + "\" has no tip that a pose could be meant for";
+<<<<<<< HEAD
   if (!request.running.empty() && request.straight) return "the request goes on along a path, but asks for a straight line";
   if (!request.running.empty() && !request.poses.empty()) return "the request goes on along a path of the joints, but its goal is a pose";
+=======
+  if (!request.poses.empty() && request.group == kPlatformGroup)
+    return "the platform has no tip that a pose could be meant for: its goals are x, y, heading";
+  if (request.live && request.straight) return "the request goes on along a path, but asks for a straight line";
+  if (request.live && !request.poses.empty()) return "the request goes on along a path of the joints, but its goal is a pose";
+>>>>>>> 153da4f (The platform and the whole robot as one request, with people's costs of a platform; Cartesian goals on every branch, reachable by users; our planners are planners of OMPL)
   if (request.upright && robot.tool_link() < 0) return "what is held is to stay upright, but the robot has no tool frame";
   if (request.upright && !(request.most_tilt > 0)) return "what is held is to stay upright, but no angle it may lean over is left";
   if (!(request.time_limit > 0)) return "the time limit is zero";

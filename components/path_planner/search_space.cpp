@@ -18,18 +18,16 @@ constexpr double kForbiddenStep = 0.01;  // [rad] a meter away that is less than
 
 SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem,
                          const Settings& settings, const Hooks& hooks)
-    : robot_(robot),
+    : Budget(world, problem.budget, hooks),
+      robot_(robot),
       world_(world),
       cost_(cost),
       problem_(problem),
       settings_(settings),
-      hooks_(hooks),
       lower_(problem.axes.size()),
       upper_(problem.axes.size()),
       all_(problem.start),
       all_to_(problem.start),
-      checks_before_(world.checks()),
-      limit_(problem.budget),
       step_(settings.step),
       tool_(robot.tool_link() >= 0 ? robot.tool_link() : static_cast<int>(robot.links().size()) - 1),
       bound_(cost.forbids() && cost.forbidden(problem.start).layer == nullptr) {
@@ -39,6 +37,13 @@ SearchSpace::SearchSpace(const RobotModel& robot, CollisionWorld& world, const H
     lower_[i] = std::isfinite(axis.lower) ? axis.lower : center - 2 * M_PI;
     upper_[i] = std::isfinite(axis.upper) ? axis.upper : center + 2 * M_PI;
   }
+  if (problem.room) {
+    lower_ = lower_.cwiseMax(problem.room->first);
+    upper_ = upper_.cwiseMin(problem.room->second);
+  }
+  only_drives_ = problem.driving && std::all_of(problem.axes.begin(), problem.axes.end(), [&](int axis) {
+                   return std::count(problem.driving->axes.begin(), problem.driving->axes.end(), axis) > 0;
+                 });
   level_ = this->cost(start());
   for (const Vector& goal : problem.goals) level_ = std::min(level_, this->cost(goal));
 }
@@ -162,15 +167,35 @@ Vector SearchSpace::toward(const Vector& from, const Vector& target, double rang
   return bent;
 }
 
-double SearchSpace::cost(const Vector& q) const { return cost_.concerned() ? cost_(whole(q)) : 0.0; }
+double SearchSpace::cost(const Vector& q) const {
+  if (!concerns_people()) return 0.0;
+  if (!problem_.driving) return cost_(whole(q));
+  at_ = {0.0};
+  fill_costs(q, q);
+  return costs_.front();
+}
+
+/// costs_ of the states at_ of the motion.
+void SearchSpace::fill_costs(const Vector& from, const Vector& to) const {
+  costs_.resize(at_.size());
+  all_to_ = whole(to);
+  whole(from);
+  if (!only_drives_) cost_.on_line(all_, all_to_, at_.data(), static_cast<int>(at_.size()), costs_.data());
+  if (!problem_.driving) return;
+  const auto& [x, y, heading] = problem_.driving->axes;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    const Vector q = all_ + at_[i] * (all_to_ - all_);
+    const double driven = (*problem_.driving->cost)(q[x], q[y], q[heading]);
+    costs_[i] = only_drives_ ? driven + cost_.parts(q).outside : std::max(costs_[i], driven);
+  }
+}
 
 const std::vector<double>& SearchSpace::costs_at_steps(const Vector& from, const Vector& to, int steps) const {
   at_.resize(static_cast<std::size_t>(steps));
   costs_.assign(static_cast<std::size_t>(steps), 0.0);
-  if (!cost_.concerned()) return costs_;
+  if (!concerns_people()) return costs_;
   for (int i = 0; i < steps; ++i) at_[static_cast<std::size_t>(i)] = (i + 1.0) / steps;
-  all_to_ = whole(to);
-  cost_.on_line(whole(from), all_to_, at_.data(), steps, costs_.data());
+  fill_costs(from, to);
   return costs_;
 }
 
@@ -178,22 +203,20 @@ const std::vector<double>& SearchSpace::costs_at_steps(const Vector& from, const
 const std::vector<double>& SearchSpace::costs_along(const Vector& from, const Vector& to) const {
   const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / settings_.cost_step)));
   at_.resize(static_cast<std::size_t>(pieces));
-  costs_.resize(static_cast<std::size_t>(pieces));
   for (int i = 0; i < pieces; ++i) at_[static_cast<std::size_t>(i)] = (i + 0.5) / pieces;
-  all_to_ = whole(to);
-  cost_.on_line(whole(from), all_to_, at_.data(), pieces, costs_.data());
+  fill_costs(from, to);
   return costs_;
 }
 
 double SearchSpace::integral_cost(const Vector& from, const Vector& to) const {
-  if (!cost_.concerned()) return 0.0;
+  if (!concerns_people()) return 0.0;
   double sum = 0;
   for (double cost : costs_along(from, to)) sum += cost;
   return sum * (to - from).norm() / static_cast<double>(costs_.size());
 }
 
 double SearchSpace::work(const Vector& from, const Vector& to) const {
-  if (!cost_.concerned()) return 0.0;
+  if (!concerns_people()) return 0.0;
   double sum = 0, last = cost(from);
   const auto rise = [&](double now) {
     sum += std::max(0.0, now - last);
@@ -207,7 +230,7 @@ double SearchSpace::work(const Vector& from, const Vector& to) const {
 double SearchSpace::price(const Vector& from, const Vector& to) const {
   const double length = (to - from).norm();
   double sum = 0;
-  if (cost_.concerned())
+  if (concerns_people())
     for (double cost : costs_along(from, to)) sum += std::max(0.0, cost - level_);
   return (sum / static_cast<double>(std::max<std::size_t>(1, costs_.size())) + settings_.length_weight) * length;
 }

@@ -7,11 +7,11 @@
 
 #include "common/collision/collision_world.hpp"
 #include "common/cost/human_cost.hpp"
-#include "components/path_planner/problem.hpp"
+#include "components/path_planner/budget.hpp"
 
 namespace handsel::path_planner {
 
-class SearchSpace {
+class SearchSpace : public Budget {
  public:
   /// Bounds of unlimited axes are start +- 2 pi.
   SearchSpace(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Problem& problem, const Settings& settings,
@@ -23,7 +23,7 @@ class SearchSpace {
   const Problem& problem() const { return problem_; }
   const Settings& settings() const { return settings_; }
   Vector start() const { return part(problem_.start); }
-  bool concerns_people() const { return cost_.concerned(); }
+  bool concerns_people() const { return cost_.concerned() || (problem_.driving && problem_.driving->cost->anyone()); }
 
   /// Empty when inside the position limits, else which axis is not and by how much.
   std::string outside_limits(const Vector& q) const;
@@ -58,15 +58,8 @@ class SearchSpace {
   /// What smoothing makes smaller: integral of the cost above that of the cheapest of start and goals, and length_weight times the length.
   double price(const Vector& from, const Vector& to) const;
 
-  std::uint64_t checks() const { return world_.checks() - checks_before_ + charged_; }
-  void charge(std::uint64_t checks) { charged_ += checks; }  ///< work that counts like that many checks
-  bool cancelled() const { return hooks_.cancelled && hooks_.cancelled(); }
-  bool exhausted() const { return checks() >= limit_ || cancelled(); }
-  std::uint64_t limit() const { return limit_; }
-  void limit(std::uint64_t checks) { limit_ = checks; }  ///< budget counted from the beginning
-  const Hooks& hooks() const { return hooks_; }
   void enter(Stage stage) const {
-    if (hooks_.entered) hooks_.entered(stage);
+    if (hooks().entered) hooks().entered(stage);
   }
 
  private:
@@ -74,6 +67,7 @@ class SearchSpace {
   CollisionVerdict permitted_on_line(double step) const;
   Vector part(const Vector& all) const;
   const Vector& whole(const Vector& q) const;
+  void fill_costs(const Vector& from, const Vector& to) const;
   const std::vector<double>& costs_along(const Vector& from, const Vector& to) const;
 
   const RobotModel& robot_;
@@ -81,14 +75,13 @@ class SearchSpace {
   const HumanCost& cost_;
   const Problem& problem_;
   const Settings& settings_;
-  const Hooks& hooks_;
   Vector lower_, upper_;
   double level_{};  // cost that no path between start and goals avoids
   mutable Vector all_, all_to_;
   mutable std::vector<double> at_, costs_;
-  std::uint64_t checks_before_{}, limit_{}, charged_{};
   double step_{};
   int tool_{-1};
+  bool only_drives_{};        // no axis but those of the platform
   bool bound_{};              // by what outside layers forbid: not when it starts there, the arm must be able to leave
   std::vector<Vector> ends_;  // empty: every motion is judged exactly
   double reach_{};

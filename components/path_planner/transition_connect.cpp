@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "components/path_planner/random.hpp"
@@ -51,7 +52,7 @@ class Search {
       }
     }
     found.nodes = static_cast<std::size_t>(trees_[0].size()) + static_cast<std::size_t>(trees_[1].size());
-    if (space_.hooks().searched) space_.hooks().searched(trees_[0], &trees_[1]);
+    found.trees.assign(std::make_move_iterator(trees_), std::make_move_iterator(trees_ + 2));
     return found;
   }
 

@@ -47,7 +47,7 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
     break;
   }
   found.nodes = static_cast<std::size_t>(tree.size());
-  if (space.hooks().searched) space.hooks().searched(tree, nullptr);
+  found.trees.push_back(std::move(tree));
   return found;
 }
 

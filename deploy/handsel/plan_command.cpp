@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include "common/config/resources.hpp"
+#include "components/path_planner/cartesian.hpp"
+#include "components/path_planner/driving.hpp"
 #include "components/path_planner/path_planner.hpp"
 #include "components/path_planner/pose_goals.hpp"
 #include "deploy/handsel/json_lines.hpp"
@@ -23,9 +25,11 @@ using namespace command;
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
+constexpr double kCartesianChecks = 1e5;  // a second: each branch of the goal has its share of them
+
 struct Options {
-  std::string robot, srdf, group, planner{"auto"};
-  double time{5.0};
+  std::string robot, srdf, group, planner{"auto"}, space{"joint"};
+  double time{5.0}, roam{3.0};
   std::uint64_t checks{0}, seed{1};
   bool stock{false}, json_lines{false}, landscape{false};
   std::string png;
@@ -42,7 +46,11 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 RobotModel load_robot(const Options& options) {
   if (options.robot.ends_with(".urdf")) return RobotModel::load_urdf(options.robot, options.srdf);
   if (!options.srdf.empty()) throw ConfigError("--srdf belongs to a .urdf; a robot description names its own");
-  return RobotModel::load(robot_description(options.robot));
+  const std::filesystem::path description = robot_description(options.robot);
+  RobotModel robot = RobotModel::load(description);
+  if (!path_planner::drives(options.group)) return robot;
+  if (auto mobile = on_platform(robot, description)) return *std::move(mobile);
+  throw ConfigError(description.string() + " tells of no platform, which the group \"" + options.group + "\" is about");
 }
 
 Obstacle obstacle_of(const json& item) {
@@ -131,8 +139,6 @@ class Batch {
     const json& start = field(item, "start");
     for (const auto& [name, value] : start.items())
       if (!is_fixed(name)) problem.start[axis(name)] = number(start, name.c_str());
-    const std::string unreached = read_goals(item, problem);
-    read_upright(item, problem);
     std::vector<Obstacle> obstacles;
     for (const json& one : item.value("obstacles", json::array())) obstacles.push_back(obstacle_of(one));
     const HumanState people = people_of(item);
@@ -140,6 +146,15 @@ class Batch {
     cost.set_people(people);
     world_.set_obstacles(obstacles);
     world_.set_people(people);
+    const bool cartesian = options_.space == "cartesian";
+    const std::string unreached = cartesian ? "" : read_goals(item, problem);
+    read_upright(item, problem);
+    std::optional<NavigationCost> navigation;
+    if (path_planner::drives(options_.group)) {
+      navigation.emplace(robot_, weights_of(item));
+      navigation->set_people(people);
+      path_planner::drive(robot_, *navigation, options_.roam, problem);
+    }
 
     const Clock::time_point begin = Clock::now();
     Clock::time_point smoothing = begin;
@@ -152,7 +167,10 @@ class Batch {
     };
     path_planner::Result result;
     result.reason = unreached;
-    if (unreached.empty()) result = path_planner::plan(robot_, world_, cost, problem, {}, hooks);
+    if (cartesian)
+      result = in_the_cartesian_space(item, cost, problem, hooks);
+    else if (unreached.empty())
+      result = path_planner::plan(robot_, world_, cost, problem, {}, hooks);
     const double total = seconds_since(begin);
     const double search = smoothed ? std::chrono::duration<double>(smoothing - begin).count() : total;
     ++asked_;
@@ -206,8 +224,32 @@ class Batch {
     if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
   }
 
+  /// Leaves the axes of the path in the problem.
+  path_planner::Result in_the_cartesian_space(const json& item, HumanCost& cost, path_planner::Problem& problem,
+                                              const path_planner::Hooks& hooks) {
+    const json& goals = field(item, "goals");
+    if (!goals.is_array() || goals.size() != 1 || !goals[0].contains("pose") || goals[0].contains("slack") || goals[0].contains("turn"))
+      throw LineError("in the Cartesian space \"goals\" must be one {\"pose\": {\"p\", \"q\"}}, without slack or turn");
+    if (problem.upright) throw LineError("\"upright\" is kept in the joint space only");
+    if (group_ == nullptr || group_->name != "arm") throw LineError("the Cartesian space is that of --group arm");
+    path_planner::CartesianProblem asked;
+    asked.start = problem.start;
+    asked.T_root_goal = make_pose(vector3(goals[0]["pose"], "p"), quaternion(goals[0]["pose"], "q"));
+    asked.seed = problem.seed;
+    asked.budget = options_.checks > 0 ? options_.checks : static_cast<std::uint64_t>(kCartesianChecks * options_.time);
+    const json also = item.value("also", json::object());
+    asked.also_goal.resize(static_cast<Eigen::Index>(also.size()));
+    for (const auto& [name, value] : also.items()) {
+      asked.also.push_back(axis(name));
+      asked.also_goal[static_cast<Eigen::Index>(asked.also.size()) - 1] = number(also, name.c_str());
+    }
+    problem.axes = group_->axes;
+    problem.axes.insert(problem.axes.end(), asked.also.begin(), asked.also.end());
+    return path_planner::in_joints(path_planner::plan_cartesian(robot_, world_, cost, asked, {}, hooks), problem.axes);
+  }
+
   /// Why no posture reaches the goals, or empty.
-  std::string read_goals(const json& item, path_planner::Problem& problem) const {
+  std::string read_goals(const json& item, path_planner::Problem& problem) {
     const json& goals = field(item, "goals");
     if (!goals.is_array() || goals.empty()) throw LineError("\"goals\" must be a list of at least one goal");
     if (goals[0].contains("pose")) return read_poses(goals, problem);
@@ -229,8 +271,9 @@ class Batch {
     return {};
   }
 
-  std::string read_poses(const json& goals, path_planner::Problem& problem) const {
-    if (group_ == nullptr || group_->tip < 0) throw LineError("goals that are poses need a --group with a tip link");
+  std::string read_poses(const json& goals, path_planner::Problem& problem) {
+    if (group_ == nullptr || group_->tip < 0 || group_->name == kPlatformGroup)
+      throw LineError("goals that are poses need a --group with a tip link");
     problem.axes = group_->axes;
     std::vector<path_planner::PoseGoal> poses;
     for (const json& goal : goals) {
@@ -242,7 +285,9 @@ class Batch {
       if (one.slack.minCoeff() < 0 || one.turn < 0) throw LineError("\"slack\" and \"turn\" must not be negative");
       poses.push_back(one);
     }
-    path_planner::PoseGoals found = path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
+    path_planner::PoseGoals found = path_planner::drives(group_->name)
+                                        ? path_planner::reach_driving(robot_, world_, poses, problem.start, problem.seed)
+                                        : path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
     problem.goals = std::move(found.goals);
     return found.reason;
   }
@@ -288,6 +333,7 @@ int run(const Options& options) {
   if (options.landscape) return run_landscape(options);
   if (!options.png.empty()) throw ConfigError("--png draws the planners on a landscape of costs: give --landscape, too");
   if (options.robot.empty()) throw ConfigError("--robot is missing: a .urdf, or a robot description by name or file");
+  if (!(options.roam > 0)) throw ConfigError("--roam must be greater than 0");
   if (!(options.time > 0)) throw ConfigError("--time must be greater than 0");
   Batch batch(options);
   const bool for_people = !options.json_lines && isatty(STDOUT_FILENO) != 0;
@@ -307,11 +353,17 @@ void add_plan_command(CLI::App& app, int& exit_code) {
       R"(A line: {"start": {joint: rad}, "goals": [{joint: rad}] or
  [{"pose": {"p": [x, y, z], "q": [x, y, z, w]} of the group's tip in the root frame, "slack": [x, y, z], "turn": rad}], "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}],
  "human": {"joints": {name: [x, y, z]}, "gaze": [x, y, z]}, "weights": {"safety", "visibility", "comfort"},
+ "also": {joint: rad} where head or hand end (--space cartesian),
  "upright": {"axis": [x, y, z] of the tool frame, "most": rad from up}}; dims of a cylinder: height, radius.)");
   plan->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file");
   plan->add_option("--srdf", options->srdf, "pairs of links never tested against each other");
-  plan->add_option("--group", options->group, "group of axes; where the robot names none, the axes of the goals");
+  plan->add_option("--group", options->group,
+                   "group of axes; where the robot names none, the axes of the goals. A robot with a platform has \"platform\" and "
+                   "\"robot\" (platform and arm), too: platform_x, platform_y [m], platform_heading [rad]");
+  plan->add_option("--roam", options->roam, "a platform keeps within this beyond the box around its start and goals [m]");
   plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")->check(CLI::IsMember(kPlanners));
+  plan->add_option("--space", options->space, "joint, or cartesian: place of the tool and angle of the elbow")
+      ->check(CLI::IsMember({"joint", "cartesian"}));
   plan->add_flag("--stock", options->stock, "OMPL's planner of that name instead of ours");
   plan->add_option("--time", options->time, "limit of a problem [s]");
   plan->add_option("--checks", options->checks, "limit in judged states instead: repeatable");

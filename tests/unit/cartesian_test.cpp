@@ -110,6 +110,32 @@ TEST_F(Cartesian, reaches_poses_with_the_elbow_active_and_no_joint_jumps) {
   EXPECT_GT(turned, 0.1);
 }
 
+TEST_F(Cartesian, goals_on_other_branches_are_reached_through_the_joints) {
+  const char* text = std::getenv("HANDSEL_QUERIES");
+  const int queries = text == nullptr ? 10 : std::atoi(text);
+  int solved = 0, over = 0;
+  for (int k = 0; k < queries; ++k) {
+    SCOPED_TRACE(k);
+    CartesianProblem problem;
+    problem.start = random_posture();
+    problem.T_root_goal = tool(random_posture());
+    problem.seed = kSeed + static_cast<unsigned>(k);
+    problem.budget = 1000000;
+    const CartesianResult result = plan_cartesian(robot_, world_, cost_, problem, settings_);
+    if (!result.solved) {
+      std::printf("query %d: %s\n", k, result.reason.c_str());
+      continue;
+    }
+    ++solved;
+    over += result.in_joints > 0;
+    ASSERT_LT(result.in_joints, result.samples.size());
+    expect_sound(problem, result);
+  }
+  std::printf("seed %u: %d of %d goals anywhere reached, %d over another branch\n", kSeed, solved, queries, over);
+  EXPECT_GE(solved * 100, queries * 90);
+  EXPECT_GT(over, 0);
+}
+
 TEST_F(Cartesian, heeds_a_person_and_moves_hand_and_head_too) {
   const HumanState people = test::person_at({1.5, 0.2, 0});
   world_.set_people(people);

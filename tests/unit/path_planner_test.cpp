@@ -1,3 +1,7 @@
+#include <ompl/base/spaces/RealVectorStateSpace.h>
+#include <ompl/geometric/PathGeometric.h>
+
+#include "components/path_planner/ompl_planner.hpp"
 #include "components/path_planner/path_planner.hpp"
 
 #include <algorithm>
@@ -80,6 +84,49 @@ TEST_F(Planning, every_planner_finds_a_way) {
       expect_sound(result);
       EXPECT_GT(result.cost, 0.0);
     }
+}
+
+TEST_F(Planning, ours_are_planners_of_ompl) {
+  namespace ob = ompl::base;
+  put_person({2.2, 0.5, 0});
+  const Hooks hooks;
+  for (PlannerKind kind : {PlannerKind::rrt_connect, PlannerKind::trrt, PlannerKind::bitrrt}) {
+    problem_.budget = 600000;
+    world_.set_moving_axes(problem_.axes);
+    cost_.set_moving_axes(problem_.axes);
+    SearchSpace space(robot_, world_, cost_, problem_, settings_, hooks);
+    const auto joints = std::make_shared<ob::RealVectorStateSpace>(3);
+    joints->setBounds(-2.9, 2.9);
+    const auto si = std::make_shared<ob::SpaceInformation>(joints);
+    si->setStateValidityChecker([](const ob::State*) { return true; });
+    si->setup();
+    const auto definition = std::make_shared<ob::ProblemDefinition>(si);
+    ob::ScopedState<ob::RealVectorStateSpace> start(si), goal(si);
+    for (unsigned i = 0; i < 3; ++i) {
+      start[i] = problem_.start[i];
+      goal[i] = problem_.goals[0][i];
+    }
+    definition->setStartAndGoalStates(start, goal);
+    const ob::PlannerPtr planner = std::make_shared<BatchPlanner>(si, space, kind, 3);
+    planner->setProblemDefinition(definition);
+    planner->setup();
+    ASSERT_EQ(planner->solve(ob::PlannerTerminationCondition([&] { return space.exhausted(); })), ob::PlannerStatus::EXACT_SOLUTION);
+    ASSERT_TRUE(definition->hasExactSolution());
+    ob::PlannerData data(si);
+    planner->getPlannerData(data);
+    EXPECT_GT(data.numVertices(), 2u);
+    EXPECT_EQ(data.numStartVertices(), 1u);
+    const auto& states = definition->getSolutionPath()->as<ompl::geometric::PathGeometric>()->getStates();
+    std::vector<Vector> path;
+    for (const ob::State* state : states)
+      path.push_back(Eigen::Map<const Vector>(state->as<ob::RealVectorStateSpace::StateType>()->values, 3));
+    EXPECT_EQ(path.front(), problem_.start);
+    EXPECT_EQ(path.back(), problem_.goals[0]);
+    for (std::size_t i = 1; i < path.size(); ++i) EXPECT_TRUE(world_.check_motion(path[i - 1], path[i], 0.002).free);
+    planner->clear();
+    EXPECT_FALSE(planner->solve(ob::PlannerTerminationCondition([] { return true; })) == ob::PlannerStatus::EXACT_SOLUTION)
+        << "stops at once";
+  }
 }
 
 TEST_F(Planning, the_same_seed_gives_the_same_path_also_after_other_plans) {

@@ -1,0 +1,34 @@
+// How much of the judging that a problem allows is left, and whether anybody still wants the answer.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <utility>
+
+#include "common/collision/collision_world.hpp"
+#include "components/path_planner/problem.hpp"
+
+namespace handsel::path_planner {
+
+class Budget {
+ public:
+  Budget(const CollisionWorld& world, std::uint64_t limit, const Hooks& hooks)
+      : judge_(world), hooks_(hooks), before_(world.checks()), limit_(limit) {}
+
+  std::uint64_t checks() const { return judge_.checks() - before_ + charged_; }  ///< states judged, and what was charged
+  void charge(std::uint64_t checks) { charged_ += checks; }                      ///< work that counts like that many checks
+  std::uint64_t limit() const { return limit_; }
+  void limit(std::uint64_t checks) { limit_ = checks; }  ///< counted from the beginning
+  bool cancelled() const { return (hooks_.cancelled && hooks_.cancelled()) || (stop_ && stop_()); }
+  void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }  ///< besides; empty: no longer
+  bool exhausted() const { return checks() >= limit_ || cancelled(); }
+  const Hooks& hooks() const { return hooks_; }
+
+ private:
+  const CollisionWorld& judge_;
+  const Hooks& hooks_;
+  std::function<bool()> stop_;
+  std::uint64_t before_, limit_, charged_{};
+};
+
+}  // namespace handsel::path_planner
