@@ -49,15 +49,10 @@ std::string contradiction(const RobotModel& robot, const PathRequest& request) {
       return "the path that runs has " + std::to_string(node.size()) + " axes, the group \"" + group->name + "\" has " +
              std::to_string(group->axes.size());
   if (!request.poses.empty() && group->tip < 0) return "the group \"" + group->name + "\" has no tip that a pose could be meant for";
-<<<<<<< HEAD
-  if (!request.running.empty() && request.straight) return "the request goes on along a path, but asks for a straight line";
-  if (!request.running.empty() && !request.poses.empty()) return "the request goes on along a path of the joints, but its goal is a pose";
-=======
   if (!request.poses.empty() && request.group == kPlatformGroup)
     return "the platform has no tip that a pose could be meant for: its goals are x, y, heading";
-  if (request.live && request.straight) return "the request goes on along a path, but asks for a straight line";
-  if (request.live && !request.poses.empty()) return "the request goes on along a path of the joints, but its goal is a pose";
->>>>>>> 153da4f (The platform and the whole robot as one request, with people's costs of a platform; Cartesian goals on every branch, reachable by users; our planners are planners of OMPL)
+  if (!request.running.empty() && request.straight) return "the request goes on along a path, but asks for a straight line";
+  if (!request.running.empty() && !request.poses.empty()) return "the request goes on along a path of the joints, but its goal is a pose";
   if (request.upright && robot.tool_link() < 0) return "what is held is to stay upright, but the robot has no tool frame";
   if (request.upright && !(request.most_tilt > 0)) return "what is held is to stay upright, but no angle it may lean over is left";
   if (!(request.time_limit > 0)) return "the time limit is zero";
