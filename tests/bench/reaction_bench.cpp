@@ -72,14 +72,19 @@ std::vector<double> udp_trips(int count) {
   });
   std::vector<double> out;
   std::vector<char> buffer(2000);
+  const int pace = timerfd_create(CLOCK_MONOTONIC, 0);
+  const itimerspec each{{0, 500'000}, {0, 500'000}};
+  timerfd_settime(pace, 0, &each, nullptr);
   for (int k = 0; k < count; ++k) {
+    std::uint64_t beats = 0;
+    [[maybe_unused]] const auto waited = read(pace, &beats, sizeof beats);
     const TimePoint begin = monotonic_now();
     sendto(a, person.data(), person.size(), 0, reinterpret_cast<sockaddr*>(&to_b), sizeof to_b);
     if (recv(a, buffer.data(), buffer.size(), 0) <= 0) break;
     out.push_back(since(begin));
-    usleep(500);
   }
   echo.join();
+  close(pace);
   close(a);
   close(b);
   return out;

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <sched.h>
 #include <signal.h>
+#include <sys/inotify.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -26,6 +27,7 @@ class Background {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
+    std::ofstream{log_};
     pid_ = fork();
     if (pid_ == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -67,14 +69,20 @@ class Background {
   std::string said() const { return text_of(log_); }
   /// And on stdout; also after its end.
   std::string printed() const { return text_of(out_); }
-  /// Waits until it has said `text`; false after 20 s or when it ended.
+  /// Waits until it has said `text`; false after 20 s or when it ended without.
   bool wait_for(const std::string& text) const {
-    for (int i = 0; i < 2000; ++i) {
-      if (said().find(text) != std::string::npos) return true;
-      if (waitpid(pid_, nullptr, WNOHANG) != 0) return false;
-      usleep(10000);
+    constexpr int kAtMost = 20000;  // [ms]
+    pollfd awaited[] = {{inotify_init1(IN_NONBLOCK | IN_CLOEXEC), POLLIN, 0},
+                        {static_cast<int>(syscall(SYS_pidfd_open, pid_, 0)), POLLIN, 0}};
+    inotify_add_watch(awaited[0].fd, log_.c_str(), IN_MODIFY);
+    bool found = false, more = true;
+    while (!(found = said().find(text) != std::string::npos) && more) {
+      more = poll(awaited, 2, kAtMost) > 0 && awaited[1].revents == 0;
+      for (char notices[4096]; read(awaited[0].fd, notices, sizeof notices) > 0;) {
+      }
     }
-    return false;
+    for (const pollfd& one : awaited) close(one.fd);
+    return found || said().find(text) != std::string::npos;
   }
 
  private:

@@ -63,10 +63,18 @@ struct BridgeServer : testing::Test {
     const std::string answer = ask("GET", "/counters.json");
     return Json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
   }
-  /// Waits, at most 5 s, until a counter has reached a value; gives the counter.
+  /// Asks the server again and again, for at most 5 s, until `holds`, which asks something of it.
+  template <class Holds>
+  bool comes_true(const Holds& holds) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+    while (!holds())
+      if (std::chrono::steady_clock::now() > end) return false;
+    return true;
+  }
+  /// Waits until a counter has reached a value; gives the counter.
   std::uint64_t counted(const char* name, std::uint64_t least) {
     std::uint64_t value = 0;
-    for (int i = 0; i < 100 && (value = counters()[name].get<std::uint64_t>()) < least; ++i) usleep(50000);
+    comes_true([&] { return (value = counters()[name].get<std::uint64_t>()) >= least; });
     return value;
   }
   std::unique_ptr<WebSocketClient> viewer() {
@@ -212,11 +220,7 @@ TEST_F(BridgeServer, more_clients_than_allowed_are_refused_with_a_reason) {
   for (int i = 0; i < 4; ++i) viewers.push_back(viewer());
   EXPECT_THAT(WebSocketClient(server->port()).read(), testing::AllOf(StartsWith("HTTP/1.1 503"), HasSubstr("4 viewers already")));
   viewers.pop_back();
-  counted("clients", 0);
-  for (int i = 0; i < 100 && server->counters().clients > 3; ++i) {
-    usleep(20000);
-    counters();
-  }
+  ASSERT_TRUE(comes_true([&] { return counters()["clients"].get<std::uint64_t>() <= 3; }));
   EXPECT_THAT(WebSocketClient(server->port()).read("serverInfo"), HasSubstr("101"));
 }
 
@@ -227,7 +231,7 @@ TEST_F(BridgeServer, many_connections_and_floods_leave_memory_flat) {
     for (HttpClient& client : idle) client.request("GET", "/../../etc/passwd");
     idle.clear();
     // The server notices one by one that they are gone.
-    for (int i = 0; i < 1000 && ask("GET", "/").starts_with("HTTP/1.1 503"); ++i) usleep(5000);
+    ASSERT_TRUE(comes_true([&] { return !ask("GET", "/").starts_with("HTTP/1.1 503"); }));
     const auto flooder = viewer();
     for (int i = 0; i < 3000; ++i) flooder->frame(WebSocketClient::kText, R"({"op":"getParameters","parameterNames":[],"id":"x"})");
     flooder->read();
@@ -247,14 +251,14 @@ TEST_F(BridgeServer, a_stalled_viewer_is_cut_and_costs_the_others_nothing) {
   subscribe(*reader, 1);
   constexpr std::size_t kSize = 4'000'000;
   const double before = resident_mb();
-  for (int n = 0; n < 200 && server->counters().cut_clients == 0; ++n) {
-    const std::string mark = "sample" + std::to_string(n) + ".";
+  int count = 0;
+  comes_true([&] {
+    const std::string mark = "sample" + std::to_string(count++) + ".";
     publish(0, mark, kSize);
     reader->forget();
     EXPECT_THAT(reader->read(mark).size(), testing::Gt(0u));
-    usleep(10000);
-    counters();
-  }
+    return counters()["cut_clients"].get<std::uint64_t>() > 0;
+  });
   EXPECT_EQ(counted("cut_clients", 1), 1u);
   EXPECT_GT(counted("dropped_samples", 1), 0u);
   EXPECT_LT(resident_mb() - before, 100.0);
