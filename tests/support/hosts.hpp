@@ -53,6 +53,8 @@ class Hosts {
   void link(const std::string& host, bool up) const {
     shell(in("switch") + "ip link set dev p" + std::to_string(number(host)) + (up ? " up" : " down"));
   }
+  /// Takes the host's network card away.
+  void unplug(const std::string& host) const { shell(in("switch") + "ip link delete dev p" + std::to_string(number(host))); }
   /// The calling thread, and those it starts from now on, are there.
   void move_here(const std::string& host) const {
     const int fd = open(("/run/netns/" + space(host)).c_str(), O_RDONLY | O_CLOEXEC);
@@ -62,8 +64,8 @@ class Hosts {
 
  private:
   static constexpr const char* kIp = "/sbin/ip";
-  static std::string space(const std::string& host) { return "handsel-" + std::to_string(getpid()) + "-" + host; }
-  static std::string in(const std::string& host) { return "ip netns exec " + space(host) + " "; }
+  std::string space(const std::string& host) const { return "handsel-" + std::to_string(maker_) + "-" + host; }
+  std::string in(const std::string& host) const { return "ip netns exec " + space(host) + " "; }
   std::size_t number(const std::string& host) const {
     for (std::size_t i = 0; i < names_.size(); ++i)
       if (names_[i] == host) return i;
@@ -75,6 +77,7 @@ class Hosts {
     shell(script + "true");
   }
 
+  const pid_t maker_{getpid()};
   std::vector<std::string> names_;
 };
 

@@ -152,6 +152,21 @@ TEST_F(OnHosts, the_link_to_perception_is_cut_for_two_seconds) {
     EXPECT_EQ(now.health.at(component).sample.incarnation, incarnation) << component << " was started again";
 }
 
+TEST_F(OnHosts, who_loses_the_network_for_good_can_still_end) {
+  hosts_ = std::make_unique<Hosts>(std::vector<std::string>{"operator"});
+  setenv("HANDSEL_PEERS", "multicast", 1);
+  const auto lose_it = [&] {
+    alarm(10);
+    hosts_->move_here("operator");
+    {
+      const Session session(kDomain);
+      hosts_->unplug("operator");
+    }
+    _exit(0);
+  };
+  EXPECT_EXIT(lose_it(), testing::ExitedWithCode(0), "");
+}
+
 /// A process that is told something wrong says it in one sentence and ends; nothing was started that could move.
 struct Mistake {
   const char* variables;
