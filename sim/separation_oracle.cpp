@@ -156,4 +156,14 @@ bool SeparationOracle::violates(const TrueSeparation& near, const RobotBody& rob
   return near.distance < protective;
 }
 
+bool SeparationOracle::presses(const RobotBody& robot, const std::vector<Touch>& touches, const Vector& velocity) {
+  double force = 0, power = 0;
+  for (const Touch& t : touches) {
+    robot.directed_jacobian(t.index_a, t.point, -t.normal, jacobian_);
+    force += t.normal_force;
+    power += t.normal_force * jacobian_.dot(velocity);
+  }
+  return power >= settings_.moving * force;
+}
+
 }  // namespace handsel::sim

@@ -6,6 +6,7 @@
 
 #include "common/model/human_body.hpp"
 #include "common/model/robot_model.hpp"
+#include "sim/contacts.hpp"
 #include "sim/robot_body.hpp"
 
 namespace handsel::sim {
@@ -38,6 +39,9 @@ class SeparationOracle {
   TrueSeparation separation(const RobotBody&, const std::vector<PersonVolume>&) const;
   /// Is the robot faster toward the person than the rule allows, given its servo references (all axes)?
   bool violates(const TrueSeparation&, const RobotBody&, const Vector& velocity, const Vector& acceleration);
+  /// Do the servo references (all axes) move the robot against these touches, robot first, of a person (ours)? An arm that gives way to a
+  /// push moves with the hand that pushes, wherever that is.
+  bool presses(const RobotBody&, const std::vector<Touch>&, const Vector& velocity);
   /// Time and distance of the jerk-limited minimum-time stop of one axis from (v, a).
   static void stop_measure(double v, double a, double max_a, double max_j, double& time, double& distance);
 

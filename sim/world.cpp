@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kReach = 0.001;         // contacts closer than this touch [m]
 constexpr double kCollisionForce = 0.5;  // [N]
+constexpr double kPush = 0.2;            // so long after the last touch a push still moves the arm [s]
 constexpr double kFloorHeight = 0.02;    // an object's origin lower than this lies on the floor [m]
 
 struct Hash {
@@ -198,10 +199,24 @@ struct SimWorld::Impl {
       const Vector3 v = robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
       peak_closing = std::max(peak_closing, v.dot(n));
     }
-    if (steps % ssm_every == 0 && separations.violates(near, *robot, side.velocity(), side.acceleration())) ssm_violations += ssm_every;
+    const bool given_way = gives_way();
+    if (steps % ssm_every == 0 && !given_way && separations.violates(near, *robot, side.velocity(), side.acceleration()))
+      ssm_violations += ssm_every;
 
     if (watched >= 0) handover->observe(situation(), settings.step);
     add_to_hash();
+  }
+
+  /// A person pushes the robot, or has just done so, and it does not press against them: from the touch on it is the push that says where
+  /// it goes, and the volumes that stand for hand and arm overlap.
+  bool gives_way() {
+    const auto person = [](const Touch& t) { return t.a == Owner::robot && t.b == Owner::person && t.normal_force > 0; };
+    if (std::any_of(touches.begin(), touches.end(), person)) {
+      pushed_at = now();
+      pushes.clear();
+      std::copy_if(touches.begin(), touches.end(), std::back_inserter(pushes), person);
+    }
+    return now() < pushed_at + kPush && !separations.presses(*robot, pushes, side.velocity());
   }
 
   ObjectSituation situation() const {
@@ -365,7 +380,8 @@ struct SimWorld::Impl {
   std::uint64_t steps{0}, state_sequence{0};
   std::size_t next_disturbance{0};
   double human_silent_until{0}, state_silent_until{0};
-  std::vector<Touch> touches;
+  std::vector<Touch> touches, pushes;
+  double pushed_at{-kPush};
   std::vector<PersonVolume> person_volumes;
   Sight sight;
   std::vector<LinkCapsule> hiding_links;
