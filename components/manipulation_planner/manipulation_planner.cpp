@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kForever = 600;  // [s] a motion this long has been forgotten by everybody
 constexpr std::uint32_t kBlocked = 1U << static_cast<unsigned>(Cause::forecast_collision);
+constexpr std::uint32_t kTooNear = 1U << static_cast<unsigned>(Cause::separation);
 
 }  // namespace
 
@@ -19,6 +20,7 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
       robot_(std::move(robot)),
       objects_(std::move(objects)),
       arm_(robot_->require_group("arm")),
+      way_out_(*robot_, arm_),
       client_(client),
       commands_(client) {}
 
@@ -75,7 +77,8 @@ void ManipulationPlanner::on(const TrajectoryReply& reply) {
 
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = &out;
-  const bool blocked = execution_ && (execution_->causes & kBlocked) != 0;
+  too_near_ = execution_ && (execution_->causes & kTooNear) != 0 && active_.trajectory != 0 && std::abs(active_.speed_factor) < 1e-3;
+  const bool blocked = too_near_ || (execution_ && (execution_->causes & kBlocked) != 0);
   if (!blocked) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
@@ -289,7 +292,8 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     Outcome gone_on = co_await go_on(running, motion);
   }
   if (!ended()) {
-    const Outcome blocked = Outcome::failure("the way is blocked: " + execution_->reason);
+    Outcome blocked = Outcome::failure("the way is blocked: " + execution_->reason);
+    blocked.too_near = too_near_;
     TrajectoryCommand stop;
     stop.id = ++commands_;
     stop.epoch = execution_->epoch;
@@ -318,6 +322,14 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
       if (last.good) co_return last;
+      const Person* in_the_way = last.too_near ? person("") : nullptr;
+      if (in_the_way != nullptr) {
+        refuse(motion.phase, last.reason);
+        const std::string who = in_the_way->id;
+        Outcome freed = co_await withdraw(who, motion);
+        if (freed.good) continue;
+        last.reason += "; " + freed.reason;
+      }
     } else {
       last = planned.outcome;
       if (lost(planned.start_touches)) {
@@ -373,25 +385,29 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
   out.speed = settings_.approach_speed();
   out.allowed = next.allowed;
   out.allowed.push_back(touched);
-  const Pose T_now = T_world_tool();
   const Vector start = posture();
-  const std::vector<Vector3> ways = ways_out(touched);
+  std::vector<Vector> goals = way_out_.steps_away(start, scene_.T_world_base, people_, 1.5 * settings_.retreat_distance());
+  std::reverse(goals.begin(), goals.end());
   for (const double share : {0.5, 1.0, 1.5}) {
-    for (const Vector3& way : ways) {
-      Pose T = T_now;
+    for (const Vector3& way : ways_out(touched)) {
+      Pose T = T_world_tool();
       T.translation() += share * settings_.retreat_distance() * way;
-      const auto joints = reach(T);
-      if (!joints) continue;
-      out.goals = {*joints};
-      PlannedPath first = co_await plan_path(start, out);
-      if (!first.outcome.good) continue;
-      const Vector clear = RobotModel::with(start, arm_, *joints);
-      PlannedPath then = co_await plan_path(clear, next);
-      if (!then.outcome.good) continue;
-      status_.phase = out.phase;
-      Outcome outcome = co_await execute(first.nodes, out);
-      co_return outcome;
+      if (const auto joints = reach(T)) goals.push_back(*joints);
     }
+  }
+  std::stable_partition(goals.begin(), goals.end(), [&](const Vector& goal) {
+    return way_out_.leads_away(start, RobotModel::with(start, arm_, goal), scene_.T_world_base, people_);
+  });
+  for (const Vector& goal : goals) {
+    const Vector clear = RobotModel::with(start, arm_, goal);
+    out.goals = {goal};
+    PlannedPath first = co_await plan_path(start, out);
+    if (!first.outcome.good) continue;
+    PlannedPath then = co_await plan_path(clear, next);
+    if (!then.outcome.good) continue;
+    status_.phase = out.phase;
+    Outcome outcome = co_await execute(first.nodes, out);
+    co_return outcome;
   }
   co_return Outcome::failure("no straight way leads off " + touched);
 }

@@ -19,6 +19,7 @@
 #include "common/trajectory/switch.hpp"
 #include "components/manipulation_planner/exchange.hpp"
 #include "components/manipulation_planner/routine.hpp"
+#include "components/manipulation_planner/way_out.hpp"
 
 namespace handsel::manipulation_planner {
 
@@ -35,8 +36,9 @@ struct Outbox {
 /// Outcome of a part of an action.
 struct Outcome {
   bool good{true};
-  std::string reason;  ///< why not, one sentence
-  static Outcome failure(std::string why) { return {false, std::move(why)}; }
+  std::string reason;    ///< why not, one sentence
+  bool too_near{false};  ///< because a person is so near that the controller lets it go no further
+  static Outcome failure(std::string why) { return {false, std::move(why), false}; }
 };
 
 class ManipulationPlanner {
@@ -153,6 +155,7 @@ class ManipulationPlanner {
   std::shared_ptr<const RobotModel> robot_;
   ObjectLibrary objects_;
   const Group& arm_;
+  WayOut way_out_;
   std::uint64_t client_, requests_{0}, commands_;
   std::uint64_t jobs_started_{0}, jobs_done_{0};
 
@@ -169,7 +172,8 @@ class ManipulationPlanner {
   Vector set_point_, set_point_velocity_;
   ActiveTrajectory active_;
   TimePoint free_at_{};
-  double blocked_for_{0};  // how long the forecast has held the robot back [s]
+  double blocked_for_{0};  // how long the forecast, or a person too near, has held the robot back [s]
+  bool too_near_{false};
   std::optional<GraspReply> grasp_reply_;
   std::optional<PathReply> path_reply_;
   std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;

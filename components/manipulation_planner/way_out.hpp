@@ -1,0 +1,30 @@
+// Off from people the arm stands too near to (ours): the guard lets a motion go there only when every link near them leads clearly away.
+#pragma once
+
+#include <vector>
+
+#include "common/messages/world.hpp"
+#include "common/model/robot_capsules.hpp"
+
+namespace handsel::manipulation_planner {
+
+class WayOut {
+ public:
+  WayOut(const RobotModel& robot, const Group& arm);
+
+  /// Does the straight motion of all axes [rad, m] begin with every link that is near a person going clearly away from them?
+  bool leads_away(const Vector& from, const Vector& to, const Pose& T_world_base, const HumanState& people) const;
+  /// Postures of the arm, each about a centimetre's step further, that lead every link near a person away from them, at most `way` [m] in
+  /// all, ending where nobody is near any more or a link or a joint limit allows no more; empty: nobody is near, or nothing leads away.
+  std::vector<Vector> steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people, double way) const;
+
+ private:
+  bool within_limits(const Vector& posture) const;
+  std::vector<Pose> links(const Vector& posture) const;
+
+  const RobotModel& robot_;
+  const Group& arm_;
+  std::vector<LinkCapsule> capsules_;
+};
+
+}  // namespace handsel::manipulation_planner

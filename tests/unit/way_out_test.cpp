@@ -1,0 +1,73 @@
+#include "components/manipulation_planner/way_out.hpp"
+
+#include <gtest/gtest.h>
+
+#include "common/config/resources.hpp"
+#include "tests/support/standing_person.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+class WayOutTest : public testing::Test {
+ protected:
+  double distance(const Vector& posture) const {
+    std::vector<Pose> T_root_link;
+    robot.forward(posture, T_root_link);
+    return separation(robot_capsules(robot), T_root_link, Pose::Identity(), people).distance;
+  }
+  /// Somebody `gap` [m] away from the arm at rest, in that direction from its hand [rad].
+  void stand(double gap, double direction) {
+    std::vector<Pose> T_root_link;
+    robot.forward(rest, T_root_link);
+    const Vector3 hand = T_root_link[static_cast<std::size_t>(arm.tip)].translation();
+    double away = 2.0;
+    do {
+      away -= 0.005;
+      people = test::person_at({hand.x() + away * std::cos(direction), hand.y() + away * std::sin(direction), 0.0});
+    } while (distance(rest) > gap);
+  }
+
+  const RobotModel robot = RobotModel::load(robot_description("jido"));
+  const Group& arm = robot.require_group("arm");
+  const Vector rest = robot.rest_posture();
+  const WayOut way_out{robot, arm};
+  HumanState people;
+};
+
+TEST_F(WayOutTest, every_step_leads_away_from_whoever_stands_near) {
+  for (double direction = -1.2; direction <= 1.2; direction += 0.3) {
+    stand(0.07, direction);
+    ASSERT_NEAR(distance(rest), 0.07, 0.01) << direction;
+    const std::vector<Vector> steps = way_out.steps_away(rest, Pose::Identity(), people, 0.15);
+    ASSERT_FALSE(steps.empty()) << direction;
+    double before = distance(rest);
+    for (const Vector& step : steps) {
+      const double now = distance(RobotModel::with(rest, arm, step));
+      EXPECT_GT(now, before) << direction;
+      before = now;
+    }
+  }
+}
+
+TEST_F(WayOutTest, toward_and_past_a_person_is_not_away) {
+  stand(0.07, 0.0);
+  const std::vector<Vector> steps = way_out.steps_away(rest, Pose::Identity(), people, 0.05);
+  ASSERT_FALSE(steps.empty());
+  const Vector away = RobotModel::with(rest, arm, steps.front());
+  EXPECT_TRUE(way_out.leads_away(rest, away, Pose::Identity(), people));
+  EXPECT_FALSE(way_out.leads_away(rest, 2.0 * rest - away, Pose::Identity(), people));
+  Vector past = rest;
+  past[arm.axes[0]] += 0.3;
+  EXPECT_FALSE(way_out.leads_away(rest, past, Pose::Identity(), people));
+}
+
+TEST_F(WayOutTest, with_nobody_near_every_way_is_open_and_none_is_needed) {
+  stand(0.8, 0.0);
+  Vector past = rest;
+  past[arm.axes[0]] += 0.3;
+  EXPECT_TRUE(way_out.leads_away(rest, past, Pose::Identity(), people));
+  EXPECT_TRUE(way_out.steps_away(rest, Pose::Identity(), people, 0.15).empty());
+}
+
+}  // namespace
+}  // namespace handsel::manipulation_planner
