@@ -10,10 +10,12 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kStep = 0.004;    // the motion that leads over is judged this often [rad, max norm]
-constexpr double kMargin = 0.005;  // furniture is taken for larger by this much on every side [m]
-constexpr double kReserve = 1.1;   // what a switch keeps of the limits it is given: so it keeps the comfort limits
-constexpr double kEarly = 0.04;    // the command must be with the controller this long before it is due [s]
+constexpr double kStep = 0.004;     // the motion that leads over is judged this often [rad, max norm]
+constexpr double kWideStep = 0.01;  // and what follows it this often
+constexpr double kMargin = 0.01;    // furniture is taken for larger by this much on every side [m]
+constexpr double kReserve = 1.1;    // what a switch keeps of the limits it is given: so it keeps the comfort limits
+constexpr double kLook = 0.1;       // costs along a trajectory are looked at this often [s]
+constexpr double kEarly = 0.04;     // the command must be with the controller this long before it is due [s]
 
 /// Until when the trajectory has not been farther than `reach` from where it begins [s].
 double within_reach(const Trajectory& trajectory, const Vector& from, double reach) {
@@ -52,9 +54,13 @@ std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, 
   world.set_moving_axes(arm_.axes);
   double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
   for (const AxisTrajectory& axis : over.trajectory.axes) rate = std::max(rate, std::abs(axis.start.velocity));
-  const int looks = std::max(2, static_cast<int>(std::ceil(rate * over.connecting / kStep)));
+  // Past that the path is known to be free, but corners cut it.
+  const double whole = over.trajectory.duration();
+  const int first = std::max(2, static_cast<int>(std::ceil(rate * over.connecting / kStep)));
+  const int looks = first + static_cast<int>(std::ceil(rate * std::max(0.0, whole - over.connecting) / kWideStep));
   for (int k = 0; k <= looks; ++k) {
-    const Vector q = over.trajectory.at(over.connecting * k / looks).position;
+    const double t = k <= first ? over.connecting * k / first : over.connecting + (whole - over.connecting) * (k - first) / (looks - first);
+    const Vector q = over.trajectory.at(t).position;
     for (int i = 0; i < q.size(); ++i) {
       const Axis& axis = robot_->axes()[static_cast<std::size_t>(arm_.axes[static_cast<std::size_t>(i)])];
       if (q[i] < axis.lower || q[i] > axis.upper) return std::nullopt;
@@ -62,6 +68,38 @@ std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, 
     if (!world.is_free(RobotModel::with(around.posture, arm_, q))) return std::nullopt;
   }
   return over.trajectory;
+}
+
+double ManipulationPlanner::cost_at(const Vector& q, const Vector& posture) const { return (*cost_)(RobotModel::with(posture, arm_, q)); }
+
+/// Integral along the trajectory of what the human-aware cost is above `level` [rad].
+double ManipulationPlanner::cost_along(const Trajectory& trajectory, const Vector& posture, double level) const {
+  const int looks = std::max(1, static_cast<int>(std::ceil(trajectory.duration() / kLook)));
+  double sum = 0;
+  for (int k = 0; k < looks; ++k) {
+    const auto at = [&](double look) { return trajectory.at(trajectory.duration() * look / looks).position; };
+    sum += std::max(0.0, cost_at(at(k + 0.5), posture) - level) * (at(k + 1) - at(k)).norm();
+  }
+  return sum;
+}
+
+/// Both ways as the arm would really go: what leads over to a path may leave out what makes it cheaper.
+void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const {
+  if (!standing) {
+    ways.over = lead_over(world, around, from, *ways.over);
+    if (ways.along)
+      if (Switched along = join(from, *ways.along); along.ok()) ways.along = std::move(along.trajectory);
+  }
+  if (!ways.over || !ways.along) return;
+  cost_->set_people(around.people);
+  cost_->set_layers(around.layers);
+  cost_->set_base(around.scene.T_world_base);
+  double level = cost_at(from.position, around.posture);  // what every motion between these ends costs is nobody's gain
+  for (const Trajectory* way : {&*ways.over, &*ways.along})
+    level = std::min(level, cost_at(way->at(way->duration()).position, around.posture));
+  const double before = cost_along(*ways.along, around.posture, level),
+               gain = before > 0 ? 1 - cost_along(*ways.over, around.posture, level) / before : 0;
+  ways.worth = gain >= settings_.live_gain() && ways.over->duration() <= (1 + settings_.live_slower() * gain) * ways.along->duration();
 }
 
 Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& motion) {
@@ -109,32 +147,22 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
     ++live_counts_.refused;
     co_return Outcome::failure(trajectory_reply_->reason);
   }
-  struct Ways {
-    std::optional<Trajectory> over;
-    double longest{std::numeric_limits<double>::infinity()};  // that it may last [s]
-  };
   auto ways = std::make_shared<Ways>();
   ways->over = trajectory_reply_->trajectory;
-  const double slower = 1 + settings_.live_slower();
-  if (only_cheaper && comparison_reply_->solved) ways->longest = slower * comparison_reply_->trajectory.duration();
-  if (!standing) {
-    if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-    const Trajectory as_before = only_cheaper && comparison_reply_->solved ? comparison_reply_->trajectory : Trajectory{};
-    const std::function<void()> job = [this, ways, slower, as_before, world = world_, from, to = trajectory_reply_->trajectory,
-                                       around = Around{scene_, people_, attachment_, motion.allowed, start}] {
-      ways->over = lead_over(*world, around, from, to);
-      if (as_before.size() == 0) return;
-      if (const Switched along = join(from, as_before); along.ok()) ways->longest = slower * along.trajectory.duration();
-    };
-    Outcome worked = co_await work(job);
-    if (!worked.good) co_return worked;
-    if (!ways->over) {
-      ++live_counts_.refused;
-      co_return Outcome::failure("no free motion leads over to the new path");
-    }
-  }
+  if (only_cheaper && comparison_reply_->solved) ways->along = comparison_reply_->trajectory;
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
+  const std::function<void()> job = [this, ways, standing, from, world = world_,
+                                     around = Around{scene_, people_, layers_.at(waiting_.now()), attachment_, motion.allowed, start}] {
+    weigh(*ways, *world, around, from, standing);
+  };
+  Outcome worked = co_await work(job);
+  if (!worked.good) co_return worked;
   if (ended()) co_return Outcome::failure("the motion has ended");
-  if (ways->over->duration() > ways->longest) {
+  if (!ways->over) {
+    ++live_counts_.refused;
+    co_return Outcome::failure("no free motion leads over to the new path");
+  }
+  if (!ways->worth) {
     ++live_counts_.slower;
     co_return Outcome::failure("the new path takes longer than it is worth");
   }

@@ -15,14 +15,15 @@ constexpr std::uint32_t kTooNear = 1U << static_cast<unsigned>(Cause::separation
 }  // namespace
 
 ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot,
-                                         ObjectLibrary objects, std::uint64_t client)
+                                         ObjectLibrary objects, std::uint64_t client, CostSettings cost)
     : settings_(settings),
       robot_(std::move(robot)),
       objects_(std::move(objects)),
       arm_(robot_->require_group("arm")),
       way_out_(*robot_, arm_),
       client_(client),
-      commands_(client) {}
+      commands_(client),
+      cost_(std::make_shared<HumanCost>(*robot_, cost)) {}
 
 void ManipulationPlanner::on(const ActionGoal& goal) {
   if (goal.cancel) {

@@ -11,6 +11,7 @@
 
 #include "common/collision/collision_world.hpp"
 #include "common/config/manipulation_planner.pb.h"
+#include "common/cost/human_cost.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/task.hpp"
@@ -45,7 +46,7 @@ class ManipulationPlanner {
  public:
   /// `client` makes request ids unique over restarts; trajectory and hand command ids start above it.
   ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
-                      std::uint64_t client);
+                      std::uint64_t client, CostSettings cost = {});
 
   void on(const ActionGoal& goal);
   void on(const Scene& scene) { scene_ = scene; }
@@ -124,10 +125,20 @@ class ManipulationPlanner {
   struct Around {
     Scene scene;
     HumanState people;
+    LayersNow layers;
     Attachment attachment;
     std::vector<std::string> allowed;
     Vector posture;  // axes that are not the arm's
   };
+  /// A path that is offered while another runs.
+  struct Ways {
+    std::optional<Trajectory> over;   // onto it; empty: nothing leads there
+    std::optional<Trajectory> along;  // the old one, timed for the people as they are now; empty: it must be left
+    bool worth{true};                 // going over to it
+  };
+  void weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const;
+  double cost_at(const Vector& q, const Vector& posture) const;
+  double cost_along(const Trajectory& trajectory, const Vector& posture, double level) const;
   Switched join(const MotionState3& from, const Trajectory& to) const;
   std::optional<Trajectory> lead_over(CollisionWorld& world, const Around& around, const MotionState3& from, const Trajectory& to) const;
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr);
@@ -184,7 +195,9 @@ class ManipulationPlanner {
   Attachment attachment_;
   std::optional<Grasp> grasp_;
   LiveCounts live_counts_;
-  std::shared_ptr<CollisionWorld> world_;  // used by jobs only, which run one after the other
+  // Used by jobs only, which run one after the other.
+  std::shared_ptr<CollisionWorld> world_;
+  std::shared_ptr<HumanCost> cost_;
 };
 
 }  // namespace handsel::manipulation_planner

@@ -1,6 +1,7 @@
 #include "components/manipulation_planner/node.hpp"
 
 #include "common/config/resources.hpp"
+#include "common/cost/cost_settings.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
@@ -24,6 +25,8 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
     positive("live_time", s.live_time());
     positive("replan_time", s.replan_time());
     positive("live_reach", s.live_reach());
+    if (s.live_slower() < 0 || s.live_gain() < 0 || s.live_gain() >= 1)
+      throw ConfigError("manipulation_planner.txtpb: live_slower must be >= 0, live_gain in [0, 1)");
   }
   return s;
 }
@@ -39,7 +42,7 @@ bool changed(const ActionStatus& a, const ActionStatus& b) {
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       settings_(load_settings(context)),
-      core_(settings_, context.robot, context.objects, client_id(bus)),
+      core_(settings_, context.robot, context.objects, client_id(bus), load_cost_settings(context.settings)),
       grasp_out_(bus.advertise<GraspRequest>()),
       path_out_(bus.advertise<PathRequest>()),
       trajectory_request_out_(bus.advertise<TrajectoryRequest>()),

@@ -17,6 +17,7 @@ namespace {
 constexpr double kSame = 1e-6;      // [rad]
 constexpr double kNearEnds = 0.3;   // motions this near to an end are judged exactly also where the wide check does not clear them [rad]
 constexpr double kDropLoss = 0.01;  // share of the price that dropping nodes may cost
+constexpr double kDropGain = 0.3;   // or of what was gained
 constexpr double kGain = 1e-6;      // smaller ones are none
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
@@ -66,7 +67,7 @@ class Live {
       prune(space_, path);  // at once; it gets cheaper next time
     } else if (space_.concerns_people()) {
       deform(path);
-      drop_nodes(path);
+      drop_nodes(path, out.before);
     } else {
       prune(space_, path);
     }
@@ -244,11 +245,12 @@ class Live {
   }
 
   /// Nodes that hardly matter: each is a corner the trajectory would have to take.
-  void drop_nodes(std::vector<Vector>& path) {
-    double allowed = kDropLoss * price(space_, path);
+  void drop_nodes(std::vector<Vector>& path, double before) {
+    const double now = price(space_, path);
+    double allowed = std::max(kDropLoss * now, kDropGain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
       const double loss = space_.price(path[i - 1], path[i + 1]) - space_.price(path[i - 1], path[i]) - space_.price(path[i], path[i + 1]);
-      if (loss <= 0.25 * allowed && space_.motion_free(path[i - 1], path[i + 1])) {
+      if (loss <= 0.5 * allowed && space_.motion_free(path[i - 1], path[i + 1])) {
         allowed -= std::max(0.0, loss);
         path.erase(path.begin() + static_cast<long>(i));
       } else {
