@@ -110,7 +110,7 @@ class Planning {
     const Vector start = space_.start();
     if (std::string why = space_.outside_limits(start); !why.empty()) return refuse("the start: " + why);
     if (std::string why = leans(start); !why.empty()) return refuse("the start: " + why);
-    const CollisionVerdict at_start = space_.verdict(start);
+    const CollisionVerdict at_start = space_.free(start) ? CollisionVerdict{} : space_.verdict(start);
     if (!at_start.free) {
       result_.start_touches = at_start.id;
       return refuse("the start is in collision: " + contact(at_start));
@@ -120,7 +120,7 @@ class Planning {
       std::string why = space_.outside_limits(problem_.goals[i]);
       if (why.empty()) why = leans(problem_.goals[i]);
       if (why.empty()) {
-        const CollisionVerdict verdict = space_.verdict(problem_.goals[i]);
+        const CollisionVerdict verdict = space_.free(problem_.goals[i]) ? CollisionVerdict{} : space_.verdict(problem_.goals[i]);
         if (verdict.free) {
           goals_.push_back(problem_.goals[i]);
           goal_index_.push_back(i);
@@ -184,7 +184,7 @@ class Planning {
     const Vector start = space_.start();
     std::vector<Vector> direct;
     for (std::size_t i = 0; i < goals_.size() && direct.empty(); ++i)
-      if (space_.motion_free(start, goals_[i])) {
+      if (space_.motion_clear(start, goals_[i])) {
         direct = {start, goals_[i]};
         result_.goal = goal_index_[i];
       }

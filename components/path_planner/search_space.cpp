@@ -117,6 +117,13 @@ bool SearchSpace::motion_free(const Vector& from, const Vector& to) {
          motion_verdict(from, to, step_).free;
 }
 
+bool SearchSpace::motion_clear(const Vector& from, const Vector& to) {
+  if (ends_.empty()) return motion_free(from, to);
+  if (!line_upright(from, to)) return false;
+  all_to_ = whole(to);
+  return world_.surely_free_at_steps(whole(from), all_to_, step_) && (!bound_ || permitted_on_line(step_).free);
+}
+
 void SearchSpace::judge_widely(std::vector<Vector> ends, double reach) {
   ends_ = std::move(ends);
   ends_.push_back(start());

@@ -32,6 +32,8 @@ class SearchSpace : public Budget {
   bool free(const Vector& q);
   CollisionVerdict motion_verdict(const Vector& from, const Vector& to, double step);
   bool motion_free(const Vector& from, const Vector& to);
+  /// As motion_free, but where motions are judged widely nothing goes to the exact check.
+  bool motion_clear(const Vector& from, const Vector& to);
   /// From now on motions the wide check cannot clear are taken for blocked; those within `reach` [rad, max norm] of the start or of one of
   /// `ends` go to the exact check. Cheaper by far, and blind to gaps narrower than the spheres around the links leave.
   void judge_widely(std::vector<Vector> ends, double reach);
