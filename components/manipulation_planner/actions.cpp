@@ -133,7 +133,16 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
   Outcome lifted = co_await lift(object_id);
-  co_return lifted;
+  if (!lifted.good) co_return lifted;
+  const auto came = [this, &object_id] {
+    const SceneObject* taken = object(object_id);
+    return taken != nullptr && taken->holder == Holder::robot;
+  };
+  const bool carried = co_await waiting_.until(came, settings_.settle_time());
+  if (carried) co_return lifted;
+  release_object();
+  HandResult emptied = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
+  co_return Outcome::failure(object_id + " stayed behind when the hand went up");
 }
 
 Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id) {

@@ -134,7 +134,7 @@ class Rig {
                      : command.action == HandAction::release_on_pull ? HandState::grasped
                                                                      : HandState::idle;
     if (command.action == HandAction::grasp && grasp_holds) {
-      scene.objects[0].holder = Holder::robot;
+      if (object_comes) scene.objects[0].holder = Holder::robot;
       T_tool_mug = make_pose({0.08, 0.02, 0.23});
     }
   }
@@ -154,7 +154,7 @@ class Rig {
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0};
   PathRequest last_path;
-  bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, person_takes{true};
+  bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
 };
@@ -276,6 +276,17 @@ TEST(ManipulationPlanner, AnEmptyHandBacksOffAndSaysSo) {
   EXPECT_EQ(rig.planner.status().state, ActionState::failed);
   EXPECT_NE(rig.planner.status().reason.find("closed on nothing"), std::string::npos);
   EXPECT_EQ(rig.phases.back(), "backing off");
+}
+
+TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
+  Rig rig;
+  rig.object_comes = false;
+  rig.start(ActionKind::pick);
+  rig.run(90);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("stayed behind"), std::string::npos) << rig.planner.status().reason;
+  EXPECT_FALSE(rig.planner.status().holding);
+  EXPECT_GT(std::count(rig.phases.begin(), rig.phases.end(), "lift"), 1) << "it is tried again";
 }
 
 TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoAndTakesTheNextAction) {
