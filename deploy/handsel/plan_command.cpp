@@ -137,6 +137,7 @@ class Batch {
     problem.budget = options_.checks > 0 ? options_.checks : UINT64_MAX / 2;
     problem.start = robot_.rest_posture().size() == robot_.dof() ? robot_.rest_posture() : Vector::Zero(robot_.dof());
     const json& start = field(item, "start");
+    if (!start.is_object()) throw LineError("\"start\" must be an object of joint names and positions, as {\"shoulder\": 0.5}");
     for (const auto& [name, value] : start.items())
       if (!is_fixed(name)) problem.start[axis(name)] = number(start, name.c_str());
     std::vector<Obstacle> obstacles;

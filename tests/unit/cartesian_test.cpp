@@ -72,6 +72,21 @@ class Cartesian : public ::testing::Test {
     }
   }
 
+  /// The k-th query's answer: sound, or printed why there is none.
+  CartesianResult asked(int k, const Vector& start, const Pose& T_root_goal) {
+    CartesianProblem problem;
+    problem.start = start;
+    problem.T_root_goal = T_root_goal;
+    problem.seed = kSeed + static_cast<unsigned>(k);
+    problem.budget = 1000000;
+    CartesianResult result = plan_cartesian(robot_, world_, cost_, problem, settings_);
+    if (result.solved)
+      expect_sound(problem, result);
+    else
+      std::printf("query %d: %s\n", k, result.reason.c_str());
+    return result;
+  }
+
   const RobotModel robot_{RobotModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/robots/jido/jido.txtpb")};
   const Group& arm_{robot_.require_group("arm")};
   CollisionWorld world_{robot_, nullptr}, exact_{robot_, nullptr};
@@ -89,18 +104,10 @@ TEST_F(Cartesian, reaches_poses_with_the_elbow_active_and_no_joint_jumps) {
   double turned = 0;
   for (int k = 0; k < queries; ++k) {
     SCOPED_TRACE(k);
-    CartesianProblem problem;
-    problem.start = random_posture();
-    problem.T_root_goal = tool(random_posture_like(problem.start));
-    problem.seed = kSeed + static_cast<unsigned>(k);
-    problem.budget = 1000000;
-    const CartesianResult result = plan_cartesian(robot_, world_, cost_, problem, settings_);
-    if (!result.solved) {
-      std::printf("query %d: %s\n", k, result.reason.c_str());
-      continue;
-    }
+    const Vector start = random_posture();
+    const CartesianResult result = asked(k, start, tool(random_posture_like(start)));
+    if (!result.solved) continue;
     ++solved;
-    expect_sound(problem, result);
     for (std::size_t i = 1; i < result.nodes.size(); ++i)
       turned = std::max(turned, std::abs(std::remainder(result.nodes[i].elbow - result.nodes[0].elbow, 2 * M_PI)));
   }
@@ -116,20 +123,12 @@ TEST_F(Cartesian, goals_on_other_branches_are_reached_through_the_joints) {
   int solved = 0, over = 0;
   for (int k = 0; k < queries; ++k) {
     SCOPED_TRACE(k);
-    CartesianProblem problem;
-    problem.start = random_posture();
-    problem.T_root_goal = tool(random_posture());
-    problem.seed = kSeed + static_cast<unsigned>(k);
-    problem.budget = 1000000;
-    const CartesianResult result = plan_cartesian(robot_, world_, cost_, problem, settings_);
-    if (!result.solved) {
-      std::printf("query %d: %s\n", k, result.reason.c_str());
-      continue;
-    }
+    const Vector start = random_posture();
+    const CartesianResult result = asked(k, start, tool(random_posture()));
+    if (!result.solved) continue;
     ++solved;
     over += result.in_joints > 0;
     ASSERT_LT(result.in_joints, result.samples.size());
-    expect_sound(problem, result);
   }
   std::printf("seed %u: %d of %d goals anywhere reached, %d over another branch\n", kSeed, solved, queries, over);
   EXPECT_GE(solved * 100, queries * 90);

@@ -138,6 +138,12 @@ class Rig {
       T_tool_mug = make_pose({0.08, 0.02, 0.23});
     }
   }
+  void fails_to_pick(const std::string& reason) {
+    start(ActionKind::pick);
+    run(90);
+    EXPECT_EQ(planner.status().state, ActionState::failed);
+    EXPECT_NE(planner.status().reason.find(reason), std::string::npos) << planner.status().reason;
+  }
   Pose tool() const { return scene.T_world_base * robot->link_pose(q, robot->tool_link()); }
 
   std::shared_ptr<const RobotModel> robot;
@@ -253,38 +259,26 @@ TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {
 TEST(ManipulationPlanner, NoGraspsIsAReasonNotACrash) {
   Rig rig;
   rig.grasps_exist = false;
-  rig.start(ActionKind::pick);
-  rig.run(60);
-  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
-  EXPECT_NE(rig.planner.status().reason.find("three contacts"), std::string::npos);
+  rig.fails_to_pick("three contacts");
 }
 
 TEST(ManipulationPlanner, ADeadPlannerIsAskedAgainAndNamedInTheEnd) {
   Rig rig;
   rig.grasp_planner_lives = false;
-  rig.start(ActionKind::pick);
-  rig.run(60);
-  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
-  EXPECT_NE(rig.planner.status().reason.find("grasp planner"), std::string::npos);
+  rig.fails_to_pick("grasp planner");
 }
 
 TEST(ManipulationPlanner, AnEmptyHandBacksOffAndSaysSo) {
   Rig rig;
   rig.grasp_holds = false;
-  rig.start(ActionKind::pick);
-  rig.run(60);
-  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
-  EXPECT_NE(rig.planner.status().reason.find("closed on nothing"), std::string::npos);
+  rig.fails_to_pick("closed on nothing");
   EXPECT_EQ(rig.phases.back(), "backing off");
 }
 
 TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
   Rig rig;
   rig.object_comes = false;
-  rig.start(ActionKind::pick);
-  rig.run(90);
-  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
-  EXPECT_NE(rig.planner.status().reason.find("stayed behind"), std::string::npos) << rig.planner.status().reason;
+  rig.fails_to_pick("stayed behind");
   EXPECT_FALSE(rig.planner.status().holding);
   EXPECT_GT(std::count(rig.phases.begin(), rig.phases.end(), "lift"), 1) << "it is tried again";
 }
