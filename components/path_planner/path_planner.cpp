@@ -95,7 +95,7 @@ class Planning {
       space_.limit(problem_.budget);
       if (!found && widely && !space_.cancelled()) continue;
       if (!found) return result_;
-      if (verified() || unsmoothed()) {
+      if (verified() || smoothed_finely() || unsmoothed()) {
         finish(space_, result_);
         return result_;
       }
@@ -238,7 +238,19 @@ class Planning {
     return true;
   }
 
-  /// The path as it was found: what smoothing shifted by less than a step may scrape a corner.
+  /// What smoothing shifted by less than a step may scrape a corner: smoothed anew, with smaller steps.
+  bool smoothed_finely() {
+    if (space_.cancelled()) return false;
+    space_.enter(Stage::smooth);
+    space_.set_step(kFiner * settings_.step);
+    result_.path = raw_;
+    Random random(problem_.seed);
+    smooth(space_, result_.path, random);
+    prune(space_, result_.path);
+    return verified();
+  }
+
+  /// The path as it was found.
   bool unsmoothed() {
     result_.path = raw_;
     return verified();
