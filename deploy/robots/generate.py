@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes hands/sah/sah.urdf and robots/jido/jido.urdf from the numbers below. Run it after changing a number; standard library only.
+"""Writes the URDFs of our own hands and robots from the numbers below. Run it after changing a number; standard library only.
 
 Shapes are primitives that enclose the real parts; inertias are those of the shapes filled evenly with the link's mass. Metres, kg, radians.
 """
@@ -122,33 +122,65 @@ THUMB_AXIS = (-0.003, 0.0271, 0)
 THUMB_BASE = ((0, 0.0855, -0.10282), [[-0.0122170, 0.9999254, 0], [0.5735336, 0.0070074, -0.8191520], [-0.8190909, -0.0100076, -0.5735764]])
 
 
-def finger(name, parent, at, R):
-    """Abduction, proximal, middle, distal (mimics middle), then the centre of the fingertip."""
-    def bend(lower):
-        return lower * DEG, 75 * DEG, HAND_SPEED, HAND_EFFORT
-
-    along = (0, math.pi / 2, 0)
-    out = joint(f"{name}_abduction", "revolute", parent, f"{name}_base", at, to_rpy(R), (0, 0, 1), (-15 * DEG, 15 * DEG, HAND_SPEED, HAND_EFFORT))
-    out += link(f"{name}_base", 0.03, [sphere(0.012)])
-    out += joint(f"{name}_proximal", "revolute", f"{name}_base", f"{name}_proximal_link", (0, 0, 0), (math.pi / 2, 0, 0), (0, 0, 1), bend(-4))
-    out += link(f"{name}_proximal_link", 0.07, [cylinder(0.0125, PROXIMAL - 0.008, (PROXIMAL / 2, 0, 0), along)])
-    out += joint(f"{name}_middle", "revolute", f"{name}_proximal_link", f"{name}_middle_link", (PROXIMAL, 0, 0), (0, 0, 0), (0, 0, 1), bend(0))
-    out += link(f"{name}_middle_link", 0.035, [sphere(0.0125), cylinder(0.012, MIDDLE, (MIDDLE / 2, 0, 0), along)])
-    out += joint(f"{name}_distal", "revolute", f"{name}_middle_link", f"{name}_distal_link", (MIDDLE, 0, 0), (0, 0, 0), (0, 0, 1), bend(0),
-                 mimic=f"{name}_middle")
-    out += link(f"{name}_distal_link", 0.03, [cylinder(0.012, TIP, (TIP / 2, 0, 0), along), sphere(TIP_RADIUS, (TIP, 0, 0))])
-    out += joint(f"{name}_tip_fixed", "fixed", f"{name}_distal_link", f"{name}_tip", (TIP, 0, 0))
-    return out + link(f"{name}_tip")
+# [deg]: abduction, proximal, middle (and distal) joints, rotation of the thumb
+SAH_RANGES = {"abduction": (-15, 15), "proximal": (-4, 75), "middle": (0, 75), "rotation": (0, 90)}
 
 
-def hand():
-    out = link("palm", 1.2, [cylinder(0.035, 0.042, (0, 0, 0.009)), box(0.05, 0.105, 0.112, (-0.008, 0, 0.084))])
-    out += joint("thumb_rotation", "revolute", "palm", "thumb_carrier", THUMB_AXIS, (0, math.pi, 0), (0, 0, 1), (0, 90 * DEG, HAND_SPEED, HAND_EFFORT))
-    out += link("thumb_carrier", 0.1, [rod(0.016, (0, 0.01, -0.08), THUMB_BASE[0])])
-    out += finger("thumb", "thumb_carrier", *THUMB_BASE)
-    for name, (at, R) in FINGER_BASES.items():
-        out += finger(name, "palm", at, R)
-    return out
+class Hand:
+    """The hand, or one built like it: names begin with `prefix`, lengths are multiplied by `scale`; the left hand is the mirror image in y."""
+
+    def __init__(self, prefix="", scale=1.0, left=False, ranges=None):
+        self.prefix, self.scale, self.left, self.ranges = prefix, scale, left, ranges or SAH_RANGES
+
+    def place(self, at):
+        return tuple(self.scale * v * (-1 if self.left and i == 1 else 1) for i, v in enumerate(at))
+
+    def turned(self, turn):
+        if not self.left:
+            return turn
+        R = rpy(*turn)
+        return to_rpy([[R[i][j] * (-1 if (i == 1) != (j == 1) else 1) for j in range(3)] for i in range(3)])
+
+    def link(self, name, mass=0.0, shapes=()):
+        shapes = [(kind, tuple(self.scale * v for v in sizes), self.place(at), self.turned(turn)) for kind, sizes, at, turn in shapes]
+        return link(self.prefix + name, mass * self.scale**3, shapes)
+
+    def joint(self, name, kind, parent, child, xyz=(0, 0, 0), turn=(0, 0, 0), range_of=None, mimic=None):
+        axis = limits = None
+        if range_of:
+            axis = (0, 0, -1 if self.left else 1)
+            limits = tuple(v * DEG for v in self.ranges[range_of]) + (HAND_SPEED, HAND_EFFORT * self.scale**2)
+        return joint(self.prefix + name, kind, self.prefix + parent, self.prefix + child, self.place(xyz), self.turned(turn), axis, limits,
+                     self.prefix + mimic if mimic else None)
+
+    def finger(self, name, parent, at, R):
+        """Abduction, proximal, middle, distal (mimics middle), then the centre of the fingertip."""
+        along = (0, math.pi / 2, 0)
+        out = self.joint(f"{name}_abduction", "revolute", parent, f"{name}_base", at, to_rpy(R), "abduction")
+        out += self.link(f"{name}_base", 0.03, [sphere(0.012)])
+        out += self.joint(f"{name}_proximal", "revolute", f"{name}_base", f"{name}_proximal_link", (0, 0, 0), (math.pi / 2, 0, 0), "proximal")
+        out += self.link(f"{name}_proximal_link", 0.07, [cylinder(0.0125, PROXIMAL - 0.008, (PROXIMAL / 2, 0, 0), along)])
+        out += self.joint(f"{name}_middle", "revolute", f"{name}_proximal_link", f"{name}_middle_link", (PROXIMAL, 0, 0), (0, 0, 0), "middle")
+        out += self.link(f"{name}_middle_link", 0.035, [sphere(0.0125), cylinder(0.012, MIDDLE, (MIDDLE / 2, 0, 0), along)])
+        out += self.joint(f"{name}_distal", "revolute", f"{name}_middle_link", f"{name}_distal_link", (MIDDLE, 0, 0), (0, 0, 0), "middle",
+                          mimic=f"{name}_middle")
+        out += self.link(f"{name}_distal_link", 0.03, [cylinder(0.012, TIP, (TIP / 2, 0, 0), along), sphere(TIP_RADIUS, (TIP, 0, 0))])
+        out += self.joint(f"{name}_tip_fixed", "fixed", f"{name}_distal_link", f"{name}_tip", (TIP, 0, 0))
+        return out + self.link(f"{name}_tip")
+
+    def urdf(self):
+        out = self.link("palm", 1.2, [cylinder(0.035, 0.042, (0, 0, 0.009)), box(0.05, 0.105, 0.112, (-0.008, 0, 0.084))])
+        out += self.joint("thumb_rotation", "revolute", "palm", "thumb_carrier", THUMB_AXIS, (0, math.pi, 0), "rotation")
+        out += self.link("thumb_carrier", 0.1, [rod(0.016, (0, 0.01, -0.08), THUMB_BASE[0])])
+        out += self.finger("thumb", "thumb_carrier", *THUMB_BASE)
+        for name, (at, R) in FINGER_BASES.items():
+            out += self.finger(name, "palm", at, R)
+        return out
+
+
+# Wrist to the tip of the middle finger: 0.300 m the robot's, 0.189 m a grown person's of 1.75 m.
+HUMAN_SCALE = 0.63
+HUMAN_RANGES = {"abduction": (-20, 20), "proximal": (-20, 90), "middle": (0, 90), "rotation": (-10, 100)}
 
 
 # --- Jido: mobile platform, column, KUKA LWR 4+ mounted sideways, pan-tilt head ----------------------------------------------------------
@@ -178,7 +210,7 @@ def jido():
         out += link(child, mass, shapes)
         parent = child
     out += joint("hand_mount", "fixed", parent, "palm", (0, 0, WRIST_TO_HAND - ARM[-1][1]))
-    out += hand()
+    out += Hand().urdf()
     out += joint("head_pan", "revolute", "base_link", "pan_link", (0.243, 0, 1.244), (0, 0, 0), (0, 0, 1), (-170 * DEG, 170 * DEG, 2.0, 10))
     out += link("pan_link", 0.8, [cylinder(0.045, 0.12, (0, 0, -0.06))])
     out += joint("head_tilt", "revolute", "pan_link", "tilt_link", (0, 0, 0.06), (0, 0, 0), (0, -1, 0), (-45 * DEG, 30 * DEG, 2.0, 10))
@@ -193,5 +225,8 @@ def write(path, name, body):
         f.write("\n".join(body) + "\n</robot>\n")
 
 
-write("../hands/sah/sah.urdf", "sah", hand())
+write("../hands/sah/sah.urdf", "sah", Hand().urdf())
+write("../hands/sah_left/sah_left.urdf", "sah_left", Hand("left_", left=True).urdf())
+write("../hands/human_right/human_right.urdf", "human_right", Hand("", HUMAN_SCALE, False, HUMAN_RANGES).urdf())
+write("../hands/human_left/human_left.urdf", "human_left", Hand("left_", HUMAN_SCALE, True, HUMAN_RANGES).urdf())
 write("jido/jido.urdf", "jido", jido())
