@@ -145,6 +145,14 @@ Vector3 FingerWorkspace::centre(std::int64_t cell) const {
   return box_.min() + step_ * Vector3(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5, static_cast<double>(z) + 0.5);
 }
 
+std::vector<Vector3> FingerWorkspace::cells() const {
+  std::vector<Vector3> out;
+  for (std::size_t c = 0; c < entry_.size(); ++c) {
+    if (entry_[c] != 0) out.push_back(centre(static_cast<std::int64_t>(c)));
+  }
+  return out;
+}
+
 const std::vector<FingerWorkspace::Seed>& FingerWorkspace::seeds(const Vector3& p_hand) const {
   static const std::vector<Seed> none;
   const std::int64_t c = cell(p_hand);

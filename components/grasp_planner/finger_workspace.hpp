@@ -37,6 +37,8 @@ class FingerWorkspace {
     Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};  ///< hand frame, unit
   };
   const std::vector<Seed>& seeds(const Vector3& p_hand) const;
+  /// Centres of the grid cells the tip reaches, hand frame [m].
+  std::vector<Vector3> cells() const;
   Eigen::AlignedBox3d box() const { return box_; }
   Vector3 centroid() const { return centroid_; }
 

@@ -66,4 +66,24 @@ void PointTree::inside_ball(const Vector3& centre, double radius, std::vector<st
   }
 }
 
+std::vector<Eigen::AlignedBox3d> PointTree::boxes(int depth) const {
+  std::vector<std::uint32_t> level;
+  if (!nodes_.empty()) level.push_back(0);
+  for (; depth > 0; --depth) {
+    std::vector<std::uint32_t> next;
+    for (const std::uint32_t id : level) {
+      const Node& node = nodes_[id];
+      if (node.right == 0) {
+        next.push_back(id);
+      } else {
+        next.insert(next.end(), {node.left, node.right});
+      }
+    }
+    level = std::move(next);
+  }
+  std::vector<Eigen::AlignedBox3d> out;
+  for (const std::uint32_t id : level) out.push_back(nodes_[id].box);
+  return out;
+}
+
 }  // namespace handsel::grasp_planner

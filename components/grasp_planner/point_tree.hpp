@@ -17,6 +17,8 @@ class PointTree {
 
   /// Appends the indices of the points inside the ball (boundary included), in the order of the tree.
   void inside_ball(const Vector3& centre, double radius, std::vector<std::uint32_t>& out) const;
+  /// The nodes' boxes at a depth of the tree (0: the root's), leaves above it included.
+  std::vector<Eigen::AlignedBox3d> boxes(int depth) const;
   const Eigen::AlignedBox3d& box() const { return box_; }
   std::size_t size() const { return points_.size(); }
 

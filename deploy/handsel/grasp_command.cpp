@@ -6,10 +6,10 @@
 #include <iostream>
 #include <memory>
 
-#include "common/config/resources.hpp"
 #include "components/grasp_planner/double_grasp.hpp"
 #include "components/grasp_planner/epsilon.hpp"
-#include "components/grasp_planner/grasp_list.hpp"
+#include "deploy/handsel/grasp_input.hpp"
+#include "deploy/handsel/grasp_show_command.hpp"
 #include "deploy/handsel/json_lines.hpp"
 #include "deploy/handsel/terminal.hpp"
 
@@ -70,37 +70,6 @@ json score(const json& item) {
 
 // ---- list
 
-struct ListOptions {
-  std::string hand{"sah"}, object;
-  double scale{1}, friction{0};
-  std::uint32_t positions{GraspListSettings{}.positions}, orientations{GraspListSettings{}.orientations};
-  std::uint64_t seed{1};
-  bool as_json{};
-  std::string hand2{"sah"};  // double
-  std::size_t most_of_each{200};
-  double clearance{0.005}, opposition{0};
-};
-
-/// A mesh file, or the name or file of an object description.
-ObjectModel object_of(const ListOptions& o) {
-  ObjectModel object;
-  const std::filesystem::path path(o.object);
-  const std::string kind = path.extension().string();
-  if (kind.empty() || kind == ".txtpb") {
-    object = ObjectModel::load(object_description(o.object));
-    for (Vector3& v : object.mesh.vertices) v *= o.scale;
-    if (o.scale != 1) object.parts.clear();
-    object.com *= o.scale;
-    return object;
-  }
-  object.name = path.stem().string();
-  object.mesh = load_mesh(path, Vector3::Constant(o.scale));
-  orient(object.mesh);
-  object.com = mass_centre(object.mesh);
-  object.friction = 0.5;
-  return object;
-}
-
 json line_of(const ListedGrasp& listed, const HandModel& hand) {
   const Grasp& g = listed.grasp;
   const Eigen::Quaterniond q(g.T_object_hand.linear());
@@ -133,51 +102,6 @@ json line_of(const ListedGrasp& listed, const HandModel& hand) {
           {"quality", g.quality}};
 }
 
-void report_mesh(const Graspable& object) {
-  const MeshFindings& f = object.findings();
-  if (f.open_edges > 0) std::fprintf(stderr, "mesh: %u open edges; its holes are left open\n", f.open_edges);
-  if (f.crowded_edges > 0) std::fprintf(stderr, "mesh: %u edges shared by more than two triangles\n", f.crowded_edges);
-  if (f.components > 1) std::fprintf(stderr, "mesh: %u separate parts\n", f.components);
-  if (f.turned > 0) std::fprintf(stderr, "mesh: %u triangles faced the wrong way and were turned\n", f.turned);
-}
-
-struct Listed {
-  std::shared_ptr<const HandKit> kit;
-  std::shared_ptr<const Graspable> object;
-  GraspList list;
-};
-
-Listed list_with(const std::string& hand, const ListOptions& o) {
-  Listed out;
-  out.kit = std::make_shared<const HandKit>(HandModel::load(hand_description(hand)));
-  GraspListSettings settings;
-  settings.positions = o.positions;
-  settings.orientations = o.orientations;
-  settings.friction = o.friction;
-  settings.seed = o.seed;
-  out.object = std::make_shared<const Graspable>(object_of(o), out.kit->tip_radius(), settings.step_share, o.seed);
-  report_mesh(*out.object);
-  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*out.kit));
-  const auto start = std::chrono::steady_clock::now();
-  GraspLister lister(out.kit, workspaces, out.object, settings);
-  std::uint64_t done = 0;
-  while (lister.advance(256)) {
-    done += 256;
-    if (progress_wanted()) {
-      std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * done / lister.frames()),
-                   static_cast<unsigned long long>(lister.frames()));
-    }
-  }
-  if (progress_wanted()) std::fprintf(stderr, "\r\033[K");
-  out.list = lister.list();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", out.list.grasps.size(),
-               out.list.hand.c_str(), out.list.object.c_str(), static_cast<unsigned long long>(out.list.frames), seconds,
-               static_cast<unsigned long long>(o.seed));
-  for (const Refusal& r : out.list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
-  return out;
-}
-
 int list(const ListOptions& o) {
   const Listed listed = list_with(o.hand, o);
   const bool table = !json_wanted(o.as_json);
@@ -195,7 +119,13 @@ int list(const ListOptions& o) {
   return listed.list.grasps.empty() ? 1 : 0;
 }
 
-int pairs(const ListOptions& o) {
+struct PairOptions : ListOptions {
+  std::string hand2{"sah"};
+  std::size_t most_of_each{200};
+  double clearance{0.005}, opposition{0};
+};
+
+int pairs(const PairOptions& o) {
   const Listed a = list_with(o.hand, o), b = list_with(o.hand2, o);
   DoubleSettings settings;
   settings.most_of_each = o.most_of_each;
@@ -223,19 +153,6 @@ int pairs(const ListOptions& o) {
   return found.grasps.empty() ? 1 : 0;
 }
 
-void add_list_options(CLI::App& command, ListOptions& o) {
-  command.add_option("--hand", o.hand, "hand description: name or file")->capture_default_str();
-  command.add_option("--object", o.object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
-  command.add_option("--scale", o.scale, "factor on the object's size")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--orientations", o.orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")->check(CLI::PositiveNumber);
-  command.add_option("--seed", o.seed, "of the contact points")->capture_default_str();
-  command.add_flag("--json", o.as_json, "JSON Lines also on a terminal");
-}
-
 }  // namespace
 
 void add_grasp_commands(CLI::App& app, int& exit_code) {
@@ -254,13 +171,15 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   listing->callback([o, &exit_code] { exit_code = list(*o); });
 
   CLI::App* doubling = grasp->add_subcommand("double", "Pairs of grasps of two hands that do not collide, best first");
-  auto d = std::make_shared<ListOptions>();
+  auto d = std::make_shared<PairOptions>();
   add_list_options(*doubling, *d);
   doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")->capture_default_str();
   doubling->add_option("--best", d->most_of_each, "grasps taken from each list")->check(CLI::PositiveNumber)->capture_default_str();
   doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(CLI::NonNegativeNumber)->capture_default_str();
   doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));
   doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
+
+  add_grasp_show(*grasp, exit_code);
 }
 
 }  // namespace handsel

@@ -67,7 +67,7 @@ std::string Picture::png() const {
   for (int y = 0; y < height_; ++y) {
     rows += '\0';
     for (int x = 0; x < width_; ++x)
-      for (const std::uint8_t part : points_[static_cast<std::size_t>(y * width_ + x)]) rows += static_cast<char>(part);
+      for (const std::uint8_t part : at(x, y)) rows += static_cast<char>(part);
   }
   std::string out = "\x89PNG\r\n\x1a\n";
   chunk(out, "IHDR", header);

@@ -12,17 +12,21 @@ using Colour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
 class Picture {
  public:
-  Picture(int width, int height, Colour fill) : width_(width), height_(height), points_(static_cast<std::size_t>(width * height), fill) {}
+  Picture(int width, int height, Colour fill) : width_(width), height_(height), points_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
   int width() const { return width_; }
   int height() const { return height_; }
   /// Outside the picture nothing happens. x to the right, y down.
   void dot(int x, int y, Colour colour) {
-    if (x >= 0 && y >= 0 && x < width_ && y < height_) points_[static_cast<std::size_t>(y * width_ + x)] = colour;
+    if (x >= 0 && y >= 0 && x < width_ && y < height_) points_[index(x, y)] = colour;
   }
+  Colour at(int x, int y) const { return points_[index(x, y)]; }
   void line(double x0, double y0, double x1, double y1, int thickness, Colour colour);
   std::string png() const;
 
  private:
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+  }
   int width_, height_;
   std::vector<Colour> points_;
 };

@@ -6,3 +6,4 @@ handsel_test(grasp_stability SOURCES ${CMAKE_SOURCE_DIR}/tests/property/grasp_st
 handsel_test(grip_force SOURCES ${CMAKE_SOURCE_DIR}/tests/property/grip_force_test.cpp LINK handsel_grasp LABEL unit)
 handsel_test(grasp_node SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasp_node_test.cpp LINK handsel_grasp_planner LABEL unit)
 handsel_test(pinch SOURCES ${CMAKE_CURRENT_LIST_DIR}/pinch_test.cpp LINK handsel_grasp_planner_core LABEL unit)
+handsel_test(grasp_picture SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasp_picture_test.cpp LINK handsel_grasp_picture LABEL unit)

@@ -1,0 +1,97 @@
+#include "deploy/handsel/grasp_input.hpp"
+
+#include <chrono>
+#include <cstdio>
+
+#include "common/config/resources.hpp"
+#include "deploy/handsel/terminal.hpp"
+
+namespace handsel {
+
+using namespace grasp_planner;
+
+namespace {
+
+void report_mesh(const Graspable& object) {
+  const MeshFindings& f = object.findings();
+  if (f.open_edges > 0) std::fprintf(stderr, "mesh: %u open edges; its holes are left open\n", f.open_edges);
+  if (f.crowded_edges > 0) std::fprintf(stderr, "mesh: %u edges shared by more than two triangles\n", f.crowded_edges);
+  if (f.components > 1) std::fprintf(stderr, "mesh: %u separate parts\n", f.components);
+  if (f.turned > 0) std::fprintf(stderr, "mesh: %u triangles faced the wrong way and were turned\n", f.turned);
+}
+
+}  // namespace
+
+ObjectModel object_of(const ListOptions& o) {
+  ObjectModel object;
+  const std::filesystem::path path(o.object);
+  const std::string kind = path.extension().string();
+  if (kind.empty() || kind == ".txtpb") {
+    object = ObjectModel::load(object_description(o.object));
+    for (Vector3& v : object.mesh.vertices) v *= o.scale;
+    if (o.scale != 1) object.parts.clear();
+    object.com *= o.scale;
+    return object;
+  }
+  object.name = path.stem().string();
+  object.mesh = load_mesh(path, Vector3::Constant(o.scale));
+  orient(object.mesh);
+  object.com = mass_centre(object.mesh);
+  object.friction = 0.5;
+  return object;
+}
+
+std::shared_ptr<const HandKit> kit_of(const std::string& hand) {
+  return std::make_shared<const HandKit>(HandModel::load(hand_description(hand)));
+}
+
+Listed prepared(const std::string& hand, const ListOptions& o) {
+  Listed out;
+  out.kit = kit_of(hand);
+  out.object = std::make_shared<const Graspable>(object_of(o), out.kit->tip_radius(), GraspListSettings{}.step_share, o.seed);
+  report_mesh(*out.object);
+  return out;
+}
+
+Listed list_with(const std::string& hand, const ListOptions& o) {
+  Listed out = prepared(hand, o);
+  GraspListSettings settings;
+  settings.positions = o.positions;
+  settings.orientations = o.orientations;
+  settings.friction = o.friction;
+  settings.seed = o.seed;
+  out.workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*out.kit));
+  const auto start = std::chrono::steady_clock::now();
+  GraspLister lister(out.kit, out.workspaces, out.object, settings);
+  std::uint64_t done = 0;
+  while (lister.advance(256)) {
+    done += 256;
+    if (progress_wanted()) {
+      std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * done / lister.frames()),
+                   static_cast<unsigned long long>(lister.frames()));
+    }
+  }
+  if (progress_wanted()) std::fprintf(stderr, "\r\033[K");
+  out.list = lister.list();
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", out.list.grasps.size(),
+               out.list.hand.c_str(), out.list.object.c_str(), static_cast<unsigned long long>(out.list.frames), seconds,
+               static_cast<unsigned long long>(o.seed));
+  for (const Refusal& r : out.list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
+  return out;
+}
+
+void add_list_options(CLI::App& command, ListOptions& o) {
+  command.add_option("--hand", o.hand, "hand description: name or file")->capture_default_str();
+  command.add_option("--object", o.object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
+  command.add_option("--scale", o.scale, "factor on the object's size")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--orientations", o.orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
+  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")->check(CLI::PositiveNumber);
+  command.add_option("--seed", o.seed, "of the contact points")->capture_default_str();
+  command.add_flag("--json", o.as_json, "JSON Lines also on a terminal");
+}
+
+}  // namespace handsel
