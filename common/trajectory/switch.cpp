@@ -12,6 +12,7 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-6;
 constexpr double kShortest = 1e-13;  // [s]
+constexpr double kRounding = 1e-11;  // [rad], [rad/s], [rad/s^2]
 }  // namespace
 
 const char* reason(SwitchOutcome outcome) noexcept {
@@ -36,6 +37,11 @@ const char* reason(SwitchOutcome outcome) noexcept {
   return "";
 }
 
+bool same_motion(const MotionState3& a, const MotionState3& b) noexcept {
+  const auto same = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y) { return ((x - y).array().abs() <= kRounding).all(); };
+  return same(a.position, b.position) && same(a.velocity, b.velocity) && same(a.acceleration, b.acceleration);
+}
+
 TrajectorySwitch::TrajectorySwitch(int axes)
     : n_(axes), problems_(axes), profiles_(axes), start_(axes), there_(rest_state(Eigen::VectorXd::Zero(axes))), at_(axes), left_(axes) {
   jerk_ = Eigen::VectorXd::Zero(axes);
@@ -45,6 +51,7 @@ TrajectorySwitch::TrajectorySwitch(int axes)
 double TrajectorySwitch::meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t,
                                  double least) noexcept {
   next.evaluate(t, cursor_, there_);
+  if (least == 0 && same_motion(now, there_)) return 0;
   double common = least;
   for (int i = 0; i < n_; ++i) {
     const AxisState from{now.position[i], now.velocity[i], now.acceleration[i]};
@@ -110,6 +117,11 @@ bool TrajectorySwitch::earliest_meeting(const MotionState3& now, const SegmentTa
 
 bool TrajectorySwitch::make_profiles(const MotionState3& now, const KinematicLimits& guard) noexcept {
   for (int i = 0; i < n_; ++i) {
+    if (connect_ == 0) {
+      profiles_[i].clear();
+      start_[i] = {now.position[i], now.velocity[i], now.acceleration[i]};
+      continue;
+    }
     if (problems_[i].profile(connect_, profiles_[i]) != AxisOutcome::ok) return false;
     start_[i] = {now.position[i], now.velocity[i], now.acceleration[i]};
     const AxisExtremes e = rate_extremes(start_[i], profiles_[i].segments.data(), profiles_[i].count);

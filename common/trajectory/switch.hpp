@@ -33,6 +33,10 @@ struct SwitchSettings {
   int tries{24};        ///< places looked at before the best is refined
 };
 
+/// But for rounding: nothing need lead from one to the other. (The fastest way between states in motion that differ by a little is as
+/// likely as not a loop of a second.)
+bool same_motion(const MotionState3&, const MotionState3&) noexcept;
+
 /// For a cycle: allocates at construction only.
 class TrajectorySwitch {
  public:

@@ -13,9 +13,11 @@ namespace {
 
 constexpr double kSlack = 1e-6;  // [rad] beyond a bound by rounding
 
+constexpr double kTogether = 0.5;  // [s] of a trajectory that begins nearly as the arm moves
+
 double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
 
-/// Whether a trajectory begins as `from` moves: then all of it is run.
+/// Whether a trajectory begins as `from` moves: then all of it is run, but for what brings the two together.
 bool begins_alike(const MotionState3& from, const MotionState3& first, const KinematicLimits& limits) {
   constexpr double kNear = 0.02, kShare = 0.1;
   return apart(from.position, first.position) <= kNear &&
@@ -80,7 +82,7 @@ std::string PathRunner::go_over(const MotionState3& from, const Trajectory& next
   SwitchSettings settings;
   MotionState3 there = next.at(0.0);
   if (begins_alike(from, there, limits_.motion)) {
-    settings.last = 0.0;
+    settings.last = from_rest || same_motion(from, there) ? 0.0 : std::min(kTogether, next.duration());
   } else {
     constexpr int kLooks = 200;
     double nearest = std::numeric_limits<double>::infinity();

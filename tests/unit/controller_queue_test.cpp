@@ -122,6 +122,25 @@ TEST(Controller, trajectories_queue_with_switch_times_and_are_joined_exactly_the
   expect_smooth(b);
 }
 
+TEST(Controller, what_begins_nearly_as_the_arm_moves_is_joined_without_a_detour) {
+  for (const double off : {1e-13, 1e-9, 1e-6, 1e-4, 1e-3}) {
+    ControllerBench b;
+    b.start();
+    const TrajectoryCommand first = b.command(ControllerBench::arm(1.2, 0.5, -0.5), 1);
+    TrajectoryCommand second = planned_for_a_switch(b, first, 1.5, ControllerBench::arm(1.6, -0.4, 0.2), 2);
+    for (AxisTrajectory& axis : second.trajectory.axes) axis.start.position -= off;
+    ASSERT_EQ(b.send(first), "");
+    b.run(0.5);
+    ASSERT_EQ(b.send(second, 0.0, 1.5), "");
+    const double whole = b.core.active().rest.duration();
+    EXPECT_NEAR(whole, 1.5 + second.trajectory.duration(), 0.15) << off;
+    for (double t = 1.5; t < whole; t += 0.01)
+      ASSERT_LT((b.core.active().rest.at(t).position - second.trajectory.at(t - whole + second.trajectory.duration()).position).norm(),
+                0.02)
+          << off << " at " << t;
+  }
+}
+
 TEST(Controller, a_queued_switch_is_kept_through_slowing_holding_and_running_back) {
   ControllerBench b;
   b.start();

@@ -90,6 +90,31 @@ TEST(Switch, MeetsATrajectoryThatRunsAlready) {
   EXPECT_LT(sooner, looked / 50);
 }
 
+TEST(Switch, NothingLeadsOverWhereOnlyRoundingIsBetween) {
+  const std::uint64_t seed = 57;
+  Draw draw{std::mt19937_64(seed)};
+  SwitchSettings at_its_beginning;
+  at_its_beginning.last = 0;
+  for (int k = 0; k < 200; ++k) {
+    const KinematicLimits guard = draw.limits(1 + k % 7);
+    const int n = static_cast<int>(guard.velocity.size());
+    const Trajectory first = draw.path(guard);
+    const double leave = draw(0.1, 0.9) * first.duration();
+    const Trajectory next = cut(first, leave, first.duration());
+    MotionState3 now = first.at(leave);
+    for (VectorXd* part : {&now.position, &now.velocity, &now.acceleration}) *part += 1e-12 * draw.vector(n, -1, 1);
+    const Switched s = switch_to(now, next, guard, at_its_beginning);
+    ASSERT_TRUE(s.ok()) << s.reason << " seed " << seed << " case " << k;
+    ASSERT_EQ(s.connecting, 0) << "seed " << seed << " case " << k;
+    ASSERT_NEAR(s.trajectory.duration(), next.duration(), 1e-9);
+    TimeLaw law;
+    ASSERT_EQ(law.init(first, guard), "");
+    for (int i = 0; i < 20; ++i) law.advance(0.001);
+    ASSERT_EQ(law.switch_at(leave, SegmentTable(next), at_its_beginning), SwitchOutcome::ok);
+    ASSERT_NEAR(law.duration(), first.duration(), 1e-9) << "seed " << seed << " case " << k;
+  }
+}
+
 TEST(Switch, SaysWhyNot) {
   const KinematicLimits guard{VectorXd::Ones(2), VectorXd::Ones(2), VectorXd::Ones(2)};
   const Trajectory next = straight_motion(VectorXd::Zero(2), VectorXd::Ones(2), {guard.velocity / 1.1, guard.acceleration, guard.jerk});
