@@ -109,25 +109,30 @@ CollisionVerdict SearchSpace::permitted_on_line(double step) const {
 
 bool SearchSpace::motion_free(const Vector& from, const Vector& to) {
   if (!line_upright(from, to)) return false;
-  if (ends_.empty()) return motion_verdict(from, to, step_).free;
+  if (!widely_) return motion_verdict(from, to, step_).free;
   all_to_ = whole(to);
   if (world_.surely_free_at_steps(whole(from), all_to_, step_)) return !bound_ || permitted_on_line(step_).free;
   const auto near = [this](const Vector& end, const Vector& q) { return (end - q).cwiseAbs().maxCoeff() < reach_; };
-  return std::any_of(ends_.begin(), ends_.end(), [&](const Vector& end) { return near(end, from) || near(end, to); }) &&
+  return std::any_of(tight_ends_.begin(), tight_ends_.end(), [&](const Vector& end) { return near(end, from) || near(end, to); }) &&
          motion_verdict(from, to, step_).free;
 }
 
 bool SearchSpace::motion_clear(const Vector& from, const Vector& to) {
-  if (ends_.empty()) return motion_free(from, to);
+  if (!widely_) return motion_free(from, to);
   if (!line_upright(from, to)) return false;
   all_to_ = whole(to);
   return world_.surely_free_at_steps(whole(from), all_to_, step_) && (!bound_ || permitted_on_line(step_).free);
 }
 
 void SearchSpace::judge_widely(std::vector<Vector> ends, double reach) {
-  ends_ = std::move(ends);
-  ends_.push_back(start());
+  ends.push_back(start());
+  tight_ends_.clear();
+  for (const Vector& end : ends) {
+    all_to_ = whole(end);
+    if (!world_.surely_free_at_steps(all_to_, all_to_)) tight_ends_.push_back(end);
+  }
   reach_ = reach;
+  widely_ = true;
 }
 
 double SearchSpace::tilt(const Vector& q) const {

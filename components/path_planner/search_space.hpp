@@ -34,10 +34,11 @@ class SearchSpace : public Budget {
   bool motion_free(const Vector& from, const Vector& to);
   /// As motion_free, but where motions are judged widely nothing goes to the exact check.
   bool motion_clear(const Vector& from, const Vector& to);
-  /// From now on motions the wide check cannot clear are taken for blocked; those within `reach` [rad, max norm] of the start or of one of
-  /// `ends` go to the exact check. Cheaper by far, and blind to gaps narrower than the spheres around the links leave.
+  /// From now on motions the wide check cannot clear are taken for blocked; only where the start or one of `ends` is itself not clear,
+  /// those within `reach` [rad, max norm] of it go to the exact check. Cheaper by far, and blind to gaps narrower than the spheres around
+  /// the links leave.
   void judge_widely(std::vector<Vector> ends, double reach);
-  void judge_exactly() { ends_.clear(); }
+  void judge_exactly() { widely_ = false; }
   void set_step(double step) { step_ = step; }
   double step() const { return step_; }
 
@@ -85,7 +86,8 @@ class SearchSpace : public Budget {
   int tool_{-1};
   bool only_drives_{};        // no axis but those of the platform
   bool bound_{};              // by what outside layers forbid: not when it starts there, the arm must be able to leave
-  std::vector<Vector> ends_;  // empty: every motion is judged exactly
+  bool widely_{};             // else every motion is judged exactly
+  std::vector<Vector> tight_ends_;
   double reach_{};
 };
 
