@@ -655,7 +655,7 @@ bool CollisionWorld::surely_free_at_steps(const Vector& from, const Vector& to, 
     int count = 0;
     for (int i = block; i < states; i += blocks) at[static_cast<std::size_t>(count++)] = static_cast<double>(i) / last;
     w.checks += static_cast<std::uint64_t>(count);
-    if (w.wide->unclear_on_line(from, to, at.data(), count) != 0) return false;
+    if (w.wide->unclear_on_line(from, to, at.data(), count, true) != 0) return false;
   }
   return true;
 }

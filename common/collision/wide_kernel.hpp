@@ -86,8 +86,10 @@ struct WideKernels {
   const char* name;
   int width;  ///< states in a register
   /// q: positions, [row][kWideStates], radians between about -50 and 50. `half`: how far each joint row moves to either side of the state,
-  /// or nullptr. Returns the bits of those `lanes` in which some sphere is not clear.
-  std::uint32_t (*check)(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes) noexcept;
+  /// or nullptr. Returns the bits of those `lanes` in which some sphere is not clear; `any`: of the first ones found, nothing else is
+  /// looked at then.
+  std::uint32_t (*check)(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
+                         bool any) noexcept;
   /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count]; those surely beyond the nearest by
   /// `slack` may be lower bounds. Returns the least.
   float (*distances)(const WideCapsule* robot, int count, const WideCapsules& people, float slack, float* distance) noexcept;

@@ -14,7 +14,10 @@ constexpr float kRootAtRest[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 struct Pass {
   const WideTables& tables;
   WideMemory& memory;
-  bool swept{};
+  bool swept{}, any{};
+
+  /// Nothing more is to be learnt from the states left.
+  bool settled(const M& found, const M& left) const noexcept { return !any_of(left) || (any && any_of(found)); }
 
   float* pose(int body) const noexcept { return memory.pose + body * 12 * kWideStates; }
 
@@ -81,14 +84,14 @@ struct Pass {
       }
       found = found || hit;
       todo = todo && !hit;
-      if (!any_of(todo)) return found;
+      if (settled(found, todo)) return found;
     }
     if (leaf || left == 0) return found;
     for (int c = 0; c < node.children; ++c) {
       const M hit = below(node.first_child + c, kept, left, todo, depth + 1);
       found = found || hit;
       todo = todo && !hit;
-      if (!any_of(todo)) return found;
+      if (settled(found, todo)) return found;
     }
     return found;
   }
@@ -150,7 +153,7 @@ struct Pass {
       const M hit = below(tables.node_list[s.first_node + i], kept, left, todo, 1);
       found = found || hit;
       todo = todo && !hit;
-      if (!any_of(todo)) break;
+      if (settled(found, todo)) break;
     }
     return found;
   }
@@ -169,7 +172,7 @@ struct Pass {
       const M hit = first ? apart(split.first_child + c, b, margin, open) : apart(a, split.first_child + c, margin, open);
       found = found || hit;
       open = open && !hit;
-      if (!any_of(open)) break;
+      if (settled(found, open)) break;
     }
     return found;
   }
@@ -180,7 +183,7 @@ struct Pass {
     if (swept) spread(half);
     for (int i = 0; i < tables.search_count; ++i) {
       todo = todo && !search(tables.searches[i], todo);
-      if (!any_of(todo)) return asked;
+      if (settled(asked && !todo, todo)) return asked && !todo;
     }
     for (int i = 0; i < tables.pair_count; ++i) {
       const WidePair& pair = tables.pairs[i];
@@ -197,15 +200,16 @@ struct Pass {
         open = open && !apart(nodes.a, nodes.b, margin, open);
       }
       todo = todo && !(near && !open);
-      if (!any_of(todo)) return asked;
+      if (settled(asked && !todo, todo)) return asked && !todo;
     }
     return asked && !todo;
   }
 };
 
-std::uint32_t check(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes) noexcept {
+std::uint32_t check(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
+                    bool any) noexcept {
   std::uint32_t out = 0;
-  const Pass pass{tables, memory, half != nullptr};
+  const Pass pass{tables, memory, half != nullptr, any};
   for (int g = 0; g < kWideStates; g += kWidth) {
     const std::uint32_t here = lanes >> g;
     if (here == 0) break;
@@ -213,6 +217,7 @@ std::uint32_t check(const WideTables& tables, WideMemory& memory, const float* q
     if (!any_of(todo)) continue;
     ++memory.now;
     out |= bits(pass.run(q + g, half == nullptr ? nullptr : half + g, todo)) << g;
+    if (any && out != 0) break;
   }
   return out;
 }

@@ -334,14 +334,14 @@ void WideWorld::allocate() {
   memory_ = {pose_.get(), margin_.get(), position_.get(), stamp_.data(), 0, lists_.data(), longest};
 }
 
-std::uint32_t WideWorld::run(int count, bool swept) {
+std::uint32_t WideWorld::run(int count, bool swept, bool any) {
   if (memory_.now > 0xfffffff0u) {
     std::fill(stamp_.begin(), stamp_.end(), 0);
     memory_.now = 0;
   }
   ++blocks_;
   const std::uint32_t lanes = count >= kStates ? 0xffffu : (1u << count) - 1u;
-  return kernels_->check(tables_, memory_, q_.get(), swept ? half_.get() : nullptr, lanes);
+  return kernels_->check(tables_, memory_, q_.get(), swept ? half_.get() : nullptr, lanes, any);
 }
 
 std::uint32_t WideWorld::unclear(const Vector* states, int count) {
@@ -354,14 +354,14 @@ std::uint32_t WideWorld::unclear(const Vector* states, int count) {
   return run(count, false);
 }
 
-std::uint32_t WideWorld::unclear_on_line(const Vector& from, const Vector& to, const double* at, int count) {
+std::uint32_t WideWorld::unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any) {
   for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row) {
     const double start = from[chain_.dof_of_row[row]], along = to[chain_.dof_of_row[row]] - start;
     if (!(std::abs(start) + std::abs(along) < kMostTurn)) return (1u << count) - 1u;
     float* q = q_.get() + row * kStates;
     for (int i = 0; i < count; ++i) q[i] = static_cast<float>(start + at[i] * along);
   }
-  return run(count, false);
+  return run(count, false, any);
 }
 
 const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const Vector& from, const Vector& to, double finest,

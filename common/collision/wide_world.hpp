@@ -48,8 +48,8 @@ class WideWorld {
 
   /// Bits of those of the first `count` (<= kStates) states that are unclear. All axes; those not moving are not looked at.
   std::uint32_t unclear(const Vector* states, int count);
-  /// The same for states from + at (to - from).
-  std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count);
+  /// The same for states from + at (to - from). `any`: one unclear state is enough to know, the bits of others may be missing.
+  std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any = false);
   /// Stretches [first, second] of the line, in parts of it, that could not be shown clear; all states between them are, without steps.
   /// Looks at stretches down to `finest` parts of the line; gives up after `most_blocks` blocks of kStates stretches.
   const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int most_blocks);
@@ -84,7 +84,7 @@ class WideWorld {
   bool add_solid(const Shape& shape, const Pose& T_root_shape);
   void put_in_rows(detail::WideSearch& search);
   void allocate();
-  std::uint32_t run(int count, bool swept);
+  std::uint32_t run(int count, bool swept, bool any = false);
 
   const RobotModel& robot_;
   const detail::WideKernels* kernels_;

@@ -426,5 +426,33 @@ TEST_F(Lanes, every_width_clears_the_same_states_but_for_rounding) {
   EXPECT_LT(unclear, 780);
 }
 
+TEST_F(Lanes, a_line_is_clear_for_who_asks_for_any_unclear_state_exactly_when_all_its_states_are) {
+  std::mt19937 random(kSeed + 6);
+  const std::vector<int>& axes = robot_.require_group("arm").axes;
+  std::vector<std::pair<int, int>> pairs;
+  for (int a = 0; a < static_cast<int>(bodies_.size()); ++a)
+    for (int b = a + 6; b < static_cast<int>(bodies_.size()); ++b) pairs.emplace_back(a, b);
+  wide_.set_robot(bodies_, pairs, axes, robot_.rest_posture());
+  wide_.set_solids({{Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}}, Pose::Identity());
+  std::array<double, WideWorld::kStates> at{};
+  for (std::size_t i = 0; i < at.size(); ++i) at[i] = static_cast<double>(i) / (at.size() - 1.0);
+  int clear = 0, partly = 0;
+  for (int line = 0; line < 400; ++line) {
+    const Vector from = random_state(robot_, axes, robot_.rest_posture(), random),
+                 to = from + 0.2 * (random_state(robot_, axes, robot_.rest_posture(), random) - from);
+    for (const detail::WideKernels* kernel : kernels()) {
+      wide_.set_kernels(*kernel);
+      const std::uint32_t all = wide_.unclear_on_line(from, to, at.data(), WideWorld::kStates),
+                          any = wide_.unclear_on_line(from, to, at.data(), WideWorld::kStates, true);
+      EXPECT_EQ(any != 0, all != 0) << kernel->name << ", line " << line;
+      EXPECT_EQ(any & ~all, 0u) << kernel->name << ", line " << line;
+      clear += all == 0;
+      partly += all != 0 && all != 0xffffu;
+    }
+  }
+  EXPECT_GT(clear, 20);
+  EXPECT_GT(partly, 20);
+}
+
 }  // namespace
 }  // namespace handsel
