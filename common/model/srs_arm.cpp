@@ -190,24 +190,55 @@ Axes SrsArm::polished(const Pose& T_root_tip, const Axes& q) const {
   return error_of(T_root_tip, chain_->forward(better, nullptr)).norm() < error.norm() ? better : q;
 }
 
-std::vector<Axes> SrsArm::branches(const Pose& T_root_tip, double elbow_angle) const {
+template <class Take>
+void SrsArm::each_branch(const Pose& T_root_tip, double elbow_angle, const Take& take) const {
   Problem problem;
   const std::optional<double> bent = set_target(T_root_tip, problem);
-  if (!bent) return {};
-  std::vector<Axes> out;
+  if (!bent) return;
   for (const double side : {1.0, -1.0}) {
     problem.elbow = side * *bent;
     bend(problem);
     const double circle = elbow_angle - angle_of(problem.R_start * to_elbow_, problem.to_target);
     const Eigen::Matrix3d R = Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
+    const Ways wrists = ways(problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, 0.0);
     for (const auto& shoulder : ways(R, 0, 0.0))
-      for (const auto& wrist : ways(problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, 0.0)) {
+      for (const auto& wrist : wrists) {
         Axes q(7);
         q << shoulder[0], shoulder[1], shoulder[2], problem.elbow, wrist[0], wrist[1], wrist[2];
-        out.push_back(polished(T_root_tip, q));
+        take(q);
       }
   }
+}
+
+std::vector<Axes> SrsArm::branches(const Pose& T_root_tip, double elbow_angle) const {
+  std::vector<Axes> out;
+  each_branch(T_root_tip, elbow_angle, [&](const Axes& q) { out.push_back(polished(T_root_tip, q)); });
   return out;
+}
+
+std::optional<Axes> SrsArm::turned_inside(const Axes& q, const Axes& near) const {
+  Axes out(q.size());
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    out[i] = near[i] + std::remainder(q[i] - near[i], 2 * M_PI);
+    if (out[i] < chain_->lower()[i]) out[i] += 2 * M_PI;
+    if (out[i] > chain_->upper()[i]) out[i] -= 2 * M_PI;
+    if (!(out[i] >= chain_->lower()[i] && out[i] <= chain_->upper()[i])) return std::nullopt;
+  }
+  return out;
+}
+
+std::optional<Axes> SrsArm::nearest(const Pose& T_root_tip, double elbow_angle, const Axes& near) const {
+  double least = std::numeric_limits<double>::infinity();
+  std::optional<Axes> best;
+  each_branch(T_root_tip, elbow_angle, [&](const Axes& q) {
+    const std::optional<Axes> inside = turned_inside(q, near);
+    if (!inside) return;
+    const double apart = (*inside - near).lpNorm<Eigen::Infinity>();
+    if (apart >= least) return;
+    least = apart;
+    best = inside;
+  });
+  return best ? turned_inside(polished(T_root_tip, *best), near) : std::nullopt;
 }
 
 double SrsArm::outside(const Axes& q) const { return std::max({0.0, (chain_->lower() - q).maxCoeff(), (q - chain_->upper()).maxCoeff()}); }

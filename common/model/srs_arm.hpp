@@ -28,6 +28,10 @@ class SrsArm {
   /// looked at, angles are in (-2 pi, 2 pi]. Empty when the wrist is out of reach. Where three axes of shoulder or wrist are in line their
   /// two ways are one, given twice.
   std::vector<Axes> branches(const Pose& T_root_tip, double elbow_angle) const;
+  /// Of those inside the limits the one nearest `near` in its farthest joint; nullopt when there is none.
+  std::optional<Axes> nearest(const Pose& T_root_tip, double elbow_angle, const Axes& near) const;
+  /// Joints moved by whole turns next to `near` and inside the limits [rad]; nullopt when they cannot be.
+  std::optional<Axes> turned_inside(const Axes& q, const Axes& near) const;
   /// Where the elbow is on its circle [rad], in (-pi, pi]; 0 for a straight arm.
   double elbow_angle(const Axes& q) const;
 
@@ -40,6 +44,8 @@ class SrsArm {
   using Ways = std::array<std::array<double, 3>, 2>;
 
   explicit SrsArm(const Chain& chain) : chain_(&chain) {}
+  template <class Take>
+  void each_branch(const Pose& T_root_tip, double elbow_angle, const Take& take) const;
   double axis_cost(const Problem& problem, int axis, double& angle) const;
   std::optional<double> set_target(const Pose& T_root_tip, Problem& problem) const;
   void bend(Problem& problem) const;

@@ -263,6 +263,7 @@ Executable approximate_within(const std::vector<double>& times, const std::vecto
     const SlowedDown slowed = slow_down_from(times, samples, limits, bound);
     out.slowest = *std::min_element(slowed.alpha.begin(), slowed.alpha.end());
     out.approximation = approximate(slowed.times, slowed.samples, tolerance);
+    out.times = slowed.times;
     if (!out.approximation.ok()) return out;
     out.stretch = 1;
     for (const AxisTrajectory& axis : out.approximation.trajectory.axes) {
@@ -287,6 +288,7 @@ Executable approximate_within(const std::vector<double>& times, const std::vecto
     if (!(out.stretch > 1)) return out;
   }
   out.approximation.trajectory = stretched(out.approximation.trajectory, out.stretch);
+  for (double& t : out.times) t = times[0] + (t - times[0]) * out.stretch;
   return out;
 }
 

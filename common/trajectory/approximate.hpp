@@ -53,6 +53,7 @@ struct Executable {
   Approximation approximation;  ///< its trajectory keeps the limits, exactly
   double slowest{1};            ///< least alpha
   double stretch{1};            ///< by which the whole was then lengthened because pieces exceed what samples did not
+  std::vector<double> times;    ///< when it meets each sample [s]
 };
 
 /// Both: slowed down where needed, approximated, and inside the limits at every instant.

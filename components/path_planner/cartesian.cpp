@@ -67,7 +67,7 @@ class Space : public Budget {
     charge(1);
     std::vector<Vector> out;
     for (const ik::Axes& q : arm_.branches(T, elbow))
-      if (auto inside = brought_inside(q, 0.5 * (chain_.lower() + chain_.upper())))
+      if (const auto inside = arm_.turned_inside(q, 0.5 * (chain_.lower() + chain_.upper())))
         out.push_back(RobotModel::with(all, arm_group_, *inside));
     return out;
   }
@@ -109,17 +109,6 @@ class Space : public Budget {
   }
 
  private:
-  std::optional<Vector> brought_inside(const ik::Axes& q, const Vector& near) const {
-    Vector out(7);
-    for (int i = 0; i < 7; ++i) {
-      out[i] = near[i] + wrapped(q[i] - near[i]);
-      if (out[i] < chain_.lower()[i]) out[i] += 2 * M_PI;
-      if (out[i] > chain_.upper()[i]) out[i] -= 2 * M_PI;
-      if (out[i] < chain_.lower()[i] || out[i] > chain_.upper()[i]) return std::nullopt;
-    }
-    return out;
-  }
-
   bool advance(const CartesianNode& a, const CartesianNode& b, const Local& way, double from, double to, CartesianNode& at,
                std::vector<Vector>* samples, int halved) {
     CartesianNode next;
@@ -128,22 +117,14 @@ class Space : public Budget {
     next.elbow = wrapped(a.elbow + to * way.elbow);
     const Vector now = RobotModel::part(at.q, arm_group_);
     charge(1);
-    double least = kInfinite;
-    Vector best;
-    for (const ik::Axes& q : arm_.branches(next.T_root_tool, next.elbow)) {
-      const auto inside = brought_inside(q, now);
-      if (!inside) continue;
-      const double apart = (*inside - now).lpNorm<Eigen::Infinity>();
-      if (apart >= least) continue;
-      least = apart;
-      best = *inside;
-    }
-    if (least > settings_.largest_step) {
-      if (halved == kHalvings || least == kInfinite) return false;
+    const std::optional<ik::Axes> best = arm_.nearest(next.T_root_tool, next.elbow, now);
+    if (!best) return false;
+    if ((*best - now).lpNorm<Eigen::Infinity>() > settings_.largest_step) {
+      if (halved == kHalvings) return false;
       const double middle = 0.5 * (from + to);
       return advance(a, b, way, from, middle, at, samples, halved + 1) && advance(a, b, way, middle, to, at, samples, halved + 1);
     }
-    next.q = RobotModel::with(at.q, arm_group_, best);
+    next.q = RobotModel::with(at.q, arm_group_, *best);
     for (int axis : problem_.also) next.q[axis] = a.q[axis] + to * (b.q[axis] - a.q[axis]);
     if (!world_.check_motion(at.q, next.q, kMotionStep).free) return false;
     at = next;

@@ -1,0 +1,98 @@
+// From nodes in the Cartesian space of a redundant arm to soft motion of its joints (chapter section 4.6). Active axes: position and
+// rotation vector of the tool, the angle of the elbow, hand and head; they get the smoothed trajectory TR. Passive: the joints of the arm,
+// by inverse kinematics at the period of the controller, approximated by TR_app and slowed down where they exceed their limits. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/collision/collision_world.hpp"
+#include "common/model/robot_model.hpp"
+#include "common/trajectory/approximate.hpp"
+#include "common/trajectory/smooth.hpp"
+
+namespace handsel::trajectory_planner {
+
+struct CartesianWaypoint {
+  Pose T_root_tool{Pose::Identity()};
+  std::optional<double> elbow{};  ///< angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad];
+                                  ///< left out: chosen so that the joints keep off their limits
+  Vector also{};                  ///< positions of the further active axes [rad]
+};
+
+/// What is held stays upright on the whole way.
+struct HeldLevel {
+  Vector3 axis_tool{Vector3::UnitZ()};  ///< of the tool, along up_root when upright
+  Vector3 up_root{Vector3::UnitZ()};
+  double most{0.1};  ///< [rad]
+};
+
+struct CartesianRequest {
+  Vector start;                          ///< all axes of the robot [rad]; the first node is where it is
+  std::vector<int> also;                 ///< robot axes that are active besides the arm: hand, head
+  std::vector<CartesianWaypoint> nodes;  ///< after the start
+  std::optional<HeldLevel> level{};
+};
+
+struct RateBounds {
+  double velocity{}, acceleration{}, jerk{};
+};
+
+struct CartesianSettings {
+  RateBounds translation{0.25, 0.6, 2.0};  ///< of each coordinate of the tool's position [m/s, m/s^2, m/s^3]
+  RateBounds rotation{0.6, 1.5, 5.0};      ///< of each coordinate of its rotation vector; no turn is faster than their norm [rad/s, ...]
+  RateBounds elbow{0.6, 1.5, 5.0};         ///< [rad/s, ...]
+  double allowed_excess{0.1};              ///< of three segments at corners
+  double period{0.002};                    ///< the joints are computed this often [s]
+  double largest_step{0.1};                ///< a joint that moves farther in a period has changed branch: refused [rad]
+  double collision_step{0.01};             ///< postures are judged this often [rad, max norm]
+  int elbows{24};                          ///< angles tried at a node that leaves its elbow open
+  ApproximationTolerance tolerance{2e-4, 1e-2};
+};
+
+/// TR: the smoothed trajectory of the active axes and how to read poses from it. The rotation vector is counted on from leg to leg: on a
+/// leg it is the displacement from node to node, one axis and an angle; around a corner it is taken at the corner's node (ours).
+class CartesianTrajectory {
+ public:
+  struct Node {
+    Pose T_root_tool{Pose::Identity()};
+    Vector active;  ///< position [m], rotation vector, elbow, further axes [rad]
+  };
+
+  double duration() const { return active_.duration(); }
+  const Trajectory& active() const { return active_; }
+  const std::vector<Node>& nodes() const { return nodes_; }
+  Pose pose(double t) const;
+  double elbow(double t) const { return active_.at(t).position[6]; }
+  /// From active values near a node.
+  Pose pose_at(const Vector& active, std::size_t node) const;
+  /// The node whose corner or half legs are run at t.
+  std::size_t node_at(double t) const;
+
+ private:
+  friend class CartesianPlanning;
+  std::vector<Node> nodes_;
+  Trajectory active_;
+  std::vector<double> middles_;  // when the middle of each leg is passed [s]
+};
+
+struct CartesianMotion {
+  bool solved{};
+  std::string reason;     ///< why not, one sentence
+  std::size_t reached{};  ///< nodes of the request on the way that follows; all of them when solved. Never a node that collides
+  CartesianTrajectory path;
+  double duration_ptp{};              ///< with a stop at each node [s]
+  std::vector<CornerReport> corners;  ///< node 0 is the start
+  std::vector<int> axes;              ///< robot axes of what follows: those of the arm, then the further ones
+  std::vector<Vector> samples;        ///< positions at each period of `path`
+  Executable executable;              ///< TR_app, inside the comfort limits of the robot
+};
+
+/// Nodes equal to the one before are left out. Where the way to a node does not exist (out of reach, a turn by pi, a joint limit or another
+/// branch between, a collision, what is held leans over), the motion ends at the node before it, and the reason says what is wrong. The arm
+/// must be one of shoulder, elbow and wrist (ik::SrsArm).
+CartesianMotion plan_cartesian(const RobotModel& robot, const Group& arm, CollisionWorld& world, const CartesianRequest& request,
+                               const CartesianSettings& settings = {});
+
+}  // namespace handsel::trajectory_planner
