@@ -70,10 +70,22 @@ class Fit {
     split(first, middle, ends);
     split(middle, last, ends);
   }
+  /// Seen at a few samples first: most pieces that do not fit are far off.
   bool good(std::size_t first, std::size_t last) const {
     if (last - first < 2) return true;
-    const auto [x, v] = errors(first, last);
-    return x <= tolerance_.position && v <= tolerance_.velocity;
+    return fits(first, last, std::max<std::size_t>(1, (last - first) / 8)) && fits(first, last, 1);
+  }
+  bool fits(std::size_t first, std::size_t last, std::size_t stride) const {
+    for (Eigen::Index i = 0; i < samples_[0].position.size(); ++i) {
+      const AxisState begin = state(first, i);
+      const auto fitted = three_segment(begin, state(last, i), times_[last] - times_[first]);
+      for (std::size_t k = first + stride; k < last; k += stride) {
+        const AxisState s = at(begin, fitted, times_[k] - times_[first]), wanted = state(k, i);
+        if (!(std::abs(s.position - wanted.position) <= tolerance_.position)) return false;
+        if (!(std::abs(s.velocity - wanted.velocity) <= tolerance_.velocity)) return false;
+      }
+    }
+    return true;
   }
   std::pair<double, double> errors(std::size_t first, std::size_t last) const {
     double x = 0, v = 0;
@@ -215,18 +227,19 @@ SlowedDown slow_down_from(const std::vector<double>& times, const std::vector<Mo
   const std::size_t n = samples.size();
   const double reach = std::min(0.2, (times.back() - times.front()) / 4);
   for (int round = 0; round < 200; ++round) {
-    out.alpha = mean_around(times, least_around(times, bound, reach), reach);
+    const bool slowed = std::any_of(bound.begin(), bound.end(), [](double b) { return b < 1; });
+    out.alpha = slowed ? mean_around(times, least_around(times, bound, reach), reach) : std::vector<double>(n, 1.0);
     run_through(times, samples, out);
     bool kept = true;
     for (std::size_t k = 0; k < n; ++k) {
-      double share = 0;
+      double share = 1;
       for (Eigen::Index i = 0; i < samples[k].position.size(); ++i) {
         share = std::max(share, std::abs(out.samples[k].velocity[i]) / limits.velocity[i]);
-        share = std::max(share, std::sqrt(std::abs(out.samples[k].acceleration[i]) / limits.acceleration[i]));
-        if (k + 1 < n) {
-          const double jerk = (out.samples[k + 1].acceleration[i] - out.samples[k].acceleration[i]) / (out.times[k + 1] - out.times[k]);
-          share = std::max(share, std::cbrt(std::abs(jerk) / limits.jerk[i]));
-        }
+        const double a = std::abs(out.samples[k].acceleration[i]) / limits.acceleration[i];
+        if (a > 1) share = std::max(share, std::sqrt(a));
+        if (k + 1 == n) continue;
+        const double jerk = (out.samples[k + 1].acceleration[i] - out.samples[k].acceleration[i]) / (out.times[k + 1] - out.times[k]);
+        if (std::abs(jerk) > limits.jerk[i]) share = std::max(share, std::cbrt(std::abs(jerk) / limits.jerk[i]));
       }
       if (share <= 1) continue;
       kept = false;
@@ -241,10 +254,18 @@ SlowedDown slow_down_from(const std::vector<double>& times, const std::vector<Mo
 }
 }  // namespace
 
+namespace {
+
+std::string why_not_slowed(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits) {
+  const std::string bad = why_bad(times, samples);
+  return bad.empty() ? why_bad_limits(limits, static_cast<int>(samples[0].position.size())) : bad;
+}
+
+}  // namespace
+
 SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionState3>& samples, const KinematicLimits& limits) {
   SlowedDown out;
-  out.reason = why_bad(times, samples);
-  if (out.ok()) out.reason = why_bad_limits(limits, static_cast<int>(samples[0].position.size()));
+  out.reason = why_not_slowed(times, samples, limits);
   if (!out.ok()) return out;
   std::vector<double> bound(samples.size(), 1.0);
   return slow_down_from(times, samples, limits, bound);
@@ -253,11 +274,8 @@ SlowedDown slow_down(const std::vector<double>& times, const std::vector<MotionS
 Executable approximate_within(const std::vector<double>& times, const std::vector<MotionState3>& samples,
                               const ApproximationTolerance& tolerance, const KinematicLimits& limits) {
   Executable out;
-  const SlowedDown first = slow_down(times, samples, limits);
-  if (!first.ok()) {
-    out.approximation.reason = first.reason;
-    return out;
-  }
+  out.approximation.reason = why_not_slowed(times, samples, limits);
+  if (!out.approximation.ok()) return out;
   std::vector<double> bound(samples.size(), 1.0);
   for (int round = 0; round < 12; ++round) {
     const SlowedDown slowed = slow_down_from(times, samples, limits, bound);
