@@ -25,8 +25,10 @@ struct RobotBody {
   int link{};
   CollisionShapePtr shape;
   Pose T_link_shape;
-  bool moves{};  ///< some axis moves it
-  bool hand{};   ///< rigid with the tool link, or beyond it
+  bool moves{};             ///< some axis moves it
+  bool hand{};              ///< rigid with the tool link, or beyond it
+  CollisionShapePtr wider;  ///< for what the moving axes move; null: as it is
+  Pose T_link_wider{Pose::Identity()};
 };
 
 /// Two robot bodies that can touch, with the axes that change their relative pose.
@@ -64,6 +66,28 @@ Pose along(const Vector3& a, const Vector3& b) {
   const Vector3 d = b - a;
   const Vector3 axis = d.norm() > 1e-12 ? d : Vector3(Vector3::UnitZ());
   return make_pose(0.5 * (a + b), Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis));
+}
+
+/// Larger by `margin` on every side; of a mesh the box around it, T becomes its pose.
+CollisionShapePtr widened(const CollisionShapePtr& shape, double margin, Pose& T) {
+  const auto grown = [&](const auto& solid) -> Shape {
+    using S = std::decay_t<decltype(solid)>;
+    if constexpr (std::is_same_v<S, Box>) {
+      return Box{solid.size + Vector3::Constant(2 * margin)};
+    } else if constexpr (std::is_same_v<S, Cylinder>) {
+      return Cylinder{solid.radius + margin, solid.length + 2 * margin};
+    } else if constexpr (std::is_same_v<S, Sphere>) {
+      return Sphere{solid.radius + margin};
+    } else if constexpr (std::is_same_v<S, Capsule>) {
+      return Capsule{solid.radius + margin, solid.length};
+    } else {
+      Eigen::AlignedBox3d box;
+      for (const Vector3& vertex : solid->vertices) box.extend(vertex);
+      T = T * Eigen::Translation3d(box.center());
+      return Box{box.sizes() + Vector3::Constant(2 * margin)};
+    }
+  };
+  return CollisionShape::make(std::visit(grown, shape->shape()));
 }
 
 /// A capsule around points, along their longest extent.
@@ -107,6 +131,7 @@ struct CollisionWorld::Impl {
   std::vector<std::set<int>> joints_above;
   std::map<std::string, CollisionShapePtr> meshes;
   std::uint64_t checks{}, exact_checks{};
+  double turning_margin{};
 
   std::unique_ptr<WideWorld> wide;  // null: exact only
   std::vector<int> moving;
@@ -141,8 +166,13 @@ struct CollisionWorld::Impl {
     }
     for (std::size_t i = 0; i < links.size(); ++i)
       for (const PlacedShape& placed : links[i].collision)
-        bodies.push_back({static_cast<int>(i), CollisionShape::make(placed.shape), placed.T_parent_shape, !joints_above[i].empty(),
-                          static_cast<bool>(hand_link[i])});
+        bodies.push_back({static_cast<int>(i),
+                          CollisionShape::make(placed.shape),
+                          placed.T_parent_shape,
+                          !joints_above[i].empty(),
+                          static_cast<bool>(hand_link[i]),
+                          nullptr,
+                          {}});
     link_bodies = bodies.size();
     for (std::size_t i = 0; i < link_bodies; ++i)
       for (std::size_t j = i + 1; j < link_bodies; ++j)
@@ -171,11 +201,7 @@ struct CollisionWorld::Impl {
   /// Instead of a mesh with a margin the box around it; T becomes its pose.
   CollisionShapePtr object_shape(const SceneObject& object, double margin, Pose& T) {
     CollisionShapePtr shape = object_shape(object, margin);
-    if (!shape || !shape->is_mesh() || margin <= kSurePlace) return shape;
-    Eigen::AlignedBox3d box;
-    for (const Vector3& vertex : std::get<MeshPtr>(shape->shape())->vertices) box.extend(vertex);
-    T = T * Eigen::Translation3d(box.center());
-    return CollisionShape::make(Box{box.sizes() + Vector3::Constant(2 * margin)});
+    return shape && shape->is_mesh() && margin > kSurePlace ? widened(shape, margin, T) : shape;
   }
 
   std::vector<Vector3> corners(const SceneObject& object) const {
@@ -245,7 +271,7 @@ struct CollisionWorld::Impl {
         capsule.a = attachment.T_tool_object * capsule.a;
         capsule.b = attachment.T_tool_object * capsule.b;
         capsules.push_back(capsule);
-        bodies.push_back({robot.tool_link(), shape, attachment.T_tool_object, true, true});
+        bodies.push_back({robot.tool_link(), shape, attachment.T_tool_object, true, true, nullptr, {}});
         for (std::size_t i = 0; i < link_bodies; ++i)
           if (!bodies[i].hand) add_pair(i, link_bodies, held_pairs);
       }
@@ -263,12 +289,37 @@ struct CollisionWorld::Impl {
     return body < link_bodies ? "link " + robot.links()[bodies[body].link].name : "object " + attachment.object;
   }
 
+  bool touch_pair(const SelfPair& pair) const {
+    const RobotBody &a = bodies[pair.a], &b = bodies[pair.b];
+    if ((!a.wider && !b.wider) || !changes(pair)) return touch(*a.shape, T_world_body[pair.a], *b.shape, T_world_body[pair.b]);
+    const auto pose = [this](const RobotBody& body) { return T_world_base * (T_root_link[body.link] * body.T_link_wider); };
+    return touch(a.wider ? *a.wider : *a.shape, a.wider ? pose(a) : T_world_body[pair.a], b.wider ? *b.wider : *b.shape,
+                 b.wider ? pose(b) : T_world_body[pair.b]);
+  }
+
+  bool moved(int link) const {
+    return std::any_of(joints_above[link].begin(), joints_above[link].end(),
+                       [this](int joint) { return moves_axis[robot.joints()[joint].dof] != 0; });
+  }
+
+  void rebuild_wider() {
+    for (std::size_t i = 0; i < link_bodies; ++i) {
+      RobotBody& body = bodies[i];
+      body.wider = nullptr;
+      if (!(turning_margin > 0) || moving.empty() || !body.moves || moved(body.link)) continue;
+      body.T_link_wider = body.T_link_shape;
+      body.wider = widened(body.shape, turning_margin, body.T_link_wider);
+    }
+    self_free.resize(0);
+    folded_at.resize(0);
+  }
+
   bool self_touch(const std::vector<SelfPair>& pairs, CollisionVerdict* verdict) const {
     const bool holding = !attachment.object.empty();
     for (const SelfPair& pair : pairs) {
       if (holding && bodies[pair.a].hand && bodies[pair.b].hand) continue;  // fingers may lean on each other around what they hold
       if (std::none_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return changed[axis]; })) continue;
-      if (!touch(*bodies[pair.a].shape, T_world_body[pair.a], *bodies[pair.b].shape, T_world_body[pair.b])) continue;
+      if (!touch_pair(pair)) continue;
       if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b), ""};
       return true;
     }
@@ -338,10 +389,7 @@ struct CollisionWorld::Impl {
     if (same && !solids_stale) return !rest_touches;
     place(q);
     rest_touches = false;
-    std::vector<bool> moved(robot.links().size(), false);
-    for (std::size_t link = 0; link < moved.size(); ++link)
-      for (int joint : joints_above[link]) moved[link] = moved[link] || moves_axis[robot.joints()[joint].dof];
-    if (!same) fold(q, moved);
+    if (!same) fold(q);
     std::vector<WideWorld::Solid> solids;
     for (const auto* things : {&scene, &obstacles})
       for (const SceneBody& thing : *things) {
@@ -354,13 +402,13 @@ struct CollisionWorld::Impl {
         add_solid(*person.shape, person.T_world_shape, kWideArm | kWideHand | kWideHeld, solids);
     wide->set_solids(solids, T_world_base);
     for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
-      rest_touches = bodies[i].moves && !moved[bodies[i].link] &&
+      rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
                      (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) || person_touch(i, nullptr));
     const bool holding = !attachment.object.empty();
     for (const auto* pairs : {&link_pairs, &held_pairs})
       for (const SelfPair& pair : *pairs) {
         if (rest_touches || (holding && bodies[pair.a].hand && bodies[pair.b].hand) || changes(pair)) continue;
-        rest_touches = touch(*bodies[pair.a].shape, T_world_body[pair.a], *bodies[pair.b].shape, T_world_body[pair.b]);
+        rest_touches = touch_pair(pair);
       }
     solids_stale = false;
     return !rest_touches;
@@ -381,13 +429,16 @@ struct CollisionWorld::Impl {
     return std::any_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return moves_axis[axis] != 0; });
   }
 
-  void fold(const Vector& q, const std::vector<bool>& moved) {
+  void fold(const Vector& q) {
     std::vector<WideWorld::Body> wide_bodies;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
-      const bool covered = moved[bodies[i].link] || bodies[i].shape->is_mesh();
-      wide_bodies.push_back({bodies[i].link, covered ? bodies[i].shape->cover() : nullptr, bodies[i].shape->shape(), bodies[i].T_link_shape,
+      const RobotBody& body = bodies[i];
+      const CollisionShape& shape = body.wider ? *body.wider : *body.shape;
+      const bool covered = moved(body.link) || shape.is_mesh();
+      wide_bodies.push_back({body.link, covered ? shape.cover() : nullptr, shape.shape(),
+                             body.wider ? body.T_link_wider : body.T_link_shape,
                              static_cast<std::uint8_t>(i >= link_bodies ? kWideHeld
-                                                       : bodies[i].hand ? kWideHand
+                                                       : body.hand      ? kWideHand
                                                                         : kWideArm)});
     }
     std::vector<std::pair<int, int>> wide_pairs;
@@ -471,6 +522,13 @@ void CollisionWorld::set_moving_axes(const std::vector<int>& axes) {
   for (int axis : axes) w.moves_axis[axis] = 1;
   w.folded_at.resize(0);
   w.wide = axes.empty() ? nullptr : std::make_unique<WideWorld>(w.robot);
+  w.rebuild_wider();
+}
+
+void CollisionWorld::set_turning_margin(double margin) {
+  if (margin == impl_->turning_margin) return;
+  impl_->turning_margin = margin;
+  impl_->rebuild_wider();
 }
 
 void CollisionWorld::set_scene(const Scene& scene) {

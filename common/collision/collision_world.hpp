@@ -59,6 +59,11 @@ class CollisionWorld {
   /// one does, the robot is folded anew. Empty: exact only, as at the beginning. The first check makes the spheres of the links.
   void set_moving_axes(const std::vector<int>& axes);
 
+  /// Links turned by other axes than the moving ones (the head, while the arm moves) are larger by this on every side for what the moving
+  /// axes move: they may turn on their own meanwhile [m]. Of meshes it is the box around them that is larger. Without moving axes nothing
+  /// is.
+  void set_turning_margin(double margin);
+
   CollisionVerdict check(const Vector& q);  ///< all axes
   bool is_free(const Vector& q);            ///< the same without the names
   /// Contact with people only, as set_people and the allowed contacts make them obstacles; cheap when they are far.

@@ -8,7 +8,7 @@ namespace handsel::collision_checker {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kOtherAxes = 0.05;    // [rad] the other axes may move this much before the scene is judged anew
+constexpr double kOtherAxes = 0.01;    // [rad] the other axes may move this much before the scene is judged anew
 constexpr double kRestMotion = 1e-3;   // [rad] at rest, smaller motions change nothing
 constexpr double kFarClearance = 5.0;  // [m] clearances of a query beyond this are not looked for
 

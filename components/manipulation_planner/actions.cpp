@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/model/human_body.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
 namespace handsel::manipulation_planner {
@@ -163,6 +164,32 @@ Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id) {
   co_return Outcome::failure("the arm cannot lift " + object_id + " straight up by " + std::to_string(settings_.lift_height()) + " m");
 }
 
+Routine<ManipulationPlanner::ExchangeChoice> ManipulationPlanner::choose_exchange(const std::string& receiver, const Pose* T_world_object) {
+  auto choice = std::make_shared<ExchangeChoice>();
+  const Person* whom = person(receiver);
+  if (whom == nullptr) {
+    choice->outcome = Outcome::failure("person " + receiver + " is out of sight");
+    co_return *choice;
+  }
+  const Pose T_kept = T_world_object != nullptr ? *T_world_object : Pose::Identity();
+  const bool asks = T_world_object != nullptr;
+  const std::function<void()> job = [this, choice, asks, T_kept, scene = scene_, layers = layers_.at(waiting_.now()), who = *whom,
+                                     q = set_point_, T = attachment_.T_tool_object, T_now = T_world_tool() * attachment_.T_tool_object,
+                                     barred = grasp_ ? barred_ways(*grasp_) : std::vector<Vector3>{}] {
+    choice->search = find_exchange(*robot_, scene, who, layers, q, T_now, T, settings_, barred);
+    if (asks) choice->kept = exchange_cost(scene, who, layers, T_kept, T_now, T, settings_, barred);
+  };
+  choice->outcome = co_await work(job);
+  co_return *choice;
+}
+
+void ManipulationPlanner::lead_to(const ExchangeSearch& search, const Person& receiver, Motion& motion) {
+  motion.goals.clear();
+  for (const auto& pose : search.poses) motion.goals.push_back(pose.arm_joints);
+  motion.receiver = receiver.id;
+  motion.receiver_at = receiver.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+}
+
 Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const std::string& human) {
   const SceneObject* held = object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
@@ -181,15 +208,11 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     status_.phase = "choosing the exchange point";
     const Person* whom = person(receiver);
     if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
-    auto search = std::make_shared<ExchangeSearch>();
-    const std::function<void()> job = [this, search, scene = scene_, layers = layers_.at(waiting_.now()), who = *whom, q = set_point_,
-                                       T = attachment_.T_tool_object, T_world_object = T_world_tool() * attachment_.T_tool_object,
-                                       barred = grasp_ ? barred_ways(*grasp_) : std::vector<Vector3>{}] {
-      *search = find_exchange(*robot_, scene, who, layers, q, T_world_object, T, settings_, barred);
-    };
-    last = co_await work(job);
-    if (last.good && search->poses.empty()) {
-      last = Outcome::failure(search->reason);
+    ExchangeChoice choice = co_await choose_exchange(receiver, nullptr);
+    const ExchangeSearch& search = choice.search;
+    last = choice.outcome;
+    if (last.good && search.poses.empty()) {
+      last = Outcome::failure(search.reason);
       if (waiting_.now() >= patience) {
         refuse("exchange point", last.reason);
         co_return last;
@@ -204,10 +227,16 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     carry.phase = "carry";
     carry.speed = settings_.carry_speed();
     carry.allowed = {object_id};
-    for (const auto& pose : search->poses) carry.goals.push_back(pose.arm_joints);
-    status_.exchange_point = search->poses.front().T_world_object.translation();
+    whom = person(receiver);
+    if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
+    lead_to(search, *whom, carry);
+    status_.exchange_point = search.poses.front().T_world_object.translation();
     last = co_await move(carry);
     at_exchange = last.good;
+    if (!at_exchange || settings_.live_period() <= 0 || attempt >= settings_.motion_attempts()) continue;
+    const Vector here = RobotModel::part(posture(), arm_);
+    const bool elsewhere = co_await follow(carry, here);
+    at_exchange = !elsewhere;
   }
   if (!at_exchange) co_return last;
 

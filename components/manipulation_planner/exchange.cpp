@@ -35,6 +35,64 @@ double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
   return std::min(to_axis, (p - body.head).norm() - body.head_radius);
 }
 
+/// What places and poses of the object cost, for one person where they are now.
+class Costs {
+ public:
+  Costs(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object_now, const Pose& T_tool_object,
+        const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred)
+      : scene_(scene),
+        person_(person),
+        layers_(layers),
+        settings_(settings),
+        barred_(barred),
+        p_now_(T_world_object_now.translation()),
+        object_in_hand_(T_tool_object.linear().transpose() * T_tool_object.translation()),
+        body_(simplified_body(person)),
+        furniture_(person, scene.boxes),
+        arms_(placed_arms(person)) {
+    toward_robot_ = scene.T_world_base.translation() - torso();
+    toward_robot_.z() = 0;
+    apart_ = toward_robot_.norm() >= 1e-3;
+    toward_robot_.normalize();
+  }
+  Vector3 torso() const { return person_.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
+  const Vector3& toward_robot() const { return toward_robot_; }
+  bool apart() const { return apart_; }  ///< false: they stand inside the robot's base
+
+  enum class Why { good, blocked, out_of_reach, forbidden };
+  Why of_place(const Vector3& p, double& cost) const {
+    if (furniture_.blocked_by(p) != nullptr || inside_box(scene_, p, 0.12)) return Why::blocked;
+    const double comfort = arm_comfort_cost(layers_.comfort_of(person_.id), arms_, p);
+    if (comfort >= 1) return Why::out_of_reach;
+    const OutsideCost outside = layers_.outside_cost(p);
+    if (outside.forbidden_by != nullptr) return Why::forbidden;
+    cost = settings_.w_comfort() * comfort + settings_.w_safety() * safety_cost(distance_to_body(body_, p), 0.8) +
+           settings_.w_visibility() * visibility_cost(person_, p, 3.0) + settings_.w_effort() * (p - p_now_).norm() + outside.cost;
+    return Why::good;
+  }
+  /// Of how the hand holds it toward them; nullopt: they could not take it.
+  std::optional<double> of_attitude(const Eigen::Matrix3d& R_world_object) const {
+    const double facing = (R_world_object * object_in_hand_).normalized().dot(-toward_robot_);
+    if (facing < kLeastFacing) return std::nullopt;
+    double in_the_way = 0;
+    for (const Vector3& normal : barred_) in_the_way = std::max(in_the_way, (R_world_object * normal).dot(-toward_robot_));
+    if (in_the_way > kBarred) return std::nullopt;
+    return settings_.w_legibility() * ((1 - facing) / 2 + in_the_way);
+  }
+
+ private:
+  const Scene& scene_;
+  const Person& person_;
+  const LayersNow& layers_;
+  const config::ManipulationPlannerSettings& settings_;
+  const std::vector<Vector3>& barred_;
+  Vector3 p_now_, object_in_hand_, toward_robot_;
+  SimplifiedBody body_;
+  ReachCheck furniture_;
+  std::vector<PlacedArm> arms_;
+  bool apart_{};
+};
+
 }  // namespace
 
 std::vector<Vector3> barred_ways(const Grasp& grasp) {
@@ -52,57 +110,34 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
                              const std::vector<Vector3>& barred) {
   ExchangeSearch out;
   const Group& arm = robot.require_group("arm");
-  const Vector3 torso = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  const double shoulder_z = person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
-  Vector3 toward_robot = scene.T_world_base.translation() - torso;
-  toward_robot.z() = 0;
-  if (toward_robot.norm() < 1e-3) {
+  const Costs costs(scene, person, layers, T_world_object_now, T_tool_object, settings, barred);
+  if (!costs.apart()) {
     out.reason = "person " + person.id + " stands inside the robot's base";
     return out;
   }
-  toward_robot.normalize();
+  const double shoulder_z = person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
+  const Vector3& toward_robot = costs.toward_robot();
   const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
-  const SimplifiedBody body = simplified_body(person);
-  const Vector3 palm_to_object = T_tool_object.translation();
-  const ReachCheck furniture(person, scene.boxes);
-  const std::vector<PlacedArm> arms = placed_arms(person);
 
   std::vector<Place> places;
   int out_of_reach = 0, blocked = 0, forbidden = 0;
   for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74, 0.82}) {
     for (const double aside : {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36}) {
       for (const double below : {0.05, 0.15, 0.25, 0.35, 0.45, 0.55}) {
-        Vector3 p = torso + ahead * toward_robot + aside * across;
+        Vector3 p = costs.torso() + ahead * toward_robot + aside * across;
         p.z() = shoulder_z - below;
-        if (furniture.blocked_by(p) != nullptr || inside_box(scene, p, 0.12)) {
-          ++blocked;
-          continue;
-        }
-        const double comfort = arm_comfort_cost(layers.comfort_of(person.id), arms, p);
-        if (comfort >= 1) {
-          ++out_of_reach;
-          continue;
-        }
-        const OutsideCost outside = layers.outside_cost(p);
-        if (outside.forbidden_by != nullptr) {
-          ++forbidden;
-          continue;
-        }
-        const double base_cost = settings.w_comfort() * comfort + settings.w_safety() * safety_cost(distance_to_body(body, p), 0.8) +
-                                 settings.w_visibility() * visibility_cost(person, p, 3.0) +
-                                 settings.w_effort() * (p - T_world_object_now.translation()).norm() + outside.cost;
+        double cost = 0;
+        const Costs::Why why = costs.of_place(p, cost);
+        blocked += why == Costs::Why::blocked;
+        out_of_reach += why == Costs::Why::out_of_reach;
+        forbidden += why == Costs::Why::forbidden;
+        if (why != Costs::Why::good) continue;
         for (int k = 0; k < kHeadings; ++k) {
           const double yaw = 2 * std::numbers::pi * k / kHeadings;
           Pose T = T_world_object_now;
           T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * T_world_object_now.linear();
           T.translation() = p;
-          const Vector3 reach = (T.linear() * T_tool_object.linear().transpose() * palm_to_object).normalized();
-          const double facing = reach.dot(-toward_robot);
-          if (facing < kLeastFacing) continue;
-          double in_the_way = 0;
-          for (const Vector3& normal : barred) in_the_way = std::max(in_the_way, (T.linear() * normal).dot(-toward_robot));
-          if (in_the_way > kBarred) continue;
-          places.push_back({T, base_cost + settings.w_legibility() * ((1 - facing) / 2 + in_the_way)});
+          if (const std::optional<double> attitude = costs.of_attitude(T.linear())) places.push_back({T, cost + *attitude});
         }
       }
     }
@@ -132,6 +167,17 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
                  (forbidden > 0 ? std::to_string(forbidden) + " forbidden by a cost layer, " : "") + std::to_string(unreachable) + " of " +
                  std::to_string(out.tried) + " poses beyond the robot's reach";
   return out;
+}
+
+std::optional<double> exchange_cost(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object,
+                                    const Pose& T_world_object_now, const Pose& T_tool_object,
+                                    const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred) {
+  const Costs costs(scene, person, layers, T_world_object_now, T_tool_object, settings, barred);
+  double cost = 0;
+  if (!costs.apart() || costs.of_place(T_world_object.translation(), cost) != Costs::Why::good) return std::nullopt;
+  const std::optional<double> attitude = costs.of_attitude(T_world_object.linear());
+  if (!attitude) return std::nullopt;
+  return cost + *attitude;
 }
 
 }  // namespace handsel::manipulation_planner

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,10 @@ std::vector<Vector3> barred_ways(const Grasp& grasp);
 ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
                              const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
                              const std::vector<Vector3>& barred = {});
+
+/// What a pose of the object costs as find_exchange() counts it, whether the robot reaches it or not; nullopt: it could not be one.
+std::optional<double> exchange_cost(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object,
+                                    const Pose& T_world_object_now, const Pose& T_tool_object,
+                                    const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred = {});
 
 }  // namespace handsel::manipulation_planner

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/collision/margins.hpp"
+#include "common/model/human_body.hpp"
 #include "common/trajectory/broken_line.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
@@ -12,10 +14,13 @@ namespace {
 
 constexpr double kStep = 0.004;     // the motion that leads over is judged this often [rad, max norm]
 constexpr double kWideStep = 0.01;  // and what follows it this often
-constexpr double kMargin = 0.01;    // furniture is taken for larger by this much on every side [m]
+constexpr double kMargin = 0.01;    // furniture, and what other axes turn, is taken for larger by this much on every side [m]
 constexpr double kReserve = 1.1;    // what a switch keeps of the limits it is given: so it keeps the comfort limits
 constexpr double kLook = 0.1;       // costs along a trajectory are looked at this often [s]
 constexpr double kEarly = 0.04;     // the command must be with the controller this long before it is due [s]
+
+constexpr double kStepAside = 0.1;     // a receiver who moved less is where they were [m]
+constexpr double kWorthMoving = 0.05;  // an exchange posture is kept until another costs less by this
 
 /// Until when the trajectory has not been farther than `reach` from where it begins [s].
 double within_reach(const Trajectory& trajectory, const Vector& from, double reach) {
@@ -46,12 +51,13 @@ std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, 
                                                          const Trajectory& to) const {
   const Switched over = join(from, to);
   if (!over.ok()) return std::nullopt;
-  Scene scene = around.scene;
-  for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * kMargin);
-  world.set_scene(scene);
+  world.set_scene(around.scene);
   world.set_people(around.people);
   world.set_attachment(around.attachment, around.allowed);
   world.set_moving_axes(arm_.axes);
+  const auto whole_posture = [&](const Vector& q) { return RobotModel::with(around.posture, arm_, q); };
+  set_scene_with_margins(world, around.scene, {kMargin, kMargin},
+                         {whole_posture(from.position), whole_posture(to.at(to.duration()).position)});
   double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
   for (const AxisTrajectory& axis : over.trajectory.axes) rate = std::max(rate, std::abs(axis.start.velocity));
   // Past that the path is known to be free, but corners cut it.
@@ -65,7 +71,7 @@ std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, 
       const Axis& axis = robot_->axes()[static_cast<std::size_t>(arm_.axes[static_cast<std::size_t>(i)])];
       if (q[i] < axis.lower || q[i] > axis.upper) return std::nullopt;
     }
-    if (!world.is_free(RobotModel::with(around.posture, arm_, q))) return std::nullopt;
+    if (!world.is_free(whole_posture(q))) return std::nullopt;
   }
   return over.trajectory;
 }
@@ -100,6 +106,27 @@ void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around&
   const double before = cost_along(*ways.along, around.posture, level),
                gain = before > 0 ? 1 - cost_along(*ways.over, around.posture, level) / before : 0;
   ways.worth = gain >= settings_.live_gain() && ways.over->duration() <= (1 + settings_.live_slower() * gain) * ways.along->duration();
+}
+
+Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
+  const Person* whom = person(motion.receiver);
+  if (whom == nullptr) co_return false;
+  const Vector3 torso = whom->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  if ((torso - motion.receiver_at).norm() < kStepAside) co_return false;
+  const Pose T_world_object =
+      scene_.T_world_base * robot_->link_pose(RobotModel::with(posture(), arm_, goal), robot_->tool_link()) * attachment_.T_tool_object;
+  ExchangeChoice choice = co_await choose_exchange(motion.receiver, &T_world_object);
+  whom = person(motion.receiver);
+  if (!choice.outcome.good || whom == nullptr) co_return false;
+  if (choice.search.poses.empty()) co_return !choice.kept;
+  if (choice.kept && *choice.kept <= choice.search.poses.front().cost + kWorthMoving) {
+    motion.receiver_at = torso;
+    co_return false;
+  }
+  lead_to(choice.search, *whom, motion);
+  motion.receiver_at = torso;
+  status_.exchange_point = choice.search.poses.front().T_world_object.translation();
+  co_return true;
 }
 
 Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& motion) {

@@ -266,7 +266,7 @@ Routine<Outcome> ManipulationPlanner::send(const TrajectoryCommand& command) {
   co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
 }
 
-Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, const Motion& motion) {
+Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, Motion& motion) {
   const TrajectoryRequest request = trajectory_request(nodes, posture(), motion);
   for (double waited = 0; !trajectory_reply_ && waited < settings_.request_timeout(); waited += settings_.request_retry()) {
     out_->trajectory_requests.push_back(request);
@@ -290,6 +290,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   for (bool done = false; !done;) {
     done = co_await waiting_.until(over, live ? settings_.live_period() : kForever);
     if (done || !live) break;
+    if (!motion.receiver.empty()) co_await follow(motion, running.nodes.back());
     Outcome gone_on = co_await go_on(running, motion);
   }
   if (!ended()) {
@@ -312,8 +313,9 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   co_return Outcome{};
 }
 
-Routine<Outcome> ManipulationPlanner::move(const Motion& motion) {
+Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
   Outcome last;
+  Motion motion = asked;
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts(); ++attempt) {
     status_.phase = motion.phase;
     const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());

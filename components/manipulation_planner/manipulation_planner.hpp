@@ -79,6 +79,8 @@ class ManipulationPlanner {
     std::vector<std::string> allowed;
     std::vector<std::string> tolerated;  // the plan keeps off these, but a brush foreseen on the way is no reason to hold
     double speed{1.0};
+    std::string receiver;                  // the goals are exchange postures for this person, chosen anew as they move; empty: they stay
+    Vector3 receiver_at{Vector3::Zero()};  // their torso when the goals were chosen, world [m]
   };
   struct PlannedPath {
     Outcome outcome;
@@ -115,9 +117,19 @@ class ManipulationPlanner {
   Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human);
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
   Routine<Outcome> move(const Motion& motion);
-  Routine<Outcome> execute(const std::vector<Vector>& nodes, const Motion& motion);
+  Routine<Outcome> execute(const std::vector<Vector>& nodes, Motion& motion);
   Routine<Outcome> send(const TrajectoryCommand& command);
   Routine<Outcome> go_on(Running& running, const Motion& motion);
+  /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good exchange posture any more; true: it is none, even
+  /// where there is no other.
+  Routine<bool> follow(Motion& motion, const Vector& goal);
+  struct ExchangeChoice {
+    Outcome outcome;
+    ExchangeSearch search;
+    std::optional<double> kept;  // cost of the pose that was asked about
+  };
+  Routine<ExchangeChoice> choose_exchange(const std::string& receiver, const Pose* T_world_object);
+  static void lead_to(const ExchangeSearch& search, const Person& receiver, Motion& motion);
   PathRequest path_request(const Vector& start, const Motion& motion);
   TrajectoryRequest trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion);
   TrajectoryCommand command_for(const Trajectory& trajectory, const Motion& motion);

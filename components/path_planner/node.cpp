@@ -24,8 +24,9 @@ config::PathPlannerSettings load(const NodeContext& context) {
     if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share, the temperature and roam must be > 0");
   if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
     throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
-  if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0)
-    throw ConfigError("path_planner.txtpb: live_rounds, live_tries and live_margin must be >= 0, live_gain in [0, 1)");
+  if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0 ||
+      s.live_turning_margin() < 0)
+    throw ConfigError("path_planner.txtpb: live_rounds, live_tries and the margins must be >= 0, live_gain in [0, 1)");
   return s;
 }
 
@@ -77,7 +78,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   live_.least_gain = file.live_gain();
   live_.rounds = file.live_rounds();
   live_.tries = file.live_tries();
-  live_margin_ = file.live_margin();
+  live_margins_ = {file.live_margin(), file.live_turning_margin()};
   roam_ = file.roam();
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
@@ -176,11 +177,14 @@ void Node::start(const PathRequest& request) {
     const Seat seat = seat_for(work->request.group);
     Scene scene = *work->scene;
     scene.T_world_base = T_world_root;
-    if (!work->request.running.empty())  // an arm in motion is not exactly where it is told to be
-      for (SceneBox& box : scene.boxes) box.size += Vector3::Constant(2 * live_margin_);
     seat.world.set_scene(scene);
+    seat.world.set_turning_margin(0);
     seat.world.set_people(*work->people);
     seat.world.set_attachment(work->request.attachment, work->request.allowed_contacts);
+    if (!work->request.running.empty()) {
+      seat.world.set_moving_axes(work->problem.axes);
+      set_scene_with_margins(seat.world, scene, live_margins_, ends_of(work->problem, work->request.running.back()));
+    }
     seat.cost.set_people(*work->people);
     seat.cost.set_layers(work->layers);
     seat.cost.set_base(T_world_root);
@@ -217,6 +221,13 @@ void Node::start(const PathRequest& request) {
     reply_out_->publish(reply);
   };
   running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, answer));
+}
+
+/// Start and goal of a live request: the goal that is led to if it is wanted still, else the first one; all axes.
+std::vector<Vector> Node::ends_of(const Problem& problem, const Vector& goal_so_far) {
+  Vector goal = problem.start;
+  goal(problem.axes) = std::count(problem.goals.begin(), problem.goals.end(), goal_so_far) > 0 ? goal_so_far : problem.goals.front();
+  return {problem.start, goal};
 }
 
 Result Node::from_nothing(const Seat& seat, const PathRequest& request, Problem& problem, const Pose& T_world_root, const Hooks& hooks) {

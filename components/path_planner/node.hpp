@@ -10,7 +10,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
-#include "common/collision/collision_world.hpp"
+#include "common/collision/margins.hpp"
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
@@ -52,6 +52,7 @@ class Node {
   };
   Seat seat_for(const std::string& group);
   std::string complete(PathRequest& request) const;
+  static std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far);
   Result from_nothing(const Seat& seat, const PathRequest& request, Problem& problem, const Pose& T_world_root, const Hooks& hooks);
   void refuse(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
@@ -60,7 +61,8 @@ class Node {
   std::shared_ptr<const RobotModel> robot_;
   Settings settings_;
   LiveSettings live_;
-  double live_margin_{}, roam_{};
+  Margins live_margins_;
+  double roam_{};
   std::array<std::uint64_t, 5> live_outcomes_{};
   Timing timing_;
   std::unique_ptr<Publisher<PathReply>> reply_out_;

@@ -1,5 +1,6 @@
 // Live runs in lock-step: the arm is on its way when a person walks up and reaches into it. The whole system; judged from the simulator's
-// truth by an exact collision check of its own. HANDSEL_RUNS: how many (seeds 1 ...), HANDSEL_FIRST: the first seed.
+// truth by an exact collision check of its own. HANDSEL_RUNS: how many (seeds 1 ...), HANDSEL_FIRST: the first seed, HANDSEL_LIVE_PERIOD:
+// another live_period (0: without, for comparison; what is asked of live paths then fails).
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -8,18 +9,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
-#include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
 #include "common/trajectory/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/path_planner/random.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
+#include "tests/support/live_settings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace handsel {
@@ -240,13 +240,9 @@ Vector random_start(const NodeContext& context, Random& random) {
   }
 }
 
-/// The settings as shipped, with running paths looked at: shipped they are not.
-std::filesystem::path live_settings(const std::string& folder) {
-  const std::filesystem::path settings = std::filesystem::path(folder) / ("config" + std::to_string(getpid()));
-  if (std::filesystem::exists(settings)) return settings;
-  std::filesystem::copy(resource("config"), settings, std::filesystem::copy_options::recursive);
-  std::ofstream(settings / "manipulation_planner.txtpb", std::ios::app) << "live_period: 0.2\n";
-  return settings;
+std::string live_period() {
+  const char* period = std::getenv("HANDSEL_LIVE_PERIOD");
+  return period == nullptr ? "0.2" : period;
 }
 
 Json run(std::uint64_t seed, const std::string& folder) {
@@ -255,7 +251,7 @@ Json run(std::uint64_t seed, const std::string& folder) {
   const std::string file = folder + "/live_" + std::to_string(seed) + ".txtpb";
   const Vector start = random_start(context, random), rest_posture = context.robot->rest_posture();
   std::ofstream(file) << scenario_text(*context.robot, start);
-  LockstepSystem system(system_context(file, "", seed, live_settings(folder)));
+  LockstepSystem system(system_context(file, "", seed, test::live_settings(folder, live_period())));
   Visitor visitor(
       random,
       context.robot->link_pose(start + random.between(0.4, 0.9) * (rest_posture - start), context.robot->tool_link()).translation());

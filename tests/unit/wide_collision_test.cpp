@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -316,6 +317,60 @@ TEST(WideCollision, what_the_moving_axes_do_not_move_still_counts) {
   q[1] = 2.9;
   q[2] = 2.9;
   EXPECT_EQ(checks.wide_.is_free(q), checks.exact_.is_free(q));
+}
+
+TEST(WideCollision, what_other_axes_turn_is_kept_off_by_the_turning_margin) {
+  constexpr double kMargin = 0.03;
+  const RobotModel robot = load_jido();
+  const Group &arm = robot.require_group("arm"), &head = robot.require_group("head");
+  const auto turned_by = [&](int link, const Group& group) {
+    for (int l = link; robot.links()[static_cast<std::size_t>(l)].parent_joint >= 0;) {
+      const auto& joint = robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(l)].parent_joint)];
+      if (std::count(group.axes.begin(), group.axes.end(), joint.dof) > 0) return true;
+      l = joint.parent;
+    }
+    return false;
+  };
+  /// Of the arm's links (with the hand) to the head's.
+  const auto gap = [&](const Vector& q) {
+    std::vector<Pose> links;
+    robot.forward(q, links);
+    double least = 1e9;
+    for (std::size_t a = 0; a < links.size(); ++a)
+      for (std::size_t h = 0; h < links.size(); ++h) {
+        if (!turned_by(static_cast<int>(a), arm) || !turned_by(static_cast<int>(h), head)) continue;
+        if (robot.pair_disabled(static_cast<int>(a), static_cast<int>(h))) continue;
+        for (const PlacedShape& x : robot.links()[a].collision)
+          for (const PlacedShape& y : robot.links()[h].collision) {
+            const ShapeDistance d = shape_distance(x.shape, links[a] * x.T_parent_shape, y.shape, links[h] * y.T_parent_shape);
+            least = std::min(least, d.collide ? 0.0 : d.distance);
+          }
+      }
+    return least;
+  };
+  std::mt19937 random(kSeed);
+  CollisionWorld plain(robot, nullptr), margin(robot, nullptr), exact(robot, nullptr);
+  for (CollisionWorld* world : {&plain, &margin}) world->set_moving_axes(arm.axes);
+  margin.set_turning_margin(kMargin);
+  exact.set_turning_margin(kMargin);
+  Vector rest = robot.rest_posture();
+  int near = 0, kept_off = 0;
+  for (int k = 0; k < 60000 && near < 40; ++k) {
+    if (k % 2000 == 0) rest = random_state(robot, head.axes, rest, random);
+    const Vector q = random_state(robot, arm.axes, rest, random);
+    const bool free = plain.is_free(q), free_with = margin.is_free(q);
+    ASSERT_EQ(margin.check(q).free, free_with) << "seed " << kSeed << " state " << k;
+    ASSERT_TRUE(free || !free_with);
+    ASSERT_EQ(k % 100 == 0 ? exact.check(q).free : free, free) << "nothing is moved: no margin";
+    if (!free || (free_with && k % 200 != 0)) continue;
+    const double d = gap(q);
+    ASSERT_GT(d, free_with ? kMargin : 0.0) << "seed " << kSeed << " state " << k;
+    ASSERT_LT(d, free_with ? 1e9 : kMargin * std::sqrt(3.0) + 1e-6) << "seed " << kSeed << " state " << k;
+    near += !free_with;
+    kept_off += free_with;
+  }
+  std::printf("%d states free but within the margin of the head, %d of those farther away looked at\n", near, kept_off);
+  EXPECT_GE(near, 20);
 }
 
 TEST(WideCollision, distance_to_people_is_that_of_the_nearest_pair_with_its_points) {

@@ -1,0 +1,121 @@
+// The person who is to be given something steps aside while the arm carries it to them: the running path is led to another exchange point,
+// without a stop. The whole system in lock-step.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "common/cost/human_cost.hpp"
+#include "common/model/human_body.hpp"
+#include "components/path_planner/random.hpp"
+#include "deploy/handsel/lockstep_system.hpp"
+#include "tests/support/live_settings.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr const char* kScenario = R"(name: "exchange_moves" robot: "jido"
+boxes { id: "table" pose { xyz { x: 0.85 y: -0.62 z: 0.36 } } size { x: 0.7 y: 0.7 z: 0.72 } supports: true }
+objects { id: "mug" model: "mug" on: "table" pose { xyz { x: 0.68 y: -0.42 } } jitter: 0.03 }
+people { id: "anna" x: 1.4 y: -0.05 yaw: 3.1416 stature: 1.72 behaviour: EXTERNAL external: "body_tracker" }
+object_sensors { source: "object_tracker" rate: 30 latency: 0.04 noise: 0.001 }
+timeout: 90
+)";
+constexpr double kPace = 0.8;  // of the person [m/s]
+
+struct Carried {
+  bool offered{};
+  std::string ended;  ///< how and why, if it was not offered
+  int other_goals{};  ///< live requests that ask for other goals than the path that runs leads to
+  int switches{};     ///< commands that take over from one that runs
+  double standing{};  ///< longest the arm stood still on its way after the first step [s]
+  double aside{};     ///< offered point beside the person's middle, as they stand at the end [m]
+  bool reached{};     ///< the point lies within their reach
+};
+
+/// The person goes `step` [m] aside (+y) `after` [s] of carrying.
+Carried carry(std::uint64_t seed, double step, double after, const std::string& folder, const std::string& period) {
+  const std::string file = folder + "/exchange_moves.txtpb";
+  std::ofstream(file) << kScenario;
+  LockstepSystem system(system_context(file, "", seed, test::live_settings(folder, period)));
+  Bus& seat = system.seat();
+  auto goals = seat.advertise<TaskGoal>();
+  auto body_out = seat.advertise<HumanObservation>();
+  Carried out;
+  ActionStatus action;
+  HumanState people;
+  ActiveTrajectory active;
+  path_planner::Random random(seed);
+  const auto noise = [&random] { return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal())); };
+  double walked = 0, carrying = 0, still = 0;
+  const auto body = [&] { return standing_body({1.4, -0.05 + walked, 0}, M_PI - 0.5 * walked, 1.72); };
+  seat.subscribe<HumanState>([&](const HumanState& s, const Receipt&) { people = s; });
+  seat.subscribe<ActionStatus>([&](const ActionStatus& s, const Receipt&) { action = s; });
+  seat.subscribe<ActiveTrajectory>([&](const ActiveTrajectory& a, const Receipt&) { active = a; });
+  seat.subscribe<PathRequest>([&](const PathRequest& r, const Receipt&) {
+    if (r.cancel || r.running.empty() || action.phase != "carry") return;
+    out.other_goals += std::none_of(r.goals.begin(), r.goals.end(),
+                                    [&](const Vector& goal) { return (goal - r.running.back()).cwiseAbs().maxCoeff() < 1e-6; });
+  });
+  seat.subscribe<TrajectoryCommand>(
+      [&](const TrajectoryCommand& c, const Receipt&) { out.switches += action.phase == "carry" && !c.axes.empty() && c.switch_at > 0; });
+  seat.every(from_seconds(0.01), [&](TimePoint) {
+    if (action.phase != "carry" || active.trajectory == 0) return;
+    carrying += 0.01;
+    const bool on_way = active.time > 0.2 && active.time < active.rest.duration() - 0.3;
+    still = on_way && active.velocity.norm() < 1e-3 ? still + 0.01 : 0;
+    out.standing = std::max(out.standing, still);
+  });
+  seat.every(from_seconds(1.0 / 30), [&](TimePoint) {
+    if (carrying > after) walked = std::min(step, walked + kPace / 30);
+    HumanObservation seen;
+    seen.source = "body_tracker";
+    seen.coverage = {{-2, -3, 0}, {4, 3, 2.5}};
+    ObservedPerson person;
+    person.body = "anna";
+    for (const BodyJoint& joint : body()) person.joints.push_back({joint.name, joint.position + noise(), 1.0});
+    person.has_gaze = true;
+    person.gaze_origin = person.joints.front().position;
+    person.gaze_direction = Vector3(-1, -0.2 * walked, -0.2).normalized();
+    seen.people.push_back(person);
+    body_out->publish(seen);
+  });
+  seat.after(from_seconds(3.0), [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug"}); });
+  const auto ended = [&] {
+    const auto& tasks = system.snapshot().tasks;
+    return action.phase == "offer" || (tasks.count(1) != 0 && tasks.at(1).state == TaskState::failed);
+  };
+  system.network().run_until(ended, TimePoint(from_seconds(80)));
+  out.offered = action.phase == "offer";
+  const auto& tasks = system.snapshot().tasks;
+  if (!out.offered) out.ended = action.phase + ": " + (tasks.count(1) != 0 ? tasks.at(1).reason : "no task");
+  out.reached = people.people.size() == 1 && within_reach(people.people[0], action.exchange_point);
+  out.aside = std::abs(action.exchange_point.y() - body()[static_cast<std::size_t>(body_joint_index("torso"))].position.y());
+  return out;
+}
+
+TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_stop) {
+  const test::TemporaryFolder folder;
+  const char* text = std::getenv("HANDSEL_RUNS");
+  const int runs = text == nullptr ? 3 : std::atoi(text);
+  int led_over = 0, reached = 0;
+  for (int k = 0; k < runs; ++k) {
+    const auto seed = static_cast<std::uint64_t>(k + 1);
+    const Carried run = carry(seed, 0.5, 0.0, folder.path().string(), "0.2");
+    std::printf("seed %d: offered %d %s, requests for other goals %d, switches %d, stood for %.2f s, offered %.2f m aside, reached %d\n",
+                k + 1, run.offered, run.ended.c_str(), run.other_goals, run.switches, run.standing, run.aside, run.reached);
+    EXPECT_TRUE(run.offered) << run.ended;
+    reached += run.reached;
+    led_over += run.other_goals > 0 && run.switches > 0 && run.standing < 0.05;
+  }
+  EXPECT_GE(reached, runs * 2 / 3) << "what is offered is out of the person's reach where they are now";
+  EXPECT_GE(led_over, runs * 2 / 3) << "the arm stopped, or went on to where the person was";
+}
+
+}  // namespace
+}  // namespace handsel
