@@ -18,6 +18,8 @@ void add_eval_command(CLI::App& app, int& exit_code);
 void add_bench_command(CLI::App& app, int& exit_code);
 
 void add_trajectory_commands(CLI::App& app, int& exit_code);
+/// Of the group "trajectory".
+void add_cartesian_command(CLI::App& trajectory, int& exit_code);
 void add_model_commands(CLI::App& app, int& exit_code);
 void add_distance_command(CLI::App& app, int& exit_code);
 void add_cost_command(CLI::App& app, int& exit_code);

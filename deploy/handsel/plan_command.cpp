@@ -17,6 +17,7 @@
 #include "components/path_planner/pose_goals.hpp"
 #include "deploy/handsel/json_lines.hpp"
 #include "deploy/handsel/landscape.hpp"
+#include "deploy/handsel/scene_lines.hpp"
 
 namespace handsel {
 namespace {
@@ -53,77 +54,10 @@ RobotModel load_robot(const Options& options) {
   throw ConfigError(description.string() + " tells of no platform, which the group \"" + options.group + "\" is about");
 }
 
-Obstacle obstacle_of(const json& item) {
-  const json& type = field(item, "type");
-  const Vector dims = vector_of(item, "dims");
-  const auto expect = [&](int n) {
-    if (dims.size() != n || !(dims.minCoeff() > 0))
-      throw LineError("\"dims\" of a " + type.dump() + " must be " + std::to_string(n) + " numbers > 0");
-  };
-  Obstacle obstacle;
-  obstacle.id = item.value("id", "");
-  obstacle.placed.T_parent_shape = make_pose(vector3(item, "pos"), quaternion(item, "quat_xyzw"));
-  if (type == "box") {
-    expect(3);
-    obstacle.placed.shape = Box{dims};
-  } else if (type == "cylinder") {
-    expect(2);
-    obstacle.placed.shape = Cylinder{dims[1], dims[0]};
-  } else if (type == "sphere") {
-    expect(1);
-    obstacle.placed.shape = Sphere{dims[0]};
-  } else {
-    throw LineError("unknown obstacle type " + type.dump() + "; known are box, cylinder, sphere");
-  }
-  return obstacle;
-}
-
-HumanState people_of(const json& problem) {
-  HumanState state;
-  const auto human = problem.find("human");
-  if (human == problem.end()) return state;
-  ObservedPerson seen;
-  const json& joints = field(*human, "joints");
-  if (!joints.is_object()) throw LineError("\"joints\" of \"human\" must be an object of points by joint name");
-  for (const auto& [name, point] : joints.items()) {
-    if (body_joint_index(name) < 0) throw LineError("\"" + name + "\" is no joint of a body");
-    seen.joints.push_back({name, vector3(joints, name.c_str()), 1.0});
-  }
-  Person person;
-  person.id = "human";
-  person.joints = fit_body(seen, nullptr, person.stature);
-  if (human->contains("gaze")) {
-    const Vector3 gaze = vector3(*human, "gaze");
-    if (!(gaze.norm() > 1e-9)) throw LineError("\"gaze\" must not be zero");
-    person.gaze_known = true;
-    person.gaze_direction = gaze.normalized();
-    for (const BodyJoint& joint : person.joints)
-      if (joint.name == "head") person.gaze_origin = joint.position;
-  }
-  state.people.push_back(person);
-  return state;
-}
-
-CostSettings weights_of(const json& problem) {
-  CostSettings settings;
-  const auto weights = problem.find("weights");
-  if (weights == problem.end()) return settings;
-  const auto read = [&](const char* name, double& value) {
-    if (weights->contains(name)) value = number(*weights, name);
-    if (value < 0) throw LineError(std::string("the weight \"") + name + "\" must not be negative");
-  };
-  read("safety", settings.w_safety);
-  read("visibility", settings.w_visibility);
-  read("comfort", settings.w_comfort);
-  if (!(settings.w_safety + settings.w_visibility + settings.w_comfort > 0)) throw LineError("at least one of the \"weights\" must be > 0");
-  return settings;
-}
-
 class Batch {
  public:
   explicit Batch(const Options& options) : options_(options), robot_(load_robot(options)), world_(robot_, nullptr) {
     if (!options.group.empty()) group_ = robot_.group(options.group);
-    for (int i = 0; i < robot_.dof(); ++i) axis_by_name_[robot_.axes()[i].name] = i;
   }
 
   json answer(const json& item) {
@@ -135,24 +69,18 @@ class Batch {
     problem.stock = options_.stock;
     problem.seed = options_.seed;
     problem.budget = options_.checks > 0 ? options_.checks : UINT64_MAX / 2;
-    problem.start = robot_.rest_posture().size() == robot_.dof() ? robot_.rest_posture() : Vector::Zero(robot_.dof());
-    const json& start = field(item, "start");
-    if (!start.is_object()) throw LineError("\"start\" must be an object of joint names and positions, as {\"shoulder\": 0.5}");
-    for (const auto& [name, value] : start.items())
-      if (!is_fixed(name)) problem.start[axis(name)] = number(start, name.c_str());
-    std::vector<Obstacle> obstacles;
-    for (const json& one : item.value("obstacles", json::array())) obstacles.push_back(obstacle_of(one));
-    const HumanState people = people_of(item);
-    HumanCost cost(robot_, weights_of(item));
+    problem.start = posture_in(robot_, field(item, "start"), "start");
+    const HumanState people = people_in(item);
+    HumanCost cost(robot_, weights_in(item));
     cost.set_people(people);
-    world_.set_obstacles(obstacles);
+    world_.set_obstacles(obstacles_in(item));
     world_.set_people(people);
     const bool cartesian = options_.space == "cartesian";
     const std::string unreached = cartesian ? "" : read_goals(item, problem);
     read_upright(item, problem);
     std::optional<NavigationCost> navigation;
     if (path_planner::drives(options_.group)) {
-      navigation.emplace(robot_, weights_of(item));
+      navigation.emplace(robot_, weights_in(item));
       navigation->set_people(people);
       path_planner::drive(robot_, *navigation, options_.roam, problem);
     }
@@ -206,17 +134,6 @@ class Batch {
   bool all_solved() const { return solved_ == asked_; }
 
  private:
-  int axis(const std::string& name) const {
-    const auto found = axis_by_name_.find(name);
-    if (found == axis_by_name_.end()) throw LineError("the robot has no axis \"" + name + "\"");
-    return found->second;
-  }
-
-  bool is_fixed(const std::string& name) const {
-    return std::any_of(robot_.joints().begin(), robot_.joints().end(),
-                       [&](const Joint& j) { return j.name == name && j.kind == JointKind::fixed; });
-  }
-
   static void read_upright(const json& item, path_planner::Problem& problem) {
     const auto upright = item.find("upright");
     if (upright == item.end()) return;
@@ -241,7 +158,7 @@ class Batch {
     const json also = item.value("also", json::object());
     asked.also_goal.resize(static_cast<Eigen::Index>(also.size()));
     for (const auto& [name, value] : also.items()) {
-      asked.also.push_back(axis(name));
+      asked.also.push_back(axis_of(robot_, name));
       asked.also_goal[static_cast<Eigen::Index>(asked.also.size()) - 1] = number(also, name.c_str());
     }
     problem.axes = group_->axes;
@@ -257,7 +174,7 @@ class Batch {
     if (group_ != nullptr) {
       problem.axes = group_->axes;
     } else {
-      for (const auto& [name, value] : goals[0].items()) problem.axes.push_back(axis(name));
+      for (const auto& [name, value] : goals[0].items()) problem.axes.push_back(axis_of(robot_, name));
       std::sort(problem.axes.begin(), problem.axes.end());
     }
     for (const json& goal : goals) {
@@ -297,7 +214,6 @@ class Batch {
   RobotModel robot_;
   CollisionWorld world_;
   const Group* group_{nullptr};
-  std::map<std::string, int> axis_by_name_;
   int asked_{0}, solved_{0};
 };
 

@@ -34,6 +34,7 @@ void add_trajectory_commands(CLI::App& app, int& exit_code) {
       ->add_option("--period", *period, "[s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_cartesian_command(*group, exit_code);
 }
 
 }  // namespace handsel
