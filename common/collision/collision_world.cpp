@@ -724,6 +724,14 @@ bool CollisionWorld::surely_free(const Vector& from, const Vector& to) {
   return impl_->wide_ready(from) && impl_->moves_only(from, to) && impl_->wide->unclear_stretches(from, to, kFinest, kMostBlocks).empty();
 }
 
+std::uint32_t CollisionWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {
+  static_assert(kMostBoxes == WideWorld::kStates);
+  Impl& w = *impl_;
+  w.checks += static_cast<std::uint64_t>(count);
+  if (!w.wide_ready(low[0])) return (1u << count) - 1u;
+  return w.wide->unclear_boxes(low, high, count);
+}
+
 std::uint64_t CollisionWorld::checks() const { return impl_->checks; }
 std::uint64_t CollisionWorld::exact_checks() const { return impl_->exact_checks; }
 

@@ -88,6 +88,11 @@ class CollisionWorld {
   /// unknown.
   bool surely_free(const Vector& from, const Vector& to);
 
+  static constexpr int kMostBoxes = 16;
+  /// Of up to kMostBoxes boxes of configurations (all axes; equal on those that do not move) the bits of those that the wide check cannot
+  /// show to be free of contact everywhere; all bits without moving axes.
+  std::uint32_t unclear_boxes(const Vector* low, const Vector* high, int count);
+
   std::uint64_t checks() const;        ///< states judged so far, by whatever function
   std::uint64_t exact_checks() const;  ///< those of them that FCL had to judge
 

@@ -364,6 +364,17 @@ std::uint32_t WideWorld::unclear_on_line(const Vector& from, const Vector& to, c
   return run(count, false, any);
 }
 
+std::uint32_t WideWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {
+  for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row)
+    for (int i = 0; i < count; ++i) {
+      const double from = low[i][chain_.dof_of_row[row]], to = high[i][chain_.dof_of_row[row]];
+      if (!(std::max(std::abs(from), std::abs(to)) < kMostTurn)) return (1u << count) - 1u;
+      q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(0.5 * (from + to));
+      half_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(0.5000001 * (to - from));
+    }
+  return run(count, true);
+}
+
 const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const Vector& from, const Vector& to, double finest,
                                                                            int most_blocks) {
   unclear_.clear();

@@ -50,6 +50,8 @@ class WideWorld {
   std::uint32_t unclear(const Vector* states, int count);
   /// The same for states from + at (to - from). `any`: one unclear state is enough to know, the bits of others may be missing.
   std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any = false);
+  /// The same for boxes of states, `low` to `high` on every moving axis: what is clear is so everywhere in its box.
+  std::uint32_t unclear_boxes(const Vector* low, const Vector* high, int count);
   /// Stretches [first, second] of the line, in parts of it, that could not be shown clear; all states between them are, without steps.
   /// Looks at stretches down to `finest` parts of the line; gives up after `most_blocks` blocks of kStates stretches.
   const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int most_blocks);

@@ -6,6 +6,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "common/trajectory/segment_table.hpp"
 #include "common/trajectory/smooth.hpp"
+#include "components/trajectory_planner/motion_judge.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
@@ -53,11 +54,11 @@ class CornerJudge {
   CornerJudge(const RobotModel& robot, const Group& group, CollisionWorld& world, const HumanCost& cost, const Vector& start, double step)
       : robot_(robot),
         group_(group),
-        world_(world),
         cost_(cost),
         start_(start),
         step_(step),
-        bound_(cost.forbidden(start).layer == nullptr) {}
+        bound_(cost.forbids() && cost.forbidden(start).layer == nullptr),
+        motion_(world, group.axes, start) {}
 
   bool operator()(const Trajectory& corner) {
     double rate = 0;
@@ -69,28 +70,26 @@ class CornerJudge {
       rate = std::max(rate, e.velocity);
     }
     const SegmentTable table(corner);
+    if (!motion_.free(corner, table)) return false;
+    if (!bound_) return true;
     const int parts = std::max(2, static_cast<int>(std::ceil(rate * table.duration() / step_)));
     MotionState3 state = corner.at(0);
     int cursor = 0;
     for (int k = 0; k <= parts; ++k) {
       table.evaluate(table.duration() * k / parts, cursor, state);
-      ++checks_;
-      const Vector q = RobotModel::with(start_, group_, state.position);
-      if (!world_.is_free(q) || (bound_ && cost_.forbidden(q).layer != nullptr)) return false;
+      if (cost_.forbidden(RobotModel::with(start_, group_, state.position)).layer != nullptr) return false;
     }
     return true;
   }
-  std::uint64_t checks() const { return checks_; }
 
  private:
   const RobotModel& robot_;
   const Group& group_;
-  CollisionWorld& world_;
   const HumanCost& cost_;
   const Vector& start_;
   double step_;
   bool bound_;  // by what outside layers forbid: not when it starts there
-  std::uint64_t checks_{};
+  MotionJudge motion_;
 };
 
 }  // namespace
@@ -105,11 +104,12 @@ Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cos
   result.cost = largest_cost(cost, request, group, settings.cost_step);
   result.speed_factor = request.speed_scale * (1 - (1 - settings.least_speed_factor) * result.cost);
   const KinematicLimits limits = comfort_limits(robot, group, result.speed_factor);
+  const std::uint64_t checks_before = world.checks();
   CornerJudge judge(robot, group, world, cost, request.start, settings.corner_step);
   SmoothSettings smoothing;
   smoothing.allowed_excess = settings.allowed_excess;
   SmoothResult smoothed = smooth(request.nodes, limits, smoothing, [&judge](const Trajectory& corner) { return judge(corner); });
-  result.checks = judge.checks();
+  result.checks = world.checks() - checks_before;
   if (!(reply.reason = smoothed.reason).empty()) return result;
   for (const CornerReport& corner : smoothed.corners) {
     if (corner.method == CornerMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
