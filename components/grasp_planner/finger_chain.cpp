@@ -1,6 +1,7 @@
 #include "components/grasp_planner/finger_chain.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 
@@ -56,8 +57,23 @@ FingerChain::FingerChain(const HandModel& hand, int finger) {
         std::any_of(tip_path_.begin(), tip_path_.end(), [&](int s) { return steps_[static_cast<std::size_t>(s)].dof == axis; });
     if (used) axes_.push_back(axis);
   }
+  turn_to_z();
   const int outermost = axes_.back();
   closing_sign_ = 0.5 * (hand.lower_contact()[outermost] + hand.upper_contact()[outermost]) >= hand.rest()[outermost] ? 1.0 : -1.0;
+}
+
+// Every step's frame is turned so that its joint's axis is z: a rotation about it mixes two columns.
+void FingerChain::turn_to_z() {
+  std::vector<Pose> T_old_new(steps_.size(), Pose::Identity());
+  for (std::size_t s = 0; s < steps_.size(); ++s) {
+    Step& step = steps_[s];
+    T_old_new[s].linear() = Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), step.axis).toRotationMatrix();
+    step.T_parent_joint = step.T_parent_joint * T_old_new[s];
+    if (step.parent >= 0) step.T_parent_joint = T_old_new[static_cast<std::size_t>(step.parent)].inverse() * step.T_parent_joint;
+    step.axis = Vector3::UnitZ();
+  }
+  for (Carried& c : carried_) c.T_step_link = T_old_new[static_cast<std::size_t>(c.step)].inverse() * c.T_step_link;
+  T_step_tip_ = T_old_new[static_cast<std::size_t>(tip_step_)].inverse() * T_step_tip_;
 }
 
 void FingerChain::forward(const Vector& q, std::vector<Pose>& T) const {
@@ -65,13 +81,27 @@ void FingerChain::forward(const Vector& q, std::vector<Pose>& T) const {
   for (std::size_t s = 0; s < steps_.size(); ++s) {
     const Step& step = steps_[s];
     const double value = step.factor * q[step.dof] + step.offset;
-    Pose joint = step.T_parent_joint;
+    Eigen::Matrix3d R = step.T_parent_joint.linear();
+    Vector3 p = step.T_parent_joint.translation();
     if (step.prismatic) {
-      joint.translate(Vector3(value * step.axis));
+      p += value * R.col(2);
     } else {
-      joint.linear() = joint.linear() * Eigen::AngleAxisd(value, step.axis).toRotationMatrix();
+      const double c = std::cos(value), k = std::sin(value);
+      const Vector3 x = R.col(0);
+      R.col(0) = c * x + k * R.col(1);
+      R.col(1) = c * R.col(1) - k * x;
     }
-    T[s] = step.parent < 0 ? joint : T[static_cast<std::size_t>(step.parent)] * joint;
+    Pose& out = T[s];
+    out.makeAffine();
+    if (step.parent < 0) {
+      out.linear() = R;
+      out.translation() = p;
+    } else {
+      const Pose& parent = T[static_cast<std::size_t>(step.parent)];
+      const Eigen::Matrix3d Rp = parent.linear();
+      out.linear().noalias() = Rp.lazyProduct(R);
+      out.translation() = Rp * p + parent.translation();
+    }
   }
 }
 

@@ -36,6 +36,7 @@ class FingerChain {
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T, const Vector3& p_hand) const;
   /// From the last joint to the tip's centre, hand frame, unit.
   Vector3 tip_direction(const std::vector<Pose>& T) const;
+  double closing_sign() const { return closing_sign_; }  ///< way the outermost axis closes
   /// Where the tip goes when the finger's outermost axis closes (moves from the rest posture into its range), hand frame, unit: the way its
   /// pad faces.
   Vector3 closing_direction(const std::vector<Pose>& T) const;
@@ -46,6 +47,8 @@ class FingerChain {
                int iterations = 30) const;
 
  private:
+  void turn_to_z();
+
   struct Step {
     int parent{-1};  // step, -1: the hand itself
     Pose T_parent_joint{Pose::Identity()};

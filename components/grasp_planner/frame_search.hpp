@@ -9,7 +9,7 @@ namespace handsel::grasp_planner {
 
 /// A way for one finger to touch.
 struct FingerContact {
-  std::uint32_t point{};          ///< index into Graspable::points()
+  SurfacePoint place;
   Vector q;                       ///< all hand axes; only this finger's matter
   Vector q_open;                  ///< the same finger backed off from the surface
   std::vector<Pose> T_hand_step;  ///< at q
@@ -26,6 +26,11 @@ class FrameSearch {
   std::vector<FingerContact> contacts(int finger, const Pose& T_object_hand, const std::vector<std::uint32_t>& points, GraspList& counters);
 
  private:
+  /// A finger of one or two axes has no point to choose: it closes, at several places of its inner axis, until it touches.
+  std::vector<FingerContact> close(int finger, const Pose& T_object_hand, GraspList& counters);
+  bool touches_at(int finger, const Pose& T_object_hand, Vector q, FingerContact& out) const;
+  /// Touch, palm and the way back off with the finger at out.q on the place; sets q_open, steps and force.
+  bool holds(int finger, const Pose& T_object_hand, const SurfacePoint& place, GraspList& counters, FingerContact& out);
   bool judge(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out);
 
   const HandKit& kit_;
@@ -36,6 +41,7 @@ class FrameSearch {
   std::uint32_t query_{};
   std::vector<std::uint32_t> hits_;
   std::vector<Pose> T_;
+  mutable std::vector<Pose> T_closing_;
 };
 
 }  // namespace handsel::grasp_planner

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "common/geometry/segments.hpp"
 #include "components/grasp_planner/epsilon.hpp"
@@ -172,18 +173,31 @@ struct GraspLister::Impl {
   }
 
   bool clash(std::size_t g, int a, std::size_t f, int b) {
-    const std::size_t width = settings.contacts_per_finger + 1;
     signed char& known =
         clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width + static_cast<std::size_t>(b + 1)];
-    if (known < 0) known = kit->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
+    if (known < 0)
+      known = pull_apart(g, a, f, b) || kit->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
     return known != 0;
+  }
+
+  /// Fingers that share an axis must want the same of it; one without contact cannot while the other has one.
+  bool pull_apart(std::size_t g, int a, std::size_t f, int b) const {
+    if (a < 0 && b < 0) return false;
+    for (const int axis : kit->hand.fingers()[g].axes) {
+      if (std::find(kit->hand.fingers()[f].axes.begin(), kit->hand.fingers()[f].axes.end(), axis) == kit->hand.fingers()[f].axes.end())
+        continue;
+      if (a < 0 || b < 0) return true;
+      const double differ = contacts[g][static_cast<std::size_t>(a)].q[axis] - contacts[f][static_cast<std::size_t>(b)].q[axis];
+      if (std::abs(differ) > 1e-6) return true;
+    }
+    return false;
   }
 
   std::vector<PointContact> point_contacts(const Combination& c) const {
     std::vector<PointContact> out_contacts;
     for (std::size_t f = 0; f < c.size(); ++f) {
       if (c[f] < 0) continue;
-      const SurfacePoint& p = object->points()[contacts[f][static_cast<std::size_t>(c[f])].point];
+      const SurfacePoint& p = contacts[f][static_cast<std::size_t>(c[f])].place;
       out_contacts.push_back({p.position, -p.normal, friction()});
     }
     return out_contacts;
@@ -199,9 +213,9 @@ struct GraspLister::Impl {
     for (std::size_t f = 0; f < c.size(); ++f) {
       if (c[f] < 0) continue;
       const FingerContact& contact = contacts[f][static_cast<std::size_t>(c[f])];
-      mean += object->points()[contact.point].position;
+      mean += contact.place.position;
       s.force += contact.force;
-      s.curvature += 1 - object->points()[contact.point].curvature;
+      s.curvature += 1 - contact.place.curvature;
       n += 1;
     }
     s.force /= n;
@@ -219,7 +233,8 @@ struct GraspLister::Impl {
   FrameReason combine(std::uint64_t id, const Pose& T_object_hand) {
     idle.assign(contacts.size(), 0);
     for (std::size_t f = 1; f < contacts.size(); ++f) idle[f] = idle_posture(f, T_object_hand);
-    const std::size_t width = settings.contacts_per_finger + 1;
+    width = 1;
+    for (const auto& of_finger : contacts) width = std::max(width, of_finger.size() + 1);
     clashes.assign(contacts.size() * contacts.size() * width * width, -1);
     std::vector<Combination> found;
     Combination chosen(contacts.size(), -1);
@@ -299,7 +314,7 @@ struct GraspLister::Impl {
         g.pregrasp_joints[a] = contact != nullptr ? contact->q_open[a] : idle_q[a];
       }
       if (contact == nullptr) continue;
-      const SurfacePoint& p = object->points()[contact->point];
+      const SurfacePoint& p = contact->place;
       g.contacts.push_back({static_cast<std::uint32_t>(f), p.position, p.normal, p.triangle, p.barycentric, friction(), p.curvature});
     }
     squeeze(c, g);
@@ -330,39 +345,63 @@ struct GraspLister::Impl {
   std::vector<std::vector<std::uint32_t>> points;
   std::vector<std::vector<FingerContact>> contacts;
   std::vector<int> idle;
-  std::vector<signed char> clashes;
+  std::vector<signed char> clashes;  // of finger, finger, choice, choice: -1 not known
+  std::size_t width{};               // choices a finger has at most
   GraspList out;
 };
 
 GraspLister::GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
-                         std::shared_ptr<const Graspable> object, const GraspListSettings& settings)
-    : impl_(std::make_unique<Impl>(std::move(kit), std::move(workspaces), std::move(object), settings)) {}
+                         std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun)
+    : impl_(std::make_unique<Impl>(std::move(kit), std::move(workspaces), std::move(object), settings)) {
+  if (begun.frames > 0) impl_->out = std::move(begun);
+}
 GraspLister::~GraspLister() = default;
 GraspLister::GraspLister(GraspLister&&) noexcept = default;
 
 std::uint64_t GraspLister::frames() const { return impl_->frames(); }
 
-bool GraspLister::advance(std::uint64_t count) {
-  const std::uint64_t end = std::min(frames(), impl_->out.frames + count);
-  while (impl_->out.frames < end) {
-    const FrameReason reason = impl_->frame(impl_->out.frames);
-    ++impl_->out.reasons[static_cast<std::size_t>(reason)];
+std::size_t GraspLister::found() const { return impl_->out.grasps.size(); }
+
+void GraspLister::test(std::uint64_t first, std::uint64_t count) {
+  const std::uint64_t end = std::min(frames(), first + count);
+  for (std::uint64_t id = first; id < end; ++id) {
+    ++impl_->out.reasons[static_cast<std::size_t>(impl_->frame(id))];
     ++impl_->out.frames;
   }
+}
+
+bool GraspLister::advance(std::uint64_t count) {
+  test(impl_->out.frames, count);
   return impl_->out.frames < frames();
 }
 
-GraspList GraspLister::list() const {
-  GraspList sorted = impl_->out;
-  std::stable_sort(sorted.grasps.begin(), sorted.grasps.end(), [](const ListedGrasp& a, const ListedGrasp& b) {
+GraspList GraspLister::list() const { return merged({impl_->out}); }
+
+std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings) {
+  if (kit.hand.pinches()) return PinchSearch(kit, object, settings).frames();
+  return uniform_positions(object.box(), settings.positions).size() * std::uint64_t{settings.orientations};
+}
+
+GraspList merged(std::vector<GraspList> parts) {
+  GraspList out = std::move(parts.front());
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    std::move(parts[i].grasps.begin(), parts[i].grasps.end(), std::back_inserter(out.grasps));
+    for (std::size_t r = 0; r < out.reasons.size(); ++r) out.reasons[r] += parts[i].reasons[r];
+    out.frames += parts[i].frames;
+    out.finger_solutions += parts[i].finger_solutions;
+    out.touch_tests += parts[i].touch_tests;
+    out.closure_tests += parts[i].closure_tests;
+  }
+  std::sort(out.grasps.begin(), out.grasps.end(), [](const ListedGrasp& a, const ListedGrasp& b) {
     return a.grasp.quality != b.grasp.quality ? a.grasp.quality > b.grasp.quality : a.grasp.id < b.grasp.id;
   });
-  return sorted;
+  return out;
 }
 
 GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
-                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings, const std::function<bool()>& cancelled) {
-  GraspLister lister(std::move(kit), std::move(workspaces), std::move(object), settings);
+                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings, const std::function<bool()>& cancelled,
+                      GraspList begun) {
+  GraspLister lister(std::move(kit), std::move(workspaces), std::move(object), settings, std::move(begun));
   while (lister.advance(64)) {
     if (cancelled && cancelled()) break;
   }

@@ -80,14 +80,24 @@ struct GraspList {
 /// Positions of the grasp frame: cell centres of a uniform grid over the box, about `count` of them.
 std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count);
 
+/// Frames of a hand on an object with these settings.
+std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
+
+/// Lists of different frames as one.
+GraspList merged(std::vector<GraspList> parts);
+
 class GraspLister {
  public:
+  /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is gone on with. Empty: from the first frame.
   GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
-              std::shared_ptr<const Graspable> object, const GraspListSettings& settings);
+              std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun = {});
   ~GraspLister();
   GraspLister(GraspLister&&) noexcept;
 
   std::uint64_t frames() const;  ///< in all
+  std::size_t found() const;     ///< grasps so far
+  /// Tests these frames, each independent of all others: several listers may share the work, their lists are merged afterwards.
+  void test(std::uint64_t first, std::uint64_t count);
   /// Tests at most `count` more frames; false when there are none left. Frames go through all positions of an orientation before the next,
   /// so that more orientations only extend the list.
   bool advance(std::uint64_t count);
@@ -102,6 +112,6 @@ class GraspLister {
 /// All frames at once; `cancelled` is asked now and then.
 GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
                       std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
-                      const std::function<bool()>& cancelled = {});
+                      const std::function<bool()>& cancelled = {}, GraspList begun = {});
 
 }  // namespace handsel::grasp_planner

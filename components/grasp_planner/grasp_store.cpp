@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -12,7 +14,7 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::uint32_t kVersion = 3;  // of the form on disk and of the method: raise it when either changes
+constexpr std::uint32_t kVersion = 4;  // of the form on disk and of the method: raise it when either changes
 
 /// FNV-1a, 64 bit.
 class Hash {
@@ -159,26 +161,11 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
   h.add(object.com);
   h.add(object.friction);
   h.add(object.mass);
-  for (const double v : {static_cast<double>(s.positions),
-                         static_cast<double>(s.orientations),
-                         s.step_share,
-                         s.friction,
-                         static_cast<double>(s.cone_edges),
-                         s.full_epsilon,
-                         s.weights.stability,
-                         s.weights.centre,
-                         s.weights.force,
-                         s.weights.curvature,
-                         static_cast<double>(s.contacts_per_finger),
-                         static_cast<double>(s.tries_per_finger),
-                         s.depth,
-                         s.opening,
-                         s.open_clearance,
-                         s.free_distance,
-                         s.grip.max_normal,
-                         s.grip.friction_share,
-                         s.grip.acceleration,
-                         static_cast<double>(s.grip.edges)}) {
+  for (const double v :
+       {static_cast<double>(s.positions), s.step_share, s.friction, static_cast<double>(s.cone_edges), s.full_epsilon, s.weights.stability,
+        s.weights.centre, s.weights.force, s.weights.curvature, static_cast<double>(s.contacts_per_finger),
+        static_cast<double>(s.tries_per_finger), s.depth, s.opening, s.open_clearance, s.free_distance, s.grip.max_normal,
+        s.grip.friction_share, s.grip.acceleration, static_cast<double>(s.grip.edges)}) {
     h.add(v);
   }
   h.add(s.seed);
@@ -192,7 +179,7 @@ std::filesystem::path default_store() {
   return {};
 }
 
-std::filesystem::path GraspStore::file(const std::string& hand, const std::string& object, std::uint64_t key) const {
+std::string GraspStore::stem(const std::string& hand, const std::string& object, std::uint64_t key) {
   const auto plain = [](std::string s) {
     for (char& c : s) {
       if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
@@ -200,13 +187,36 @@ std::filesystem::path GraspStore::file(const std::string& hand, const std::strin
     return s;
   };
   std::ostringstream name;
-  name << "grasps-" << plain(hand) << '-' << plain(object) << '-' << std::hex << key << ".pb";
-  return folder_ / name.str();
+  name << "grasps-" << plain(hand) << '-' << plain(object) << '-' << std::hex << key << '-';
+  return name.str();
 }
 
-std::optional<GraspList> GraspStore::load(const std::string& hand, const std::string& object, std::uint64_t key) const {
+std::filesystem::path GraspStore::file(const std::string& hand, const std::string& object, std::uint64_t key, std::uint64_t frames) const {
+  return folder_ / (stem(hand, object, key) + std::to_string(frames) + ".pb");
+}
+
+std::optional<GraspList> GraspStore::load(const std::string& hand, const std::string& object, std::uint64_t key,
+                                          std::uint64_t most_frames) const {
   if (folder_.empty()) return std::nullopt;
-  std::ifstream in(file(hand, object, key), std::ios::binary);
+  const std::string begin = stem(hand, object, key);
+  std::vector<std::uint64_t> known;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind(begin, 0) != 0 || entry.path().extension() != ".pb") continue;
+    const std::uint64_t frames = std::strtoull(name.c_str() + begin.size(), nullptr, 10);
+    if (frames <= most_frames) known.push_back(frames);
+  }
+  std::sort(known.rbegin(), known.rend());
+  for (const std::uint64_t frames : known) {
+    auto list = read(file(hand, object, key, frames), key);
+    if (list && list->frames == frames) return list;
+  }
+  return std::nullopt;
+}
+
+std::optional<GraspList> GraspStore::read(const std::filesystem::path& file, std::uint64_t key) {
+  std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   config::StoredGraspList stored;
@@ -244,9 +254,10 @@ bool GraspStore::save(const GraspList& list, std::uint64_t key) const {
   stored.set_checksum(checksum(stored));
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
-  const std::filesystem::path target = file(list.hand, list.object, key);
+  static std::atomic<unsigned> written{0};
+  const std::filesystem::path target = file(list.hand, list.object, key, list.frames);
   std::filesystem::path beside = target;
-  beside += "." + std::to_string(::getpid()) + ".new";
+  beside += "." + std::to_string(::getpid()) + "." + std::to_string(++written) + ".new";
   {
     std::ofstream out(beside, std::ios::binary | std::ios::trunc);
     if (!out || !stored.SerializeToOstream(&out) || !out.flush()) {

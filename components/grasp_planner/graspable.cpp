@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "common/base/errors.hpp"
@@ -28,7 +29,8 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_s
     : name_(object.name), com_(object.com), friction_(object.friction), mass_(object.mass) {
   auto mesh = std::make_shared<TriangleMesh>(object.mesh);
   if (mesh->triangles.empty()) throw ConfigError("object " + name_ + ": its mesh has no triangles; it needs a surface");
-  findings_ = orient(*mesh);
+  findings_ = mend(*mesh);
+  if (mesh->triangles.empty()) throw ConfigError("object " + name_ + ": no triangle of its mesh has an area; it needs a surface");
   triangles_ = TriangleTree(*mesh);
   const double largest = triangles_.box().sizes().maxCoeff();
   if (!(largest >= 0.005 && largest <= 2.0)) {
@@ -53,6 +55,15 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_s
   tip_centres_ = PointTree(centres_);
   mesh_ = mesh;
   shape_ = CollisionShape::make(mesh_);
+}
+
+double Graspable::curvature_near(const Vector3& position, const Vector3& normal) const {
+  double best = std::numeric_limits<double>::infinity(), curvature = 0;
+  for (const SurfacePoint& p : points_) {
+    const double d = (p.position - position).squaredNorm() + (p.normal.dot(normal) > 0 ? 0 : 1);
+    if (d < best) best = d, curvature = p.curvature;
+  }
+  return curvature;
 }
 
 }  // namespace handsel::grasp_planner

@@ -19,6 +19,8 @@ class Graspable {
   /// or a size no hand can mean (below 5 mm or above 2 m): it says what to scale.
   Graspable(const ObjectModel& object, double tip_radius, double step_share, std::uint64_t seed);
 
+  /// Of the contact point nearest to `position` on the same side.
+  double curvature_near(const Vector3& position, const Vector3& normal) const;
   const std::string& name() const { return name_; }
   const TriangleMesh& mesh() const { return *mesh_; }
   const MeshFindings& findings() const { return findings_; }

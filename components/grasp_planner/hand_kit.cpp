@@ -26,6 +26,11 @@ void HandKit::forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_st
   for (std::size_t f = 0; f < chains.size(); ++f) chains[f].forward(q, T_hand_step[f]);
 }
 
+bool HandKit::shared(int axis) const {
+  return std::count_if(hand.fingers().begin(), hand.fingers().end(),
+                       [axis](const Finger& f) { return std::find(f.axes.begin(), f.axes.end(), axis) != f.axes.end(); }) > 1;
+}
+
 double HandKit::tip_radius() const {
   double radius = 0;
   for (const FingerChain& c : chains) radius = std::max(radius, c.tip_radius());

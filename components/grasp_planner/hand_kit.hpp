@@ -16,6 +16,8 @@ struct HandKit {
   void forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const;
   /// Largest fingertip radius [m].
   double tip_radius() const;
+  /// Does this hand axis move more than one finger?
+  bool shared(int axis) const;
 
   HandModel hand;
   std::vector<FingerChain> chains;

@@ -65,8 +65,8 @@ PinchSearch::PinchSearch(const HandKit& kit, const Graspable& object, const Gras
 }
 
 std::optional<PinchSearch::Found> PinchSearch::frame(std::uint64_t id, GraspList& counters, FrameReason& why) {
-  const SurfacePoint& place = object_.points()[(id % places_) * stride_ % object_.points().size()];
-  const double turn = 2 * std::numbers::pi * std::fmod(static_cast<double>(id / places_) * kGolden, 1.0);
+  const SurfacePoint& place = object_.points()[id / kTurns * stride_ % object_.points().size()];
+  const double turn = 2 * std::numbers::pi * std::fmod(static_cast<double>(id % kTurns) * kGolden, 1.0);
   const Vector3 u = place.normal.unitOrthogonal();
   const Vector3 along = std::cos(turn) * u + std::sin(turn) * place.normal.cross(u);
   std::vector<SurfaceHit> exits;
@@ -144,10 +144,8 @@ bool PinchSearch::touch(std::uint32_t finger, const Pose& T_object_pad, Found& f
   }
   const double mu = settings_.friction > 0 ? settings_.friction : object_.friction();
   for (const Place* c : corners) {
-    const auto near = std::min_element(object_.points().begin(), object_.points().end(), [&](const SurfacePoint& a, const SurfacePoint& b) {
-      return (a.position - c->hit.position).squaredNorm() < (b.position - c->hit.position).squaredNorm();
-    });
-    found.grasp.contacts.push_back({finger, c->hit.position, c->hit.normal, c->hit.triangle, c->hit.barycentric, mu, near->curvature});
+    found.grasp.contacts.push_back({finger, c->hit.position, c->hit.normal, c->hit.triangle, c->hit.barycentric, mu,
+                                    object_.curvature_near(c->hit.position, c->hit.normal)});
     found.contacts.push_back({c->hit.position, -c->hit.normal, mu});
     found.force -= c->hit.normal.dot(z);
   }

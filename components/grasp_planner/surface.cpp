@@ -1,10 +1,12 @@
 #include "components/grasp_planner/surface.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <random>
+#include <set>
 #include <unordered_map>
 
 namespace handsel::grasp_planner {
@@ -113,23 +115,29 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
     grid[cell_key(cell)].push_back(static_cast<std::uint32_t>(kept.size()));
     kept.push_back(p);
   }
-  std::vector<Vector3> positions;
-  positions.reserve(kept.size());
-  for (const SurfacePoint& p : kept) positions.push_back(p.position);
-  const std::vector<double> curvature = mean_curvature(mesh, positions, settings.curvature_radius);
+  std::vector<Vector3> positions, normals;
+  for (const SurfacePoint& p : kept) {
+    positions.push_back(p.position);
+    normals.push_back(p.normal);
+  }
+  const std::vector<double> curvature = mean_curvature(mesh, positions, normals, settings.curvature_radius);
   for (std::size_t i = 0; i < kept.size(); ++i) kept[i].curvature = normalised_curvature(curvature[i], settings.curvature_radius);
   return kept;
 }
 
-std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, double radius) {
+std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, const std::vector<Vector3>& normals,
+                                   double radius) {
   struct Bend {
     Vector3 a, b;
     double angle;
+    Vector3 facing;  // of the two triangles together
   };
   std::vector<Bend> bends;
   for (const auto& [edge, users] : edges_of(mesh)) {
     double angle = std::numbers::pi;
+    Vector3 facing = area_vector(corners(mesh, users[0].first)).normalized();
     if (users.size() >= 2) {
+      facing += area_vector(corners(mesh, users[1].first)).normalized();
       const Vector3 n0 = area_vector(corners(mesh, users[0].first)), n1 = area_vector(corners(mesh, users[1].first));
       angle = std::atan2(n0.cross(n1).norm(), n0.dot(n1));
       // Convex when the second triangle lies below the plane of the first.
@@ -137,7 +145,8 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
       if (n0.dot((k1.a + k1.b + k1.c) - (k0.a + k0.b + k0.c)) > 0) angle = -angle;
     }
     if (std::abs(angle) > 1e-6)
-      bends.push_back({mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle});
+      bends.push_back(
+          {mesh.vertices[static_cast<std::size_t>(edge.first)], mesh.vertices[static_cast<std::size_t>(edge.second)], angle, facing});
   }
   // Each bend is entered in every cell that its box, grown by the radius, meets; at most 64 cells along an axis by cutting it.
   const double cell = 2 * radius;
@@ -146,7 +155,7 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
   for (const Bend& b : bends) {
     const int parts = std::max(1, static_cast<int>(std::ceil((b.b - b.a).norm() / (2 * cell))));
     for (int k = 0; k < parts; ++k) {
-      const Bend piece{b.a + (b.b - b.a) * k / parts, b.a + (b.b - b.a) * (k + 1) / parts, b.angle};
+      const Bend piece{b.a + (b.b - b.a) * k / parts, b.a + (b.b - b.a) * (k + 1) / parts, b.angle, b.facing};
       const auto low = cell_of(piece.a.cwiseMin(piece.b).array() - radius, cell),
                  high = cell_of(piece.a.cwiseMax(piece.b).array() + radius, cell);
       for (int x = low.x(); x <= high.x(); ++x) {
@@ -159,10 +168,13 @@ std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<V
   }
   std::vector<double> out;
   out.reserve(points.size());
-  for (const Vector3& p : points) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
     double sum = 0;
-    if (const auto found = grid.find(cell_key(cell_of(p, cell))); found != grid.end()) {
-      for (const std::uint32_t i : found->second) sum += pieces[i].angle * length_in_ball(pieces[i].a, pieces[i].b, p, radius);
+    if (const auto found = grid.find(cell_key(cell_of(points[k], cell))); found != grid.end()) {
+      for (const std::uint32_t i : found->second) {
+        if (pieces[i].facing.dot(normals[k]) < -1e-6) continue;
+        sum += pieces[i].angle * length_in_ball(pieces[i].a, pieces[i].b, points[k], radius);
+      }
     }
     out.push_back(std::abs(sum) / (2 * std::numbers::pi * radius * radius));
   }
@@ -251,6 +263,56 @@ MeshFindings orient(TriangleMesh& mesh) {
     }
   }
   return findings;
+}
+
+MeshFindings mend(TriangleMesh& mesh) {
+  double extent = 0;
+  for (const Vector3& v : mesh.vertices) extent = std::max(extent, v.cwiseAbs().maxCoeff());
+  const double grid = std::max(1e-7 * extent, 1e-12);
+  std::map<std::array<long long, 3>, int> known;
+  std::vector<Vector3> vertices;
+  std::set<std::array<int, 3>> seen;
+  std::vector<std::array<int, 3>> triangles;
+  const auto index = [&](int old) {
+    const Vector3& v = mesh.vertices[static_cast<std::size_t>(old)];
+    const auto [at, fresh] = known.try_emplace({std::llround(v.x() / grid), std::llround(v.y() / grid), std::llround(v.z() / grid)},
+                                               static_cast<int>(vertices.size()));
+    if (fresh) vertices.push_back(v);
+    return at->second;
+  };
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const auto& t : mesh.triangles) {
+    for (const int v : t) used[static_cast<std::size_t>(v)] = true;
+    const std::array<int, 3> k = {index(t[0]), index(t[1]), index(t[2])};
+    const auto at = [&](std::size_t i) -> const Vector3& { return vertices[static_cast<std::size_t>(k[i])]; };
+    const double longest = std::max({(at(1) - at(0)).squaredNorm(), (at(2) - at(1)).squaredNorm(), (at(0) - at(2)).squaredNorm()});
+    std::array<int, 3> sorted = k;
+    std::sort(sorted.begin(), sorted.end());
+    if ((at(1) - at(0)).cross(at(2) - at(0)).norm() > 1e-9 * longest && seen.insert(sorted).second) triangles.push_back(k);
+  }
+  const auto before = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
+  const auto welded = static_cast<std::uint32_t>(before - vertices.size());
+  const auto dropped = static_cast<std::uint32_t>(mesh.triangles.size() - triangles.size());
+  mesh.vertices = std::move(vertices);
+  mesh.triangles = std::move(triangles);
+  MeshFindings findings = orient(mesh);
+  findings.welded = welded;
+  findings.dropped = dropped;
+  return findings;
+}
+
+std::vector<std::string> sentences(const MeshFindings& f) {
+  std::vector<std::string> out;
+  const auto say = [&out](std::uint32_t count, const std::string& what) {
+    if (count > 0) out.push_back(std::to_string(count) + " " + what);
+  };
+  say(f.welded, "vertices were there more than once; they were welded.");
+  say(f.dropped, "triangles were without area or repeated; they were left out.");
+  say(f.turned, "triangles faced the wrong way; they were turned.");
+  say(f.open_edges, "edges are borders of holes; the holes were left open, and a place behind them counts as outside.");
+  say(f.crowded_edges, "edges are shared by more than two triangles; the parts that meet there were oriented one by one.");
+  if (f.components > 1) say(f.components, "parts are not connected; they were taken as one rigid object.");
+  return out;
 }
 
 }  // namespace handsel::grasp_planner

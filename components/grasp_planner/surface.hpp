@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "common/geometry/shape.hpp"
@@ -28,8 +29,9 @@ std::vector<SurfacePoint> sample_surface(const TriangleMesh& mesh, const Surface
 
 /// Mean curvature |H| [1/m] averaged over a ball at each point, from the signed dihedral angles of the mesh's edges (normal cycle; ours in
 /// place of values interpolated from vertices: independent of the triangulation). An open border counts as an edge that turns by 180
-/// degrees.
-std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, double radius);
+/// degrees. `normals`: of the surface at the points; edges of the other side of a thin wall do not count.
+std::vector<double> mean_curvature(const TriangleMesh& mesh, const std::vector<Vector3>& points, const std::vector<Vector3>& normals,
+                                   double radius);
 
 /// 0 flat ... 1 at least as sharp as a right-angled edge under the ball: min(1, 2 |H| radius).
 double normalised_curvature(double mean_curvature, double radius);
@@ -42,7 +44,13 @@ struct MeshFindings {
   std::uint32_t open_edges{};     ///< borders of holes
   std::uint32_t crowded_edges{};  ///< shared by more than two triangles
   std::uint32_t turned{};         ///< triangles whose orientation was mended
+  std::uint32_t welded{};         ///< vertices that were there more than once
+  std::uint32_t dropped{};        ///< triangles without area, or there more than once
 };
+/// What was found and what was done about it, a sentence each; none when the mesh is sound.
+std::vector<std::string> sentences(const MeshFindings& findings);
+/// Welds equal vertices, drops vertices no triangle has, and triangles that are degenerate or repeated; then orients it.
+MeshFindings mend(TriangleMesh& mesh);
 /// Makes the triangles' orientation consistent over each connected component, outward on the whole; inner shells of cavities stay inward.
 MeshFindings orient(TriangleMesh& mesh);
 

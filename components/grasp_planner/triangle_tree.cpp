@@ -15,24 +15,30 @@ double segment_segment_squared(const Vector3& a0, const Vector3& a1, const Vecto
   return nearest_points(a0, a1, b0, b1, on_a, on_b);
 }
 
-double point_triangle_squared(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+/// Barycentric coordinates of the point of the triangle nearest to p.
+Vector3 nearest_on_triangle(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
   const Vector3 bp = p - b;
   const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - ab * (d1 / (d1 - d3))).squaredNorm();
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
   const Vector3 cp = p - c;
   const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - ac * (d2 / (d2 - d6))).squaredNorm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return (bp - (c - b) * ((d4 - d3) / (d4 - d3 + d5 - d6))).squaredNorm();
-  const double denominator = va + vb + vc;
-  return (ap - ab * (vb / denominator) - ac * (vc / denominator)).squaredNorm();
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  const double va = d3 * d6 - d5 * d4, along = (d4 - d3) / (d4 - d3 + d5 - d6);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return {0, 1 - along, along};
+  const double v = vb / (va + vb + vc), w = vc / (va + vb + vc);
+  return {1 - v - w, v, w};
+}
+
+double point_triangle_squared(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Vector3 k = nearest_on_triangle(p, a, b, c);
+  return (p - k[0] * a - k[1] * b - k[2] * c).squaredNorm();
 }
 
 // Does the segment pass through the triangle?
@@ -137,6 +143,32 @@ double TriangleTree::search(const Vector3& a, const Vector3& b, double limit, bo
     }
   }
   return std::sqrt(best);
+}
+
+SurfaceHit TriangleTree::nearest(const Vector3& p) const {
+  SurfaceHit out;
+  double best = std::numeric_limits<double>::infinity();
+  std::array<std::uint32_t, 64> stack{};
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const Node& node = nodes_[stack[--depth]];
+    if (node.box.squaredExteriorDistance(p) >= best) continue;
+    if (node.count == 0) {
+      const bool left_first = nodes_[node.left].box.squaredExteriorDistance(p) < nodes_[node.right].box.squaredExteriorDistance(p);
+      stack[depth++] = left_first ? node.right : node.left;
+      stack[depth++] = left_first ? node.left : node.right;
+      continue;
+    }
+    for (std::uint32_t i = node.left; i < node.left + node.count; ++i) {
+      const Triangle& t = triangles_[i];
+      const Vector3 k = nearest_on_triangle(p, t.a, t.b, t.c), at = k[0] * t.a + k[1] * t.b + k[2] * t.c;
+      if ((p - at).squaredNorm() >= best) continue;
+      best = (p - at).squaredNorm();
+      out = {std::sqrt(best), at, (t.b - t.a).cross(t.c - t.a).normalized(), t.index, k};
+    }
+  }
+  return out;
 }
 
 /// Visits the triangles whose boxes' leaves meet the box of the segment.

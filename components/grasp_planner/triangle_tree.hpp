@@ -25,6 +25,8 @@ class TriangleTree {
   bool nearer_than(const Vector3& a, const Vector3& b, double radius) const;
   /// Distance of the segment to the surface [m]; `limit` when it is farther than that.
   double distance(const Vector3& a, const Vector3& b, double limit) const;
+  /// The surface point nearest to `p`; `along` is its distance. The tree must not be empty.
+  SurfaceHit nearest(const Vector3& p) const;
   /// Inside a closed mesh: most of three rays cross it an odd number of times.
   bool contains(const Vector3& p) const;
   /// All places where the ray from `p` along the unit vector `d` meets the surface within `length` [m], nearest first.

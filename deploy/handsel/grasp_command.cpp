@@ -10,6 +10,7 @@
 #include "components/grasp_planner/epsilon.hpp"
 #include "deploy/handsel/grasp_input.hpp"
 #include "deploy/handsel/grasp_show_command.hpp"
+#include "deploy/handsel/grasp_table.hpp"
 #include "deploy/handsel/json_lines.hpp"
 #include "deploy/handsel/terminal.hpp"
 
@@ -119,6 +120,35 @@ int list(const ListOptions& o) {
   return listed.list.grasps.empty() ? 1 : 0;
 }
 
+struct TableOptions : ListOptions {
+  std::vector<std::string> hands{"sah", "allegro", "barrett"}, objects;
+  bool fit{};
+};
+
+int table(const TableOptions& o) {
+  bool all = true;
+  const bool text = !json_wanted(o.as_json);
+  if (text) std::printf("%s\n", table_head().c_str());
+  for (const std::string& object : o.objects) {
+    for (const std::string& hand : o.hands) {
+      ListOptions one = o;
+      one.object = object;
+      const TableRow r = table_row(hand, one, o.fit);
+      all = all && r.grasps > 0;
+      if (text) {
+        std::printf("%s\n", table_line(r).c_str());
+      } else {
+        std::cout << json{{"object", r.object},       {"hand", r.hand},         {"scale", r.scale},   {"size", r.size},
+                          {"triangles", r.triangles}, {"frames", r.frames},     {"grasps", r.grasps}, {"best", r.best},
+                          {"seconds", r.seconds},     {"findings", r.findings}, {"reason", r.reason}}
+                         .dump()
+                  << '\n';
+      }
+    }
+  }
+  return all ? 0 : 1;
+}
+
 struct PairOptions : ListOptions {
   std::string hand2{"sah"};
   std::size_t most_of_each{200};
@@ -178,6 +208,19 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(CLI::NonNegativeNumber)->capture_default_str();
   doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));
   doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
+
+  CLI::App* tabling =
+      grasp->add_subcommand("table", "Hands against objects: numbers of grasps, best quality, time and reasons, a line each");
+  auto t = std::make_shared<TableOptions>();
+  tabling->add_option("--hand", t->hands, "hand description: name or file; may be repeated")->capture_default_str();
+  tabling->add_option("--object", t->objects, "mesh file or object description; may be repeated")->required();
+  tabling->add_flag("--fit", t->fit, "scale an object that is too large or too small for the hand");
+  tabling->add_option("--positions", t->positions, "grasp frames: positions in the object's box")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  tabling->add_option("--orientations", t->orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
+  tabling->add_flag("--json", t->as_json, "JSON Lines also on a terminal");
+  tabling->callback([t, &exit_code] { exit_code = table(*t); });
 
   add_grasp_show(*grasp, exit_code);
 }

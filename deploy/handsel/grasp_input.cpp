@@ -1,7 +1,9 @@
 #include "deploy/handsel/grasp_input.hpp"
 
+#include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <thread>
 
 #include "common/config/resources.hpp"
 #include "deploy/handsel/terminal.hpp"
@@ -13,11 +15,31 @@ using namespace grasp_planner;
 namespace {
 
 void report_mesh(const Graspable& object) {
-  const MeshFindings& f = object.findings();
-  if (f.open_edges > 0) std::fprintf(stderr, "mesh: %u open edges; its holes are left open\n", f.open_edges);
-  if (f.crowded_edges > 0) std::fprintf(stderr, "mesh: %u edges shared by more than two triangles\n", f.crowded_edges);
-  if (f.components > 1) std::fprintf(stderr, "mesh: %u separate parts\n", f.components);
-  if (f.turned > 0) std::fprintf(stderr, "mesh: %u triangles faced the wrong way and were turned\n", f.turned);
+  for (const std::string& s : sentences(object.findings())) std::fprintf(stderr, "mesh: %s\n", s.c_str());
+}
+
+/// Frames are dealt out to the cores.
+GraspList on_all_cores(const Listed& with, const GraspListSettings& settings) {
+  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
+  const std::uint64_t frames = frame_count(*with.kit, *with.object, settings);
+  std::atomic<std::uint64_t> next{0};
+  std::vector<GraspList> parts(threads);
+  const auto work = [&](std::size_t of) {
+    GraspLister lister(with.kit, with.workspaces, with.object, settings);
+    for (std::uint64_t first; (first = next.fetch_add(64)) < frames;) {
+      lister.test(first, 64);
+      if (of == 0 && progress_wanted())
+        std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * first / frames), static_cast<unsigned long long>(frames));
+    }
+    parts[of] = lister.list();
+  };
+  {
+    std::vector<std::jthread> others;
+    for (std::size_t k = 1; k < threads; ++k) others.emplace_back(work, k);
+    work(0);
+  }
+  if (progress_wanted()) std::fprintf(stderr, "\r\033[K");
+  return merged(std::move(parts));
 }
 
 }  // namespace
@@ -35,7 +57,7 @@ ObjectModel object_of(const ListOptions& o) {
   }
   object.name = path.stem().string();
   object.mesh = load_mesh(path, Vector3::Constant(o.scale));
-  orient(object.mesh);
+  mend(object.mesh);
   object.com = mass_centre(object.mesh);
   object.friction = 0.5;
   return object;
@@ -45,16 +67,16 @@ std::shared_ptr<const HandKit> kit_of(const std::string& hand) {
   return std::make_shared<const HandKit>(HandModel::load(hand_description(hand)));
 }
 
-Listed prepared(const std::string& hand, const ListOptions& o) {
+Listed prepared(const std::string& hand, const ListOptions& o, bool quiet) {
   Listed out;
   out.kit = kit_of(hand);
   out.object = std::make_shared<const Graspable>(object_of(o), out.kit->tip_radius(), GraspListSettings{}.step_share, o.seed);
-  report_mesh(*out.object);
+  if (!quiet) report_mesh(*out.object);
   return out;
 }
 
-Listed list_with(const std::string& hand, const ListOptions& o) {
-  Listed out = prepared(hand, o);
+Listed list_with(const std::string& hand, const ListOptions& o, bool quiet) {
+  Listed out = prepared(hand, o, quiet);
   GraspListSettings settings;
   settings.positions = o.positions;
   settings.orientations = o.orientations;
@@ -62,20 +84,11 @@ Listed list_with(const std::string& hand, const ListOptions& o) {
   settings.seed = o.seed;
   out.workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*out.kit));
   const auto start = std::chrono::steady_clock::now();
-  GraspLister lister(out.kit, out.workspaces, out.object, settings);
-  std::uint64_t done = 0;
-  while (lister.advance(256)) {
-    done += 256;
-    if (progress_wanted()) {
-      std::fprintf(stderr, "\r%3d %% of %llu frames", static_cast<int>(100 * done / lister.frames()),
-                   static_cast<unsigned long long>(lister.frames()));
-    }
-  }
-  if (progress_wanted()) std::fprintf(stderr, "\r\033[K");
-  out.list = lister.list();
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.list = on_all_cores(out, settings);
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (quiet) return out;
   std::fprintf(stderr, "%zu grasps of hand %s on %s from %llu frames in %.2f s (seed %llu)\n", out.list.grasps.size(),
-               out.list.hand.c_str(), out.list.object.c_str(), static_cast<unsigned long long>(out.list.frames), seconds,
+               out.list.hand.c_str(), out.list.object.c_str(), static_cast<unsigned long long>(out.list.frames), out.seconds,
                static_cast<unsigned long long>(o.seed));
   for (const Refusal& r : out.list.refusals()) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
   return out;

@@ -25,11 +25,12 @@ struct Listed {
   std::shared_ptr<const grasp_planner::FingerWorkspaces> workspaces;
   std::shared_ptr<const grasp_planner::Graspable> object;
   grasp_planner::GraspList list;
+  double seconds{};  ///< that the list took
 };
 std::shared_ptr<const grasp_planner::HandKit> kit_of(const std::string& hand);
 /// Hand and object without workspaces and list.
-Listed prepared(const std::string& hand, const ListOptions& options);
-/// Makes the list of a hand (name or file) on the options' object; findings, counts and time go to stderr.
-Listed list_with(const std::string& hand, const ListOptions& options);
+Listed prepared(const std::string& hand, const ListOptions& options, bool quiet = false);
+/// Makes the list of a hand (name or file) on the options' object; findings, counts and time go to stderr unless `quiet`.
+Listed list_with(const std::string& hand, const ListOptions& options, bool quiet = false);
 
 }  // namespace handsel

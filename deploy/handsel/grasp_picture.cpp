@@ -95,9 +95,12 @@ void draw_curvature(Canvas& canvas, const Graspable& object, double radius) {
     const auto at = [&](std::size_t k) -> const Vector3& { return object.mesh().vertices[static_cast<std::size_t>(t[k])]; };
     cut(at(0), at(1), at(2), longest, pieces);
   }
-  std::vector<Vector3> corners;
-  for (const auto& p : pieces) corners.insert(corners.end(), p.begin(), p.end());
-  const std::vector<double> curvature = mean_curvature(object.mesh(), corners, radius);
+  std::vector<Vector3> corners, normals;
+  for (const auto& p : pieces) {
+    corners.insert(corners.end(), p.begin(), p.end());
+    normals.insert(normals.end(), 3, (p[1] - p[0]).cross(p[2] - p[0]).normalized());
+  }
+  const std::vector<double> curvature = mean_curvature(object.mesh(), corners, normals, radius);
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     std::array<Colour, 3> colours{};
     for (std::size_t k = 0; k < 3; ++k) colours[k] = curvature_colour(normalised_curvature(curvature[3 * i + k], radius));

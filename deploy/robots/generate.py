@@ -99,14 +99,14 @@ def link(name, mass=0.0, shapes=()):
     return out + ["  </link>"]
 
 
-def joint(name, kind, parent, child, xyz=(0, 0, 0), turn=(0, 0, 0), axis=None, limits=None, mimic=None):
+def joint(name, kind, parent, child, xyz=(0, 0, 0), turn=(0, 0, 0), axis=None, limits=None, mimic=None, share=1):
     out = [f'  <joint name="{name}" type="{kind}">', f'    <parent link="{parent}"/><child link="{child}"/>',
            f'    <origin xyz="{numbers(xyz)}" rpy="{numbers(turn)}"/>']
     if axis:
         lower, upper, velocity, effort = limits
         out.append(f'    <axis xyz="{numbers(axis)}"/><limit lower="{lower:.6f}" upper="{upper:.6f}" velocity="{velocity:g}" effort="{effort:g}"/>')
     if mimic:
-        out.append(f'    <mimic joint="{mimic}" multiplier="1" offset="0"/>')
+        out.append(f'    <mimic joint="{mimic}" multiplier="{share:g}" offset="0"/>')
     return out + ["  </joint>"]
 
 
@@ -183,6 +183,69 @@ HUMAN_SCALE = 0.63
 HUMAN_RANGES = {"abduction": (-20, 20), "proximal": (-20, 90), "middle": (0, 90), "rotation": (-10, 100)}
 
 
+# --- Allegro hand, right (numbers of the maker's model): the palm faces +x, fingers along z --------------------------------------------------
+ALLEGRO_TIP, ALLEGRO_EFFORT = 0.012, 0.7
+ALLEGRO_FINGERS = [("fore", 0, (0, 0.0435, -0.001542), -5), ("middle", 4, (0, 0, 0.0007), 0), ("ring", 8, (0, -0.0435, -0.001542), 5)]
+
+
+def allegro():
+    def chain(parent, rows):
+        out = []
+        for number, xyz, turn, axis, limits, mass, shapes in rows:
+            child = f"link_{number}"
+            out += joint(f"joint_{number}", "revolute", parent, child, xyz, turn, axis, limits + (3.14, ALLEGRO_EFFORT)) + link(child, mass, shapes)
+            parent = child
+        return out, parent
+
+    def tip(name, parent, along):
+        return joint(f"{name}_tip_fixed", "fixed", parent, f"{name}_tip", (0, 0, along)) + link(f"{name}_tip")
+
+    still = (0, 0, 0)
+    out = link("palm", 0.4154, [box(0.0414, 0.112, 0.0448, (-0.009, 0, -0.023)), box(0.0414, 0.0538, 0.0428, (-0.009, -0.0253, -0.0667)),
+                                box(0.0414, 0.072, 0.013, (-0.0093, -0.00557, -0.08874))])
+    for name, n, at, roll in ALLEGRO_FINGERS:
+        rows = [(n, at, (roll * DEG, 0, 0), (0, 0, 1), (-0.47, 0.47), 0.0119, [box(0.0196, 0.0275, 0.0164, (0, 0, 0.0082))]),
+                (n + 1, (0, 0, 0.0164), still, (0, 1, 0), (-0.196, 1.61), 0.065, [rod(0.0125, (0, 0, 0), (0, 0, 0.054))]),
+                (n + 2, (0, 0, 0.054), still, (0, 1, 0), (-0.174, 1.709), 0.0355, [rod(0.0125, (0, 0, 0), (0, 0, 0.0384))]),
+                (n + 3, (0, 0, 0.0384), still, (0, 1, 0), (-0.227, 1.618), 0.0368,
+                 [rod(0.0115, (0, 0, 0), (0, 0, 0.0267)), sphere(ALLEGRO_TIP, (0, 0, 0.0267))])]
+        made, last = chain("palm", rows)
+        out += made + tip(name, last, 0.0267)
+    rows = [(12, (-0.0182, 0.019333, -0.045987), (0, -95 * DEG, -90 * DEG), (-1, 0, 0), (0.263, 1.396), 0.0176,
+             [box(0.0358, 0.034, 0.0455, (-0.0179, 0.009, 0.0145))]),
+            (13, (-0.027, 0.005, 0.0399), still, (0, 0, 1), (-0.105, 1.163), 0.0119, [box(0.0196, 0.0275, 0.0177, (0, 0, 0.00885))]),
+            (14, (0, 0, 0.0177), still, (0, 1, 0), (-0.189, 1.644), 0.038, [rod(0.0125, (0, 0, 0), (0, 0, 0.0514))]),
+            (15, (0, 0, 0.0514), still, (0, 1, 0), (-0.162, 1.719), 0.0388,
+             [rod(0.0115, (0, 0, 0), (0, 0, 0.0423)), sphere(ALLEGRO_TIP, (0, 0, 0.0423))])]
+    made, last = chain("palm", rows)
+    return out + made + tip("thumb", last, 0.0423)
+
+
+# --- Barrett hand (numbers of published models): two fingers spread together about z, each distal joint follows its middle joint -------------
+BARRETT_TIP, BARRETT_DISTAL = 0.009, 1 / 3
+
+
+def barrett():
+    def finger(n, parent, at, turn):
+        out = joint(f"finger_{n}", "revolute", parent, f"finger_{n}_middle_link", at, turn, (0, 0, -1), (0, 2.44, 2.0, 5))
+        out += link(f"finger_{n}_middle_link", 0.1, [rod(0.0115, (0, 0.003, 0), (-0.069936, 0.003, 0))])
+        out += joint(f"finger_{n}_distal", "revolute", f"finger_{n}_middle_link", f"finger_{n}_distal_link", (-0.069936, 0.003, 0), (0, 0, 0),
+                     (0, 0, -1), (0, 0.838, 2.0, 5), mimic=f"finger_{n}", share=BARRETT_DISTAL)
+        out += link(f"finger_{n}_distal_link", 0.06, [rod(0.009, (0, 0, 0), (-0.038, 0.034, 0)), sphere(BARRETT_TIP, (-0.038, 0.034, 0))])
+        out += joint(f"finger_{n}_tip_fixed", "fixed", f"finger_{n}_distal_link", f"finger_{n}_tip", (-0.038, 0.034, 0))
+        return out + link(f"finger_{n}_tip")
+
+    quarter = math.pi / 2
+    out = link("palm", 0.6, [cylinder(0.045, 0.042, (0, 0, 0.021)), box(0.026, 0.108, 0.026, (0, -0.011, 0.054)), box(0.076, 0.046, 0.014, (0, 0, 0.072))])
+    for n, x, turning in ((1, 0.025, -1), (2, -0.025, 1)):
+        name = "spread" if n == 1 else "spread_other"
+        out += joint(name, "revolute", "palm", f"finger_{n}_base", (x, 0, 0.0415), (0, 0, -quarter), (0, 0, turning), (0, math.pi, 2.0, 5),
+                     mimic=None if n == 1 else "spread")
+        out += link(f"finger_{n}_base", 0.12, [cylinder(0.02, 0.03, (0, 0, 0.012)), box(0.05, 0.024, 0.026, (-0.025, 0, 0.012))])
+        out += finger(n, f"finger_{n}_base", (-0.05, 0, 0.0339), (quarter, 0, 0))
+    return out + finger(3, "palm", (0, -0.05, 0.0754), (quarter, 0, quarter))
+
+
 # --- Jido: mobile platform, column, KUKA LWR 4+ mounted sideways, pan-tilt head ----------------------------------------------------------
 ARM_BASE = ((0.165, -0.1105, 0.907), [[0, 1, 0], [0, 0, -1], [-1, 0, 0]])
 # joint, height above the previous joint, axis, limit [deg], velocity [deg/s], torque [Nm], mass of the link [kg], shapes of the link
@@ -229,4 +292,6 @@ write("../hands/sah/sah.urdf", "sah", Hand().urdf())
 write("../hands/sah_left/sah_left.urdf", "sah_left", Hand("left_", left=True).urdf())
 write("../hands/human_right/human_right.urdf", "human_right", Hand("", HUMAN_SCALE, False, HUMAN_RANGES).urdf())
 write("../hands/human_left/human_left.urdf", "human_left", Hand("left_", HUMAN_SCALE, True, HUMAN_RANGES).urdf())
+write("../hands/allegro/allegro.urdf", "allegro", allegro())
+write("../hands/barrett/barrett.urdf", "barrett", barrett())
 write("jido/jido.urdf", "jido", jido())

@@ -2,40 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <random>
 
 #include "components/grasp_planner/epsilon.hpp"
-
-extern "C" {
-#include <libqhull_r/qhull_ra.h>
-}
+#include "tests/support/hull_oracle.hpp"
 
 namespace handsel::grasp_planner {
 namespace {
 
-// Signed distance of the origin to the hull: positive inside; -1 when Qhull finds the set flat.
-double hull_oracle(const WrenchMatrix& w) {
-  std::vector<double> points(w.data(), w.data() + w.size());
-  qhT qh_storage;
-  qhT* qh = &qh_storage;
-  QHULL_LIB_CHECK
-  qh_zero(qh, nullptr);
-  char command[] = "qhull Qt";
-  FILE* silent = std::fopen("/dev/null", "w");
-  const int failed = qh_new_qhull(qh, static_cast<int>(w.rows()), static_cast<int>(w.cols()), points.data(), 0, command, silent, silent);
-  double least = -1;
-  if (!failed) {
-    least = 1e9;
-    facetT* facet = nullptr;
-    FORALLfacets { least = std::min(least, -facet->offset); }
-  }
-  qh_freeqhull(qh, qh_ALL);
-  int current = 0, total = 0;
-  qh_memfreeshort(qh, &current, &total);
-  std::fclose(silent);
-  return least;
-}
+using test::hull_oracle;
 
 std::vector<PointContact> random_contacts(std::mt19937_64& random, int count, bool on_grid) {
   std::normal_distribution<double> normal;
@@ -62,7 +37,7 @@ TEST(GraspStability, agrees_with_an_independent_hull_on_random_contacts) {
   for (int trial = 0; trial < 1500; ++trial) {
     const int count = 2 + trial % 4;
     const WrenchMatrix w = contact_wrenches(random_contacts(random, count, false), 8, Vector3::Zero(), 1.0);
-    const double oracle = hull_oracle(w);
+    const double hull = hull_oracle(w), oracle = std::isnan(hull) ? -1 : hull;  // flat: not closed
     if (std::abs(oracle) < 1e-7) continue;
     ++compared;
     closed += oracle > 0;

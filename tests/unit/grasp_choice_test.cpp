@@ -158,7 +158,7 @@ TEST_F(GraspChoice, a_robot_with_another_hand_is_refused) {
 TEST_F(GraspChoice, lists_come_back_from_disk_as_they_were) {
   const std::uint64_t key = list_key(kit->hand, *library("mug"), settings);
   const GraspStore store(store_folder());
-  const auto back = store.load("sah", "mug", key);
+  const auto back = store.load("sah", "mug", key, page->list.frames);
   ASSERT_TRUE(back.has_value());
   ASSERT_EQ(back->grasps.size(), page->list.grasps.size());
   EXPECT_EQ(back->frames, page->list.frames);
@@ -180,25 +180,25 @@ TEST_F(GraspChoice, a_damaged_or_foreign_list_is_not_used) {
   const std::uint64_t key = list_key(kit->hand, *library("mug"), settings);
   const GraspStore store(store_folder() / "damaged");
   ASSERT_TRUE(store.save(page->list, key));
-  const auto file = store.file("sah", "mug", key);
+  const auto file = store.file("sah", "mug", key, page->list.frames);
   const auto size = std::filesystem::file_size(file);
   std::fstream io(file, std::ios::in | std::ios::out | std::ios::binary);
   io.seekp(static_cast<std::streamoff>(size / 2));
   io.put('\x55');
   io.put('\x2a');
   io.close();
-  EXPECT_FALSE(store.load("sah", "mug", key).has_value());
+  EXPECT_FALSE(store.load("sah", "mug", key, page->list.frames).has_value());
   ASSERT_TRUE(store.save(page->list, key));
-  EXPECT_TRUE(store.load("sah", "mug", key).has_value());
+  EXPECT_TRUE(store.load("sah", "mug", key, page->list.frames).has_value());
   std::filesystem::resize_file(file, size / 3);
-  EXPECT_FALSE(store.load("sah", "mug", key).has_value());
+  EXPECT_FALSE(store.load("sah", "mug", key, page->list.frames).has_value());
   std::filesystem::resize_file(file, 0);
-  EXPECT_FALSE(store.load("sah", "mug", key).has_value());
+  EXPECT_FALSE(store.load("sah", "mug", key, page->list.frames).has_value());
   GraspListSettings other = settings;
   other.opening *= 2;
   EXPECT_NE(list_key(kit->hand, *library("mug"), other), key);
   EXPECT_NE(list_key(kit->hand, *library("box"), settings), key);
-  EXPECT_FALSE(store.load("sah", "mug", key + 1).has_value());
+  EXPECT_FALSE(store.load("sah", "mug", key + 1, page->list.frames).has_value());
   EXPECT_FALSE(GraspStore("").save(page->list, key));
 }
 

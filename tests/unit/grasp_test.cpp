@@ -126,10 +126,22 @@ TEST(Surface, points_lie_on_their_triangles_and_cover_the_surface) {
 
 TEST(Surface, mean_curvature_of_a_cylinder_is_half_its_inverse_radius) {
   const TriangleMesh m = cylinder(0.05, 0.4, 200, 60);
-  const auto h = mean_curvature(m, {{0.05, 0, 0.2}, {0, 0.05, 0.15}, {0.01, 0, 0.4}}, 0.013);
+  const auto h = mean_curvature(m, {{0.05, 0, 0.2}, {0, 0.05, 0.15}, {0.01, 0, 0.4}}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, 0.013);
   EXPECT_NEAR(h[0], 1 / (2 * 0.05), 1);
   EXPECT_NEAR(h[1], 1 / (2 * 0.05), 1);
   EXPECT_NEAR(h[2], 0, 1e-9);
+}
+
+TEST(Surface, the_other_side_of_a_thin_wall_does_not_hide_an_edge) {
+  // A cup with a wall of 3 mm: at the outer bottom edge the corner inside bends the other way.
+  TriangleMesh outer = cylinder(0.05, 0.1, 100, 20), inner = cylinder(0.047, 0.097, 100, 20);
+  orient(outer);
+  orient(inner);
+  const auto shift = static_cast<int>(outer.vertices.size());
+  for (const Vector3& v : inner.vertices) outer.vertices.push_back(v + Vector3(0, 0, 0.0015));
+  for (const auto& t : inner.triangles) outer.triangles.push_back({t[0] + shift, t[2] + shift, t[1] + shift});
+  const auto h = mean_curvature(outer, {{0.05, 0, 0.002}}, {{1, 0, 0}}, 0.013);
+  EXPECT_GT(normalised_curvature(h[0], 0.013), 0.7);
 }
 
 TEST(Surface, turned_triangles_are_mended) {
@@ -140,6 +152,33 @@ TEST(Surface, turned_triangles_are_mended) {
   EXPECT_EQ(f.open_edges, 0U);
   EXPECT_EQ(f.turned, (m.triangles.size() + 2) / 3);
   for (const SurfacePoint& p : sample_surface(m, {})) EXPECT_GT(p.normal.dot(p.position - Vector3(0, 0, 0.05)), 0);
+}
+
+TEST(Surface, what_is_wrong_with_a_mesh_is_mended_and_said) {
+  TriangleMesh m = cylinder(0.04, 0.1, 24, 4);
+  const std::size_t triangles = m.triangles.size(), vertices = m.vertices.size();
+  m.vertices.push_back(m.vertices[5]);    // twice
+  m.vertices.emplace_back(9, 9, 9);       // nobody's
+  m.triangles.push_back(m.triangles[7]);  // twice
+  m.triangles.push_back({3, 3, 8});       // no area
+  const auto copy = static_cast<int>(vertices);
+  for (auto& t : m.triangles) {
+    for (int& v : t) {
+      if (v == 5 && &t > &m.triangles[9]) v = copy;
+    }
+  }
+  const MeshFindings f = mend(m);
+  EXPECT_EQ(f.welded, 1U);
+  EXPECT_EQ(f.dropped, 2U);
+  EXPECT_EQ(f.open_edges, 0U);
+  EXPECT_EQ(f.components, 1U);
+  EXPECT_EQ(m.triangles.size(), triangles);
+  EXPECT_EQ(m.vertices.size(), vertices);
+  EXPECT_EQ(sentences(f).size(), 2U);
+  EXPECT_TRUE(sentences(mend(m)).empty());
+  m.triangles.pop_back();
+  ASSERT_EQ(sentences(mend(m)).size(), 1U);
+  EXPECT_NE(sentences(mend(m)).front().find("3 edges are borders of holes"), std::string::npos);
 }
 
 TEST(PointTree, finds_what_a_scan_finds) {
@@ -159,6 +198,31 @@ TEST(PointTree, finds_what_a_scan_finds) {
     }
     std::sort(found.begin(), found.end());
     EXPECT_EQ(found, expected);
+  }
+}
+
+TEST(TriangleTree, nearest_is_what_a_scan_of_dense_samples_finds) {
+  const TriangleMesh mesh = cylinder(0.04, 0.1, 30, 3);
+  const TriangleTree tree(mesh);
+  SurfaceSettings dense;
+  dense.step = 0.001;
+  dense.max_points = 100000;
+  const auto samples = sample_surface(mesh, dense);
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> at(-0.08, 0.15);
+  for (int i = 0; i < 200; ++i) {
+    const Vector3 p(at(random), at(random), at(random));
+    const SurfaceHit hit = tree.nearest(p);
+    const auto& t = mesh.triangles[hit.triangle];
+    Vector3 on = Vector3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) on += hit.barycentric[static_cast<Eigen::Index>(k)] * mesh.vertices[static_cast<std::size_t>(t[k])];
+    EXPECT_LT((on - hit.position).norm(), 1e-12);
+    EXPECT_GE(hit.barycentric.minCoeff(), -1e-12);
+    EXPECT_NEAR((p - hit.position).norm(), hit.along, 1e-12);
+    double best = 1;
+    for (const SurfacePoint& s : samples) best = std::min(best, (s.position - p).norm());
+    EXPECT_LE(hit.along, best + 1e-12);
+    EXPECT_GT(hit.along, best - 0.001);
   }
 }
 
