@@ -13,10 +13,16 @@ namespace handsel::path_planner {
 class Budget {
  public:
   Budget(const CollisionWorld& world, std::uint64_t limit, const Hooks& hooks)
-      : judge_(world), hooks_(hooks), before_(world.checks()), limit_(limit) {}
+      : judge_(world), hooks_(hooks), before_(world.checks()), exact_before_(world.exact_checks()), limit_(limit) {}
 
-  std::uint64_t checks() const { return judge_.checks() - before_ + charged_; }  ///< states judged, and what was charged
-  void charge(std::uint64_t checks) { charged_ += checks; }                      ///< work that counts like that many checks
+  /// States judged, and what was charged.
+  std::uint64_t checks() const { return judge_.checks() - before_ + exact_more_ * (judge_.exact_checks() - exact_before_) + charged_; }
+  /// From now on a state that only the exact check could judge counts as so many more: where the time it takes is what matters.
+  void charge_exact(std::uint64_t more) {
+    exact_more_ = more;
+    exact_before_ = judge_.exact_checks();
+  }
+  void charge(std::uint64_t checks) { charged_ += checks; }  ///< work that counts like that many checks
   std::uint64_t limit() const { return limit_; }
   void limit(std::uint64_t checks) { limit_ = checks; }  ///< counted from the beginning
   bool cancelled() const { return (hooks_.cancelled && hooks_.cancelled()) || (stop_ && stop_()); }
@@ -28,7 +34,7 @@ class Budget {
   const CollisionWorld& judge_;
   const Hooks& hooks_;
   std::function<bool()> stop_;
-  std::uint64_t before_, limit_, charged_{};
+  std::uint64_t before_, exact_before_, limit_, charged_{}, exact_more_{};
 };
 
 }  // namespace handsel::path_planner

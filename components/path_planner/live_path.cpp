@@ -14,11 +14,12 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kSame = 1e-6;      // [rad]
-constexpr double kNearEnds = 0.3;   // motions this near to an end are judged exactly also where the wide check does not clear them [rad]
-constexpr double kDropLoss = 0.01;  // share of the price that dropping nodes may cost
-constexpr double kDropGain = 0.3;   // or of what was gained
-constexpr double kGain = 1e-6;      // smaller ones are none
+constexpr double kSame = 1e-6;        // [rad]
+constexpr double kNearEnds = 0.3;     // motions this near to an end are judged exactly also where the wide check does not clear them [rad]
+constexpr double kDropLoss = 0.01;    // share of the price that dropping nodes may cost
+constexpr double kDropGain = 0.3;     // or of what was gained
+constexpr double kGain = 1e-6;        // smaller ones are none
+constexpr std::uint64_t kExact = 12;  // a state that the spheres do not clear takes as long as so many that they do
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double price(const SearchSpace& space, const std::vector<Vector>& path) {
@@ -313,6 +314,7 @@ LiveResult go_on(const RobotModel& robot, CollisionWorld& world, HumanCost& cost
     world.set_moving_axes(problem.axes);
     cost.set_moving_axes(problem.axes);
     SearchSpace space(robot, world, cost, problem, quick, hooks);
+    space.charge_exact(kExact);
     const std::vector<Vector> rest = remainder(running, space.start(), live.reach);
     if (!rest.empty() && space.free(space.start())) {
       if (auto found = Live(space, problem, quick, live).run(rest)) {
@@ -322,13 +324,18 @@ LiveResult go_on(const RobotModel& robot, CollisionWorld& world, HumanCost& cost
     }
     spent = space.checks();
   }
+  out.outcome = LiveOutcome::blocked;
+  out.before = kInfinite;
+  if (sound && problem.budget > 0 && spent >= problem.budget) {
+    out.result.checks = spent;
+    out.result.reason = "no way on was found within " + std::to_string(problem.budget) + " checks";
+    return out;
+  }
   Problem anew = problem;
   anew.budget -= std::min(anew.budget, spent);
-  if (problem.budget > 0) anew.budget = std::max<std::uint64_t>(1, anew.budget);
   out.result = plan(robot, world, cost, anew, quick, hooks);
   out.result.checks += spent;
-  out.outcome = out.result.solved ? LiveOutcome::replanned : LiveOutcome::blocked;
-  out.before = kInfinite;
+  if (out.result.solved) out.outcome = LiveOutcome::replanned;
   return out;
 }
 

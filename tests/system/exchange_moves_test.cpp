@@ -2,8 +2,6 @@
 // without a stop. The whole system in lock-step.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -13,7 +11,6 @@
 #include "common/model/human_body.hpp"
 #include "components/path_planner/random.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
-#include "tests/support/live_settings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace handsel {
@@ -39,10 +36,10 @@ struct Carried {
 };
 
 /// The person goes `step` [m] aside (+y) `after` [s] of carrying.
-Carried carry(std::uint64_t seed, double step, double after, const std::string& folder, const std::string& period) {
+Carried carry(std::uint64_t seed, double step, double after, const std::string& folder) {
   const std::string file = folder + "/exchange_moves.txtpb";
   std::ofstream(file) << kScenario;
-  LockstepSystem system(system_context(file, "", seed, test::live_settings(folder, period)));
+  LockstepSystem system(system_context(file, "", seed));
   Bus& seat = system.seat();
   auto goals = seat.advertise<TaskGoal>();
   auto body_out = seat.advertise<HumanObservation>();
@@ -106,7 +103,7 @@ TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_s
   int led_over = 0, reached = 0;
   for (int k = 0; k < runs; ++k) {
     const auto seed = static_cast<std::uint64_t>(k + 1);
-    const Carried run = carry(seed, 0.5, 0.0, folder.path().string(), "0.2");
+    const Carried run = carry(seed, 0.5, 0.0, folder.path().string());
     std::printf("seed %d: offered %d %s, requests for other goals %d, switches %d, stood for %.2f s, offered %.2f m aside, reached %d\n",
                 k + 1, run.offered, run.ended.c_str(), run.other_goals, run.switches, run.standing, run.aside, run.reached);
     EXPECT_TRUE(run.offered) << run.ended;

@@ -9,17 +9,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 
 #include <nlohmann/json.hpp>
 
+#include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
 #include "common/trajectory/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/path_planner/random.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
-#include "tests/support/live_settings.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace handsel {
@@ -240,9 +241,19 @@ Vector random_start(const NodeContext& context, Random& random) {
   }
 }
 
-std::string live_period() {
+/// The settings as shipped; HANDSEL_LIVE_PERIOD instead of their live_period.
+std::filesystem::path settings(const std::string& folder) {
   const char* period = std::getenv("HANDSEL_LIVE_PERIOD");
-  return period == nullptr ? "0.2" : period;
+  if (period == nullptr) return {};
+  const std::filesystem::path copy = std::filesystem::path(folder) / ("config" + std::to_string(getpid()));
+  if (std::filesystem::exists(copy)) return copy;
+  std::filesystem::copy(resource("config"), copy, std::filesystem::copy_options::recursive);
+  std::ofstream out(copy / "manipulation_planner.txtpb");
+  std::ifstream in(resource("config/manipulation_planner.txtpb"));
+  for (std::string line; std::getline(in, line);)
+    if (line.rfind("live_period", 0) != 0) out << line << "\n";
+  out << "live_period: " << period << "\n";
+  return copy;
 }
 
 Json run(std::uint64_t seed, const std::string& folder) {
@@ -251,7 +262,7 @@ Json run(std::uint64_t seed, const std::string& folder) {
   const std::string file = folder + "/live_" + std::to_string(seed) + ".txtpb";
   const Vector start = random_start(context, random), rest_posture = context.robot->rest_posture();
   std::ofstream(file) << scenario_text(*context.robot, start);
-  LockstepSystem system(system_context(file, "", seed, test::live_settings(folder, live_period())));
+  LockstepSystem system(system_context(file, "", seed, settings(folder)));
   Visitor visitor(
       random,
       context.robot->link_pose(start + random.between(0.4, 0.9) * (rest_posture - start), context.robot->tool_link()).translation());
