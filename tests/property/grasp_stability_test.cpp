@@ -34,7 +34,7 @@ TEST(GraspStability, agrees_with_an_independent_hull_on_random_contacts) {
   const std::uint64_t seed = 20260101;
   std::mt19937_64 random(seed);
   int closed = 0, compared = 0;
-  for (int trial = 0; trial < 1500; ++trial) {
+  for (int trial = 0; trial < 600; ++trial) {
     const int count = 2 + trial % 4;
     const WrenchMatrix w = contact_wrenches(random_contacts(random, count, false), 8, Vector3::Zero(), 1.0);
     const double hull = hull_oracle(w), oracle = std::isnan(hull) ? -1 : hull;  // flat: not closed
@@ -44,8 +44,8 @@ TEST(GraspStability, agrees_with_an_independent_hull_on_random_contacts) {
     ASSERT_EQ(force_closure(w), oracle > 0) << "trial " << trial << " seed " << seed << " oracle " << oracle;
     ASSERT_NEAR(epsilon(w), std::max(0.0, oracle), 1e-9) << "trial " << trial << " seed " << seed;
   }
-  EXPECT_GT(closed, 100);
-  EXPECT_GT(compared, 1300);
+  EXPECT_GT(closed, 40);
+  EXPECT_GT(compared, 500);
 }
 
 TEST(GraspStability, survives_contacts_on_a_coarse_grid) {
