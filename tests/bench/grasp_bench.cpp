@@ -10,6 +10,7 @@
 #include "components/grasp_planner/epsilon.hpp"
 #include "components/grasp_planner/frame_search.hpp"
 #include "components/grasp_planner/grasp_book.hpp"
+#include "components/grasp_planner/grasp_choice.hpp"
 #include "components/grasp_planner/so3_grid.hpp"
 #include "tests/support/hull_oracle.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -191,6 +192,31 @@ void BM_list_from_disk(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(store.load(list.hand, list.object, 3, list.frames));
 }
 BENCHMARK(BM_list_from_disk)->Unit(benchmark::kMillisecond);
+
+/// Grasps of a list that serve on a table, the arm's posture and way in included; as many as asked for.
+void BM_choose_from_list(benchmark::State& state) {
+  const Setup& s = setup();
+  static const auto robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
+  static const ObjectModel mug = ObjectModel::load(kDeploy / "objects/mug/mug.txtpb");
+  GraspBook book(s.kit, {}, GraspStore(""));
+  static const auto page = book.page(mug);
+  const GraspChooser chooser(robot, s.kit, [](const std::string&) { return &mug; }, {});
+  Scene scene;
+  scene.robot_known = true;
+  scene.robot_position = robot->rest_posture();
+  scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
+  scene.objects.push_back({"cup", "mug", make_pose({0.7, -0.4, 0.72 + mug.height_above_support}), Holder::surface, "table", 0});
+  GraspRequest request;
+  request.object = "cup";
+  request.start = robot->rest_posture();
+  request.max_grasps = static_cast<std::uint32_t>(state.range(0));
+  std::size_t chosen = 0;
+  for (auto _ : state) chosen = chooser.choose(request, page->list, *page->object, scene, {}).grasps.size();
+  state.counters["list"] = static_cast<double>(page->list.grasps.size());
+  state.counters["chosen"] = static_cast<double>(chosen);
+}
+BENCHMARK(BM_choose_from_list)->Arg(1)->Arg(10)->Unit(benchmark::kMillisecond);
+
 void BM_object_made_ready(benchmark::State& state) {
   const Setup& s = setup();
   for (auto _ : state) benchmark::DoNotOptimize(Graspable(s.model, s.kit->tip_radius(), s.settings.step_share, 1));
