@@ -3,20 +3,77 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "components/grasp_planner/retreat.hpp"
 
 namespace handsel::grasp_planner {
 namespace {
 
-std::vector<HandShape::PlacedHand> place(const HandSide& side, std::size_t count) {
-  std::vector<HandShape::PlacedHand> out;
-  std::vector<std::vector<Pose>> T_hand_step;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Grasp& g = side.list->grasps[i].grasp;
-    side.kit->forward(g.hand_joints, T_hand_step);
-    out.push_back(side.kit->shape.placed(T_hand_step, g.T_object_hand));
+using Steps = std::vector<std::vector<Pose>>;
+
+// One grasp of a list, made ready for tests against many of the other.
+struct Placed {
+  HandShape::PlacedHand closed;
+  Steps T_open;
+  std::vector<HandShape::PlacedHand> way;  // opened, at the grasp and on its way off
+  Vector3 direction{Vector3::Zero()};      // of that way, hand frame
+  bool reached{true};
+};
+
+class Side {
+ public:
+  Side(const HandSide& side, const DoubleSettings& settings) : side_(side), settings_(settings) {
+    const std::size_t count = std::min(side.list->grasps.size(), settings.most_of_each);
+    placed_.resize(count);
+    ways_ = retreat_ways(side.kit->hand);
+    Steps T_closed;
+    for (std::size_t i = 0; i < count; ++i) {
+      side.kit->forward(grasp(i).hand_joints, T_closed);
+      placed_[i].closed = side.kit->shape.placed(T_closed, grasp(i).T_object_hand);
+      placed_[i].reached = side.posture.empty() || side.posture[i] >= 0;
+    }
+    tried_.assign(count, false);
   }
-  return out;
-}
+
+  std::size_t size() const { return placed_.size(); }
+  const Grasp& grasp(std::size_t i) const { return side_.list->grasps[i].grasp; }
+  Vector3 wrist(std::size_t i) const { return grasp(i).T_object_hand.linear().col(2); }
+  double posture(std::size_t i) const { return side_.posture.empty() ? 0.0 : side_.posture[i]; }
+  const Placed& operator[](std::size_t i) const { return placed_[i]; }
+
+  // Whether grasp i, opened, gets past the object and the other hand.
+  bool leaves(std::size_t i, const HandShape::PlacedHand& other) {
+    if (!tried_[i]) prepare(i);
+    const Placed& p = placed_[i];
+    return !p.way.empty() && std::none_of(p.way.begin(), p.way.end(), [&](const HandShape::PlacedHand& hand) {
+      return HandShape::hands_touch(hand, other, settings_.way_clearance);
+    });
+  }
+
+ private:
+  void prepare(std::size_t i) {
+    tried_[i] = true;
+    Placed& p = placed_[i];
+    side_.kit->forward(grasp(i).pregrasp_joints, p.T_open);
+    const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const Vector3& w) {
+      return retreat_free(*side_.kit, p.T_open, *settings_.passed, grasp(i).T_object_hand, w, settings_.stand_off, settings_.way_clearance);
+    });
+    if (way == ways_.end()) return;
+    p.direction = *way;
+    for (double s = 0; s < settings_.stand_off + kSweepStep; s += 2 * kSweepStep) {
+      Pose T = grasp(i).T_object_hand;
+      T.translate(Vector3(s * *way));
+      p.way.push_back(side_.kit->shape.placed(p.T_open, T));
+    }
+  }
+
+  const HandSide& side_;
+  const DoubleSettings& settings_;
+  std::vector<Placed> placed_;
+  std::vector<bool> tried_;
+  std::vector<Vector3> ways_;
+};
 
 // Maps the values of all double grasps to [0, 1] and adds them to the scores.
 template <class Value>
@@ -32,34 +89,83 @@ void add_normalised(std::vector<DoubleGrasp>& grasps, const Value& value) {
 
 }  // namespace
 
-DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Vector3& p_object_middle, const DoubleSettings& settings) {
-  const std::size_t n = std::min(a.list->grasps.size(), settings.most_of_each), m = std::min(b.list->grasps.size(), settings.most_of_each);
-  const auto hands_a = place(a, n), hands_b = place(b, m);
-  const auto direction = [&](const HandSide& s, std::size_t i) {
-    return Vector3((s.list->grasps[i].grasp.T_object_hand.translation() - p_object_middle).normalized());
+Refusals DoubleList::refusals() const {
+  Refusals out;
+  const auto add = [&out](std::uint64_t count, const char* reason) {
+    if (count > 0) out.push_back({std::to_string(count) + " pairs", reason});
   };
+  add(out_of_reach, "an arm does not reach its grasp at the object's start or goal");
+  add(not_opposed, "the wrists are not opposed enough");
+  add(colliding, "the hands would collide");
+  add(no_way, "one hand could not come or leave while the other holds the object");
+  return out;
+}
+
+DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings) {
+  Side first(a, settings), second(b, settings);
   DoubleList out;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < m; ++k) {
+  const double most = std::cos(settings.least_opposition);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const Vector3 wrist = first.wrist(i);
+    for (std::size_t k = 0; k < second.size(); ++k) {
       ++out.pairs;
-      DoubleGrasp d{i, k};
-      d.opposition = std::acos(std::clamp(direction(a, i).dot(direction(b, k)), -1.0, 1.0));
-      if (d.opposition < settings.least_opposition) {
+      if (!first[i].reached || !second[k].reached) {
+        ++out.out_of_reach;
+        continue;
+      }
+      const double cosine = std::clamp(wrist.dot(second.wrist(k)), -1.0, 1.0);
+      if (cosine > most) {
         ++out.not_opposed;
         continue;
       }
-      if (HandShape::hands_touch(hands_a[i], hands_b[k], settings.clearance)) {
+      if (HandShape::hands_touch(first[i].closed, second[k].closed, settings.clearance)) {
         ++out.colliding;
         continue;
       }
-      d.quality = std::min(a.list->grasps[i].grasp.quality, b.list->grasps[k].grasp.quality);
-      if (!a.posture.empty() && !b.posture.empty()) d.posture = std::min(a.posture[i], b.posture[k]);
+      DoubleGrasp d{i, k};
+      if (settings.passed != nullptr) {
+        if (!first.leaves(i, second[k].closed) || !second.leaves(k, first[i].closed)) {
+          ++out.no_way;
+          continue;
+        }
+        d.way_first = first[i].direction;
+        d.way_second = second[k].direction;
+      }
+      d.opposition = std::acos(cosine);
+      d.quality = std::min(first.grasp(i).quality, second.grasp(k).quality);
+      d.posture = std::min(first.posture(i), second.posture(k));
       out.grasps.push_back(d);
     }
   }
   add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.quality; });
   add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.posture; });
   std::stable_sort(out.grasps.begin(), out.grasps.end(), [](const DoubleGrasp& x, const DoubleGrasp& y) { return x.score > y.score; });
+  return out;
+}
+
+double posture_score(const RobotModel& robot, const Group& arm, const Vector& arm_q) {
+  double sum = 0;
+  for (std::size_t i = 0; i < arm.axes.size(); ++i) {
+    const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[i])];
+    sum += std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot.rest_posture()[arm.axes[i]]) / (axis.upper - axis.lower);
+  }
+  return 1 - sum / static_cast<double>(arm.axes.size());
+}
+
+std::vector<double> posture_scores(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
+                                   const std::vector<Pose>& T_root_object) {
+  std::vector<double> out;
+  IkOptions options;
+  options.restarts = 1;
+  for (const ListedGrasp& g : list.grasps) {
+    double least = 1;
+    for (const Pose& T : T_root_object) {
+      const auto q = robot.inverse(arm, T * g.grasp.T_object_hand, q_seed, options);
+      least = q ? std::min(least, posture_score(robot, arm, *q)) : -1;
+      if (!q) break;
+    }
+    out.push_back(least);
+  }
   return out;
 }
 

@@ -1,4 +1,4 @@
-// Double grasps: two hands on one object at a time (chapter sections 3.2.8 and 3.2.9).
+// Double grasps: two hands on one object at a time, of a robot or of a robot and a person (chapter section 3.2.8).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace handsel::grasp_planner {
 struct HandSide {
   const HandKit* kit{};
   const GraspList* list{};
-  /// How natural the arm reaches each grasp, one a grasp of the list, the higher the better; empty: not asked.
+  /// How natural the arm reaches each grasp, one a grasp of the list, the higher the better (posture_scores()); below 0: not at all, such
+  /// grasps are left out. Empty: not asked.
   std::vector<double> posture;
 };
 
@@ -20,22 +21,39 @@ struct DoubleGrasp {
   std::size_t first{}, second{};  ///< indices into the two lists
   double quality{};               ///< the smaller of the two
   double posture{};               ///< the smaller of the two; 0 when not asked
-  double opposition{};            ///< angle between the directions from the object's middle to the two hands [rad]; pi: wrists opposed
-  double score{};                 ///< quality and posture, each normalised over the list, summed
+  double opposition{};            ///< angle between the wrists' directions, the z axes of the hands [rad]; pi: straight against each other
+  Vector3 way_first{Vector3::Zero()}, way_second{Vector3::Zero()};  ///< hand frames: how each can leave or come; 0 when not asked
+  double score{};                                                   ///< quality and posture, each normalised over the list, summed
 };
 
 struct DoubleSettings {
   std::size_t most_of_each{200};  ///< best grasps taken from each list
   double clearance{0.0};          ///< between the hands [m]
   double least_opposition{0.0};   ///< [rad] for a transfer: wrists opposed by at least this
+  /// For passing the object on: either hand, opened, must be able to come and to leave straight over `stand_off`, past the object and the
+  /// other hand. Needs the object.
+  const Graspable* passed{};
+  double stand_off{0.09};       ///< [m]
+  double way_clearance{0.002};  ///< kept on that way [m]
 };
 
 struct DoubleList {
   std::vector<DoubleGrasp> grasps;  ///< best score first
-  std::uint64_t pairs{}, colliding{}, not_opposed{};
+  std::uint64_t pairs{}, colliding{}, not_opposed{}, no_way{}, out_of_reach{};
+
+  /// Counts per reason of the pairs without a double grasp.
+  Refusals refusals() const;
 };
 
-/// All pairs that do not collide. `p_object_middle`: of the object's box.
-DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Vector3& p_object_middle, const DoubleSettings& settings = {});
+/// All pairs that do not collide.
+DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings = {});
+
+/// Nearness of an arm's posture to its rest posture, [0, 1]: one minus the mean share of the ranges its axes are away from it.
+double posture_score(const RobotModel& robot, const Group& arm, const Vector& arm_q);
+
+/// For each grasp of a list the smaller posture_score() of reaching it with the object at its start and at its goal; -1 when the arm does
+/// not reach one of them. `q_seed`: all axes.
+std::vector<double> posture_scores(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
+                                   const std::vector<Pose>& T_root_object);
 
 }  // namespace handsel::grasp_planner

@@ -5,10 +5,12 @@
 #include <numbers>
 #include <set>
 
+#include "components/grasp_planner/double_grasp.hpp"
+#include "components/grasp_planner/retreat.hpp"
+
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kSweepStep = 0.008;      // [m] between two tests along an approach
 constexpr double kLargestApproach = 0.9;  // [rad] an arm axis moves less on the straight approach
 constexpr double kLargestLift = 1.4;      // [rad] and on the lift
 constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
@@ -91,16 +93,7 @@ GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_
     throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + kit_->hand.name() +
                       " in the order of its fingers");
   }
-  // Straight away from where contacts happen, then a cone of directions around it.
-  const Vector3 away = -kit_->hand.T_hand_grasp().translation().normalized();
-  const Vector3 side = away.unitOrthogonal(), other = away.cross(side);
-  retreats_.push_back(away);
-  for (const double tilt : {0.45, 0.9}) {
-    for (int k = 0; k < 6; ++k) {
-      const double turn = std::numbers::pi / 3 * k;
-      retreats_.push_back(std::cos(tilt) * away + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
-    }
-  }
+  retreats_ = retreat_ways(kit_->hand);
 }
 
 struct GraspChooser::Search {
@@ -201,21 +194,14 @@ struct GraspChooser::Search {
     return world.check_motion(from, to, 0.04).free;
   }
 
-  bool sweep_free(const Pose& T_object_hand, const Vector3& retreat) {
-    for (double s = settings().stand_off; s > 0; s -= 2 * kSweepStep) {
-      Pose T = T_object_hand;
-      T.translate(Vector3(s * retreat));
-      ++out.touch_tests;
-      if (self.kit_->shape.touches(T_open, object, T, settings().approach_clearance)) return false;
-    }
-    return true;
-  }
-
   std::optional<Vector> approach(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g) {
     std::vector<Vector3> ways = self.retreats_;
     ways.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
     for (const Vector3& way : ways) {
-      if (!sweep_free(g.T_object_hand, way)) continue;
+      if (!retreat_free(*self.kit_, T_open, object, g.T_object_hand, way, settings().stand_off, settings().approach_clearance,
+                        &out.touch_tests)) {
+        continue;
+      }
       Pose T = T_world_hand;
       T.translate(Vector3(settings().stand_off * way));
       const auto q = reach(T, with_hand(robot(), request.start, *self.arm_, grasp_q, *self.hand_, g.pregrasp_joints), 0);
@@ -254,17 +240,6 @@ struct GraspChooser::Search {
     return sum + settings().rank_room * listed.room;
   }
 
-  double posture(const Vector& arm_q) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < self.arm_->axes.size(); ++i) {
-      const auto a = static_cast<std::size_t>(self.arm_->axes[i]);
-      const Axis& axis = robot().axes()[a];
-      sum +=
-          std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot().rest_posture()[static_cast<Eigen::Index>(a)]) / (axis.upper - axis.lower);
-    }
-    return 1 - sum / static_cast<double>(self.arm_->axes.size());
-  }
-
   const GraspChooser& self;
   const GraspRequest& request;
   const Graspable& object;
@@ -296,7 +271,7 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
     const ChoiceReason reason = stop ? ChoiceReason::not_considered : search.consider(list.grasps[index], grasp);
     ++search.out.reasons[static_cast<std::size_t>(reason)];
     if (reason != ChoiceReason::chosen) continue;
-    double whole = rank + settings_.rank_posture * search.posture(grasp.arm_joints);
+    double whole = rank + settings_.rank_posture * posture_score(*robot_, *arm_, grasp.arm_joints);
     if (search.exchange_known) whole += settings_.rank_exchange * search.exchange(grasp, grasp.arm_joints);
     found.push_back({whole, std::move(grasp)});
   }

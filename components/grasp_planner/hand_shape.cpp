@@ -219,6 +219,7 @@ HandShape::PlacedHand HandShape::placed(const std::vector<std::vector<Pose>>& T_
     p.radius = s.radius;
     p.shape = s.shape;
     p.T_frame_shape = T_frame_s * s.T_step_shape;
+    if (!s.shape->is_mesh()) p.core = convex_core(s.shape->shape(), p.T_frame_shape);
     p.middle = s.capsule ? Vector3(0.5 * (p.a + p.b)) : Vector3(p.T_frame_shape * s.shape->sphere_center());
     p.bound = s.capsule ? 0.5 * (p.b - p.a).norm() + s.radius : s.shape->sphere_radius();
     out.box.extend(Vector3(p.middle.array() - p.bound));
@@ -232,19 +233,28 @@ HandShape::PlacedHand HandShape::placed(const std::vector<std::vector<Pose>>& T_
   return out;
 }
 
+bool HandShape::nearer(const Placed& s, const Placed& t, double clearance) {
+  const double bound = s.bound + t.bound + clearance;
+  if ((s.middle - t.middle).squaredNorm() > bound * bound) return false;
+  if (s.capsule && t.capsule) {
+    const double reach = s.radius + t.radius + clearance;
+    Vector3 p, q;
+    return nearest_points(s.a, s.b, t.a, t.b, p, q) < reach * reach;
+  }
+  if (!s.shape->is_mesh() && !t.shape->is_mesh()) {
+    ConvexCore grown = s.core;
+    grown.margin += clearance;
+    return convex_touch(grown, t.core);
+  }
+  if (clearance > 0) return gap(*s.shape, s.T_frame_shape, *t.shape, t.T_frame_shape) <= clearance;
+  return touch(*s.shape, s.T_frame_shape, *t.shape, t.T_frame_shape);
+}
+
 bool HandShape::hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance) {
   if (a.box.squaredExteriorDistance(b.box) > clearance * clearance) return false;
   for (const Placed& s : a.solids) {
     for (const Placed& t : b.solids) {
-      const double bound = s.bound + t.bound + clearance;
-      if ((s.middle - t.middle).squaredNorm() > bound * bound) continue;
-      if (s.capsule && t.capsule) {
-        const double reach = s.radius + t.radius + clearance;
-        Vector3 p, q;
-        if (nearest_points(s.a, s.b, t.a, t.b, p, q) < reach * reach) return true;
-      } else if (touch(*s.shape, s.T_frame_shape, *t.shape, t.T_frame_shape)) {
-        return true;
-      }
+      if (nearer(s, t, clearance)) return true;
     }
   }
   return false;

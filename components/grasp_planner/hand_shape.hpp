@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/collision/collision_shape.hpp"
+#include "common/collision/gjk.hpp"
 #include "components/grasp_planner/finger_chain.hpp"
 #include "components/grasp_planner/graspable.hpp"
 
@@ -37,6 +38,7 @@ class HandShape {
     double radius{};
     CollisionShapePtr shape;  // the others
     Pose T_frame_shape{Pose::Identity()};
+    ConvexCore core;  // but meshes
     Vector3 middle{Vector3::Zero()};
     double bound{};  // all of it is this near to its middle
   };
@@ -45,7 +47,7 @@ class HandShape {
     Eigen::AlignedBox3d box;
   };
   PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
-  /// Nearer than `clearance` [m] (capsules; other solids: touching).
+  /// Nearer than `clearance` [m].
   static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance);
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
   struct Round {
@@ -55,6 +57,7 @@ class HandShape {
   std::vector<Round> rounds(const std::vector<std::vector<Pose>>& T_hand_step) const;
 
  private:
+  static bool nearer(const Placed& s, const Placed& t, double clearance);
   struct Solid {
     int link{};
     int step{-1};  // -1: palm

@@ -162,7 +162,7 @@ int pairs(const PairOptions& o) {
   settings.clearance = o.clearance;
   settings.least_opposition = o.opposition * kDegree;
   const auto start = std::chrono::steady_clock::now();
-  const DoubleList found = list_double_grasps({a.kit.get(), &a.list, {}}, {b.kit.get(), &b.list, {}}, a.object->box().center(), settings);
+  const DoubleList found = list_double_grasps({a.kit.get(), &a.list, {}}, {b.kit.get(), &b.list, {}}, settings);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const bool table = !json_wanted(o.as_json);
   if (table) std::printf("%8s %8s %8s %12s %8s\n", "first", "second", "quality", "opposed[deg]", "score");

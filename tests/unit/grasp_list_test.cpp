@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "components/grasp_planner/double_grasp.hpp"
 #include "components/grasp_planner/epsilon.hpp"
 #include "components/grasp_planner/grasp_list.hpp"
 
@@ -166,50 +165,6 @@ TEST(GraspList, an_object_of_the_wrong_size_is_refused_with_a_sentence) {
   } catch (const ConfigError& e) {
     EXPECT_NE(std::string(e.what()).find("scale"), std::string::npos) << e.what();
   }
-}
-
-// How near two capsules' axes come, by sampling: independent of the closed form.
-double sampled_distance(const HandShape::Round& a, const HandShape::Round& b) {
-  double best = 1;
-  for (int i = 0; i <= 20; ++i) {
-    for (int k = 0; k <= 20; ++k) best = std::min(best, (a.a + i / 20.0 * (a.b - a.a) - b.a - k / 20.0 * (b.b - b.a)).norm());
-  }
-  return best - a.radius - b.radius;
-}
-
-TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
-  const GraspList list = list_of("bottle");
-  DoubleSettings settings;
-  settings.most_of_each = 60;
-  settings.clearance = 0.004;
-  const HandSide side{sah().get(), &list, {}};
-  const DoubleList doubles = list_double_grasps(side, side, {0, 0, 0}, settings);
-  EXPECT_EQ(doubles.grasps.size() + doubles.colliding, doubles.pairs);
-  ASSERT_GT(doubles.grasps.size(), 10U);
-  EXPECT_GT(doubles.colliding, 10U);
-  const auto rounds = [&](std::size_t i) {
-    std::vector<std::vector<Pose>> T;
-    sah()->forward(list.grasps[i].grasp.hand_joints, T);
-    auto out = sah()->shape.rounds(T);
-    out.erase(out.begin(), out.begin() + 2);  // the palm's solids are no capsules
-    for (auto& r : out) {
-      r.a = list.grasps[i].grasp.T_object_hand * r.a;
-      r.b = list.grasps[i].grasp.T_object_hand * r.b;
-    }
-    return out;
-  };
-  double last = 3;
-  for (std::size_t n = 0; n < std::min<std::size_t>(40, doubles.grasps.size()); ++n) {
-    const DoubleGrasp& d = doubles.grasps[n];
-    EXPECT_LE(d.score, last);
-    last = d.score;
-    EXPECT_DOUBLE_EQ(d.quality, std::min(list.grasps[d.first].grasp.quality, list.grasps[d.second].grasp.quality));
-    for (const auto& a : rounds(d.first)) {
-      for (const auto& b : rounds(d.second)) EXPECT_GT(sampled_distance(a, b), 0.0039);
-    }
-  }
-  settings.least_opposition = 2.1;
-  for (const DoubleGrasp& d : list_double_grasps(side, side, {0, 0, 0}, settings).grasps) EXPECT_GE(d.opposition, 2.1);
 }
 
 TEST(FingerWorkspace, spheres_are_inside_and_the_finger_gets_everywhere_in_them) {

@@ -1,0 +1,46 @@
+// How comfortable a person's wrist and arm are with the hand in a place (chapter section 3.2.9; the measure is ours).
+#pragma once
+
+#include <optional>
+
+#include "common/messages/world.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Where an arm starts and how long it is.
+struct HumanArm {
+  Side side{Side::right};
+  Vector3 shoulder{Vector3::Zero()};  ///< world [m]
+  Vector3 outward{Vector3::UnitY()};  ///< level, away from the other shoulder, unit
+  double upper{}, forearm{};          ///< lengths [m]
+};
+
+/// nullopt when the person's body is not complete.
+std::optional<HumanArm> human_arm(const Person&, Side);
+
+/// An arm that holds its hand somewhere. Angles [rad].
+struct WristPosture {
+  Vector3 elbow{Vector3::Zero()};  ///< world [m]
+  double flexion{};                ///< of the hand toward its palm; negative: extension
+  double radial{};                 ///< of the hand toward the thumb; negative: ulnar
+  double pronation{};              ///< of the forearm from thumb up; negative: supination
+  double elevation{};              ///< of the upper arm from hanging
+  double strain{};                 ///< the largest share of its range any of the four uses, 0: neutral, 1: at an end
+};
+
+/// Ranges of the joints of a grown person: flexion 80, extension 70, radial 20, ulnar 30, pronation and supination 80 degrees (American
+/// Academy of Orthopaedic Surgeons); upper arm 100 degrees here, so that its comfortable part ends at 60 (ISO 11226).
+struct WristRanges {
+  double flexion, extension, radial, ulnar, pronation, supination, elevation;
+};
+inline constexpr WristRanges kWristRanges{1.396, 1.222, 0.349, 0.524, 1.396, 1.396, 1.745};
+
+/// Up to this share of the ranges a posture counts as comfortable (ours).
+inline constexpr double kComfortableStrain = 0.6;
+
+/// The posture of least strain, the elbow anywhere from straight below the line from shoulder to wrist to level outward. `T_world_wrist`:
+/// the hand's frame, in the wrist, z along the fingers, x out of the palm. nullopt when the wrist is out of the arm's reach, or nearer than
+/// 0.2 m.
+std::optional<WristPosture> wrist_posture(const HumanArm&, const Pose& T_world_wrist);
+
+}  // namespace handsel::grasp_planner
