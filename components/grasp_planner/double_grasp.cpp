@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <map>
 
 #include "components/grasp_planner/retreat.hpp"
+#include "components/grasp_planner/so3_grid.hpp"
 
 namespace handsel::grasp_planner {
 namespace {
@@ -24,22 +25,24 @@ struct Placed {
 class Side {
  public:
   Side(const HandSide& side, const DoubleSettings& settings) : side_(side), settings_(settings) {
-    const std::size_t count = std::min(side.list->grasps.size(), settings.most_of_each);
+    taken_ = taken_grasps(*side.list, settings.most_of_each, settings.taken, settings.p_object_middle, side.also);
+    const std::size_t count = taken_.size();
     placed_.resize(count);
     ways_ = retreat_ways(side.kit->hand);
     Steps T_closed;
     for (std::size_t i = 0; i < count; ++i) {
       side.kit->forward(grasp(i).hand_joints, T_closed);
       placed_[i].closed = side.kit->shape.placed(T_closed, grasp(i).T_object_hand);
-      placed_[i].reached = side.posture.empty() || side.posture[i] >= 0;
+      placed_[i].reached = side.posture.empty() || side.posture[taken_[i]] >= 0;
     }
     tried_.assign(count, false);
   }
 
   std::size_t size() const { return placed_.size(); }
-  const Grasp& grasp(std::size_t i) const { return side_.list->grasps[i].grasp; }
+  std::size_t index(std::size_t i) const { return taken_[i]; }  // into the list
+  const Grasp& grasp(std::size_t i) const { return side_.list->grasps[taken_[i]].grasp; }
   Vector3 wrist(std::size_t i) const { return grasp(i).T_object_hand.linear().col(2); }
-  double posture(std::size_t i) const { return side_.posture.empty() ? 0.0 : side_.posture[i]; }
+  double posture(std::size_t i) const { return side_.posture.empty() ? 0.0 : side_.posture[taken_[i]]; }
   const Placed& operator[](std::size_t i) const { return placed_[i]; }
 
   // Whether grasp i, opened, gets past the object and the other hand.
@@ -70,6 +73,7 @@ class Side {
 
   const HandSide& side_;
   const DoubleSettings& settings_;
+  std::vector<std::size_t> taken_;
   std::vector<Placed> placed_;
   std::vector<bool> tried_;
   std::vector<Vector3> ways_;
@@ -88,6 +92,37 @@ void add_normalised(std::vector<DoubleGrasp>& grasps, const Value& value) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken, const Vector3& p_object_middle,
+                                      const std::vector<std::size_t>& also) {
+  std::vector<std::size_t> out;
+  const auto add = [&out](std::size_t i) {
+    if (std::find(out.begin(), out.end(), i) == out.end()) out.push_back(i);
+  };
+  if (taken == Taken::best || list.grasps.size() <= count) {
+    for (std::size_t i = 0; i < std::min(count, list.grasps.size()); ++i) out.push_back(i);
+    for (const std::size_t i : also) add(i);
+    return out;
+  }
+  const std::vector<Eigen::Quaterniond> cells = so3_sequence(so3_grid_size(0));
+  std::map<std::pair<std::size_t, int>, std::size_t> seen;  // how many came before from the same cell and octant
+  std::vector<std::pair<std::size_t, std::size_t>> order;   // that number, index
+  for (std::size_t i = 0; i < list.grasps.size(); ++i) {
+    const Pose& T = list.grasps[i].grasp.T_object_hand;
+    const Eigen::Quaterniond q(T.linear());
+    std::size_t cell = 0;
+    for (std::size_t c = 1; c < cells.size(); ++c) {
+      if (std::abs(q.dot(cells[c])) > std::abs(q.dot(cells[cell]))) cell = c;
+    }
+    const Vector3 off = T.translation() - p_object_middle;
+    const int octant = (off.x() > 0 ? 1 : 0) + (off.y() > 0 ? 2 : 0) + (off.z() > 0 ? 4 : 0);
+    order.emplace_back(seen[{cell, octant}]++, i);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < std::min(count, order.size()); ++i) out.push_back(order[i].second);
+  for (const std::size_t i : also) add(i);
+  return out;
+}
 
 Refusals DoubleList::refusals() const {
   Refusals out;
@@ -118,11 +153,11 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Double
         ++out.not_opposed;
         continue;
       }
-      if (HandShape::hands_touch(first[i].closed, second[k].closed, settings.clearance)) {
+      if (HandShape::hands_touch(first[i].closed, second[k].closed, settings.clearance, settings.palm_clearance)) {
         ++out.colliding;
         continue;
       }
-      DoubleGrasp d{i, k};
+      DoubleGrasp d{first.index(i), second.index(k)};
       if (settings.passed != nullptr) {
         if (!first.leaves(i, second[k].closed) || !second.leaves(k, first[i].closed)) {
           ++out.no_way;

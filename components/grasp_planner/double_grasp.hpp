@@ -14,7 +14,8 @@ struct HandSide {
   const GraspList* list{};
   /// How natural the arm reaches each grasp, one a grasp of the list, the higher the better (posture_scores()); below 0: not at all, such
   /// grasps are left out. Empty: not asked.
-  std::vector<double> posture;
+  std::vector<double> posture{};
+  std::vector<std::size_t> also{};  ///< grasps that are taken whatever the settings say
 };
 
 struct DoubleGrasp {
@@ -26,10 +27,21 @@ struct DoubleGrasp {
   double score{};                                                   ///< quality and posture, each normalised over the list, summed
 };
 
+/// Which grasps of a list are paired: the best, or the best of every orientation and side of the object in turn (ours: what is best of all
+/// is at the middle of the object, where there is no room for a second hand).
+enum class Taken : std::uint8_t { best, spread };
+
+/// Indices into the list, `count` at most and those of `also`. `p_object_middle`: of the object's box.
+std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken, const Vector3& p_object_middle,
+                                      const std::vector<std::size_t>& also = {});
+
 struct DoubleSettings {
-  std::size_t most_of_each{200};  ///< best grasps taken from each list
-  double clearance{0.0};          ///< between the hands [m]
-  double least_opposition{0.0};   ///< [rad] for a transfer: wrists opposed by at least this
+  std::size_t most_of_each{200};  ///< grasps taken from each list
+  Taken taken{Taken::best};
+  Vector3 p_object_middle{Vector3::Zero()};  ///< for spread grasps
+  double clearance{0.0};                     ///< between the hands [m]
+  double palm_clearance{0.0};                ///< between either palm and the other hand, when more [m]
+  double least_opposition{0.0};              ///< [rad] for a transfer: wrists opposed by at least this
   /// For passing the object on: either hand, opened, must be able to come and to leave straight over `stand_off`, past the object and the
   /// other hand. Needs the object.
   const Graspable* passed{};

@@ -22,4 +22,27 @@ std::shared_ptr<const GraspPage> GraspBook::page(const ObjectModel& object, cons
   return page;
 }
 
+TransferBook::TransferBook(std::shared_ptr<const HandKit> robot, std::shared_ptr<const HandKit> taker,
+                           const GraspListSettings& taker_settings, GraspStore store)
+    : robot_(std::move(robot)), taker_(taker), book_(std::move(taker), taker_settings, std::move(store)) {}
+
+std::shared_ptr<const TransferTable> TransferBook::table(const ObjectModel& object, const GraspPage& page,
+                                                         const std::function<bool()>& cancelled) {
+  if (auto made = known(object.name)) return made;
+  const auto taken = taker_page(object, cancelled);
+  if (!taken) return nullptr;
+  auto& entry = tables_[object.name];
+  entry = std::make_shared<const TransferTable>(HandSide{robot_.get(), &page.list}, HandSide{taker_.get(), &taken->list}, *page.object);
+  return entry;
+}
+
+std::shared_ptr<const TransferTable> TransferBook::known(const std::string& object) const {
+  const auto it = tables_.find(object);
+  return it != tables_.end() ? it->second : nullptr;
+}
+
+std::shared_ptr<const GraspPage> TransferBook::taker_page(const ObjectModel& object, const std::function<bool()>& cancelled) {
+  return book_.page(object, cancelled);
+}
+
 }  // namespace handsel::grasp_planner

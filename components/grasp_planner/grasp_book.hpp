@@ -7,6 +7,7 @@
 #include <string>
 
 #include "components/grasp_planner/grasp_store.hpp"
+#include "components/grasp_planner/transfer.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -29,6 +30,25 @@ class GraspBook {
   GraspStore store_;
   std::shared_ptr<const FingerWorkspaces> workspaces_;
   std::map<std::uint64_t, std::shared_ptr<const GraspPage>> pages_;
+};
+
+/// Which grasps of a person's hand go with those of the robot's, by object; made when first asked for. For one thread at a time.
+class TransferBook {
+ public:
+  TransferBook(std::shared_ptr<const HandKit> robot, std::shared_ptr<const HandKit> taker, const GraspListSettings& taker_settings,
+               GraspStore store);
+
+  /// `page`: of the robot's hand. nullptr when cancelled.
+  std::shared_ptr<const TransferTable> table(const ObjectModel& object, const GraspPage& page, const std::function<bool()>& cancelled = {});
+  /// The table when it was made already.
+  std::shared_ptr<const TransferTable> known(const std::string& object) const;
+  /// Of the taker's list; nullptr when cancelled.
+  std::shared_ptr<const GraspPage> taker_page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
+
+ private:
+  std::shared_ptr<const HandKit> robot_, taker_;
+  GraspBook book_;
+  std::map<std::string, std::shared_ptr<const TransferTable>> tables_;
 };
 
 }  // namespace handsel::grasp_planner

@@ -16,8 +16,10 @@ constexpr double kLargestLift = 1.4;      // [rad] and on the lift
 constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
 constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
 constexpr int kExchangeHeadings = 8;
-constexpr double kSameDistance = 0.02;  // [m] grasps nearer than this ...
-constexpr double kSameAngle = 0.35;     // [rad] ... and less turned count as one variant
+constexpr int kTransferReaches = 16;            // inverse kinematics tried for the places of one grasp ...
+constexpr std::uint64_t kTransferBudget = 600;  // ... and of all
+constexpr double kSameDistance = 0.02;          // [m] grasps nearer than this ...
+constexpr double kSameAngle = 0.35;             // [rad] ... and less turned count as one variant
 
 Vector with_hand(const RobotModel&, const Vector& q, const Group& arm, const Vector& arm_q, const Group& hand, const Vector& hand_q) {
   return RobotModel::with(RobotModel::with(q, arm, arm_q), hand, hand_q);
@@ -97,8 +99,9 @@ GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_
 }
 
 struct GraspChooser::Search {
-  Search(const GraspChooser& chooser, const GraspRequest& r, const Graspable& g, const Scene& s, const HumanState& people)
-      : self(chooser), request(r), object(g), scene(s), world(*chooser.robot_, chooser.library_) {
+  Search(const GraspChooser& chooser, const GraspRequest& r, const Graspable& g, const Scene& s, const HumanState& everybody,
+         const TransferTable* table)
+      : self(chooser), request(r), object(g), scene(s), people(everybody), pairs(table), world(*chooser.robot_, chooser.library_) {
     for (const SceneObject& o : scene.objects) {
       if (o.id == request.object) T_world_object = o.T_world_object;
     }
@@ -109,7 +112,11 @@ struct GraspChooser::Search {
     world.set_attachment({}, {request.object});
     const auto person =
         std::find_if(people.people.begin(), people.people.end(), [&](const Person& p) { return p.id == request.for_human; });
-    if (person != people.people.end()) plan_exchange(*person);
+    if (person == people.people.end()) return;
+    plan_exchange(*person);
+    const auto arm = human_arm(*person, Side::right);
+    if (pairs != nullptr && arm)
+      places.emplace(*person, *arm, scene.T_world_base.translation(), T_world_object.linear(), object.box().center());
   }
 
   const RobotModel& robot() const { return *self.robot_; }
@@ -129,6 +136,27 @@ struct GraspChooser::Search {
     exchange_place.z() = person.joints[static_cast<std::size_t>(shoulder)].position.z() - kExchangeBelow;
     to_person = -to_robot;
     exchange_known = true;
+  }
+
+  /// Where and how the object can be handed over in this grasp, the robot free of everything but the person's arms.
+  std::optional<TransferPose> transfer(std::size_t index, const Grasp& g) {
+    if (out.transfer_reaches >= kTransferBudget) return std::nullopt;
+    if (!held) {
+      held.emplace(robot(), self.library_);
+      held->set_base(scene.T_world_base);
+      held->set_scene(scene);
+      held->set_people(people, PeopleParts::without_forearms_and_hands);
+    }
+    held->set_attachment({request.object, g.T_object_hand.inverse()}, {});
+    const auto try_reach = [&](const Pose&, const Pose& T_world_hand) -> std::optional<Vector> {
+      ++out.transfer_reaches;
+      auto q = inverse(T_world_hand, request.start, 0);
+      if (!q) return q;
+      ++out.states;
+      if (!held->is_free(with_hand(robot(), request.start, *self.arm_, *q, *self.hand_, g.hand_joints))) q.reset();
+      return q;
+    };
+    return places->best(*pairs, index, g.T_object_hand, try_reach, kTransferReaches);
   }
 
   /// How well the hand stays behind the object, [0, 1], in the best heading the arm can hold it out in; -1 when it cannot.
@@ -165,6 +193,10 @@ struct GraspChooser::Search {
 
   std::optional<Vector> reach(const Pose& T_world_hand, const Vector& seed, int restarts) {
     ++out.reaches;
+    return inverse(T_world_hand, seed, restarts);
+  }
+
+  std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const {
     IkOptions options;
     options.max_iterations = 80;
     options.restarts = restarts;
@@ -231,60 +263,91 @@ struct GraspChooser::Search {
   }
 
   /// What can be said of a grasp before the arm is looked at.
-  double rank(const ListedGrasp& listed) const {
+  double rank(const ListedGrasp& listed, std::size_t index) const {
     const double fingers = static_cast<double>(self.kit_->chains.size());
     double sum =
         settings().rank_quality * listed.grasp.quality + settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
     sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
     if (request.for_human.empty()) return sum;
-    return sum + settings().rank_room * listed.room;
+    sum += settings().rank_room * listed.room;
+    return places ? sum + settings().rank_partner * pairs->promise(index) : sum;
   }
 
   const GraspChooser& self;
   const GraspRequest& request;
   const Graspable& object;
   const Scene& scene;
+  const HumanState& people;
+  const TransferTable* pairs;
   CollisionWorld world;
   Pose T_world_object{Pose::Identity()}, T_root_world{Pose::Identity()};
   Vector3 to_person{Vector3::Zero()}, exchange_place{Vector3::Zero()};
   bool exchange_known{};
+  std::optional<TransferPlaces> places;
+  std::optional<CollisionWorld> held;  // with the object in the hand
   std::vector<std::vector<Pose>> T_closed, T_open;
   Choice out;
 };
 
 Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene,
-                            const HumanState& people, const std::function<bool()>& cancelled) const {
-  Search search(*this, request, object, scene, people);
+                            const HumanState& people, const std::function<bool()>& cancelled, const TransferTable* pairs) const {
+  Search search(*this, request, object, scene, people, pairs);
   std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t i = 0; i < list.grasps.size(); ++i) order.emplace_back(search.rank(list.grasps[i]), i);
+  for (std::size_t i = 0; i < list.grasps.size(); ++i) order.emplace_back(search.rank(list.grasps[i], i), i);
   std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   struct Found {
     double rank;
     Grasp grasp;
+    std::optional<TransferPose> transfer;
   };
   std::vector<Found> found;
   // Twice as many as asked for, so that the arm's posture has a say.
   const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
-  for (const auto& [rank, index] : order) {
+  const auto consider = [&](double rank, std::size_t index, std::optional<TransferPose> transfer) {
     const bool stop = found.size() >= enough || search.out.reaches >= settings_.reach_budget || (cancelled && cancelled());
     Grasp grasp;
     const ChoiceReason reason = stop ? ChoiceReason::not_considered : search.consider(list.grasps[index], grasp);
     ++search.out.reasons[static_cast<std::size_t>(reason)];
-    if (reason != ChoiceReason::chosen) continue;
+    if (reason != ChoiceReason::chosen) return;
     double whole = rank + settings_.rank_posture * posture_score(*robot_, *arm_, grasp.arm_joints);
-    if (search.exchange_known) whole += settings_.rank_exchange * search.exchange(grasp, grasp.arm_joints);
-    found.push_back({whole, std::move(grasp)});
+    if (transfer) {
+      whole += settings_.rank_exchange * transfer->score + settings_.rank_transfer;
+    } else if (search.exchange_known) {
+      whole += settings_.rank_exchange * search.exchange(grasp, grasp.arm_joints);
+    }
+    found.push_back({whole, std::move(grasp), std::move(transfer)});
+  };
+  // For a person, those that can be handed over come first; the others only when too few of them can be picked up.
+  std::vector<std::pair<double, std::size_t>> others;
+  for (const auto& [rank, index] : order) {
+    if (!search.places) {
+      consider(rank, index, {});
+      continue;
+    }
+    const Grasp& g = list.grasps[index].grasp;
+    std::optional<TransferPose> transfer;
+    if (found.size() < enough && !pairs->partners(index).empty() && !search.below_support(search.T_world_object * g.T_object_hand, g))
+      transfer = search.transfer(index, g);
+    if (transfer) {
+      consider(rank, index, std::move(transfer));
+    } else {
+      others.emplace_back(rank, index);
+    }
   }
+  for (const auto& [rank, index] : others) consider(rank, index, {});
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.rank > b.rank; });
   // One of each kind first: when the best fails, the next should be different.
-  std::vector<Grasp> again;
-  for (Found& f : found) {
-    const bool known = std::any_of(search.out.grasps.begin(), search.out.grasps.end(),
-                                   [&](const Grasp& g) { return alike(g.T_object_hand, f.grasp.T_object_hand); });
-    (known ? again : search.out.grasps).push_back(std::move(f.grasp));
+  const auto known = [&](const Found& f, const std::vector<Found>& among) {
+    return std::any_of(among.begin(), among.end(), [&](const Found& g) { return alike(g.grasp.T_object_hand, f.grasp.T_object_hand); });
+  };
+  std::vector<Found> ordered, again;
+  for (Found& f : found) (known(f, ordered) ? again : ordered).push_back(std::move(f));
+  std::move(again.begin(), again.end(), std::back_inserter(ordered));
+  if (ordered.size() > request.max_grasps) ordered.resize(request.max_grasps);
+  for (Found& f : ordered) {
+    search.out.grasps.push_back(std::move(f.grasp));
+    if (search.places) search.out.transfers.push_back(std::move(f.transfer));
   }
-  std::move(again.begin(), again.end(), std::back_inserter(search.out.grasps));
-  if (search.out.grasps.size() > request.max_grasps) search.out.grasps.resize(request.max_grasps);
   return search.out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/collision/collision_world.hpp"
 #include "components/grasp_planner/grasp_list.hpp"
+#include "components/grasp_planner/transfer.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -22,7 +23,9 @@ struct ChoiceSettings {
   double rank_posture{0.4};          ///< nearness to the rest posture of the arm
   double rank_contacts{0.2};         ///< share of the fingers in contact
   double rank_room{0.3};             ///< surface left free; when a person is to take the object
-  double rank_exchange{0.3};         ///< the arm can hold the object out upright, the hand behind it, seen from the person; then too
+  double rank_partner{0.3};          ///< the person's best grasp beside it; then too, as the next two
+  double rank_exchange{0.3};         ///< the arm can hold the object out upright, the hand behind it, the person's wrist at ease
+  double rank_transfer{0.3};         ///< a place was found where the person can take it so
   double rank_sturdy{1.0};           ///< the squeeze's margin / `sturdy_margin`, -2 to 1: what only just holds comes last
   double sturdy_margin{2.0};         ///< [N]
 };
@@ -42,10 +45,13 @@ const char* reason_text(ChoiceReason);
 
 struct Choice {
   std::vector<Grasp> grasps;  ///< with arm_joints and approach_joints, best first
+  /// For a person, with the pairs known: how each of the grasps can be handed over; nullopt: no place was found.
+  std::vector<std::optional<TransferPose>> transfers;
   std::array<std::uint64_t, static_cast<std::size_t>(ChoiceReason::count)> reasons{};
-  std::uint64_t reaches{};      ///< inverse kinematics solved or tried
-  std::uint64_t states{};       ///< robot states judged for collision
-  std::uint64_t touch_tests{};  ///< hand against object
+  std::uint64_t reaches{};           ///< inverse kinematics solved or tried
+  std::uint64_t transfer_reaches{};  ///< those for places to hand over
+  std::uint64_t states{};            ///< robot states judged for collision
+  std::uint64_t touch_tests{};       ///< hand against object
 
   Refusals refusals() const;
   /// One sentence when there are no grasps: how many the list had, and what most of them failed on.
@@ -59,9 +65,10 @@ class GraspChooser {
   GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
                const ChoiceSettings& settings);
 
-  /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may be empty.
+  /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may be empty. `pairs`: of this list and the
+  /// hand of the person the object is for; without them only the room left counts.
   Choice choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene, const HumanState& people,
-                const std::function<bool()>& cancelled = {}) const;
+                const std::function<bool()>& cancelled = {}, const TransferTable* pairs = nullptr) const;
 
   const RobotModel& robot() const { return *robot_; }
 

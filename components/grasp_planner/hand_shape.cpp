@@ -214,6 +214,7 @@ HandShape::PlacedHand HandShape::placed(const std::vector<std::vector<Pose>>& T_
     const Pose T_frame_s = T_frame_hand * T_hand_s;
     Placed p;
     p.capsule = s.capsule;
+    p.palm = s.step < 0;
     p.a = T_frame_s * s.a;
     p.b = T_frame_s * s.b;
     p.radius = s.radius;
@@ -250,11 +251,12 @@ bool HandShape::nearer(const Placed& s, const Placed& t, double clearance) {
   return touch(*s.shape, s.T_frame_shape, *t.shape, t.T_frame_shape);
 }
 
-bool HandShape::hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance) {
-  if (a.box.squaredExteriorDistance(b.box) > clearance * clearance) return false;
+bool HandShape::hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance, double palm_clearance) {
+  const double larger = std::max(clearance, palm_clearance);
+  if (a.box.squaredExteriorDistance(b.box) > larger * larger) return false;
   for (const Placed& s : a.solids) {
     for (const Placed& t : b.solids) {
-      if (nearer(s, t, clearance)) return true;
+      if (nearer(s, t, s.palm || t.palm ? larger : clearance)) return true;
     }
   }
   return false;

@@ -33,7 +33,7 @@ class HandShape {
   std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const;
   /// The whole hand placed in some frame, for tests of hands against each other.
   struct Placed {
-    bool capsule{};
+    bool capsule{}, palm{};
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  // capsules
     double radius{};
     CollisionShapePtr shape;  // the others
@@ -47,8 +47,8 @@ class HandShape {
     Eigen::AlignedBox3d box;
   };
   PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
-  /// Nearer than `clearance` [m].
-  static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance);
+  /// Nearer than `clearance` [m], or a palm nearer to the other hand than `palm_clearance`.
+  static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance, double palm_clearance = 0.0);
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
   struct Round {
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStretched = 0.95;  // share of its length an arm reaches comfortably
 constexpr double kNearest = 0.2;     // [m]
-constexpr int kElbows = 10;
+constexpr int kElbows = 7;
 
 double share(double angle, double positive, double negative) { return angle >= 0 ? angle / positive : -angle / negative; }
 

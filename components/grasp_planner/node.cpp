@@ -8,6 +8,7 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr std::size_t kRememberedReplies = 8;
+constexpr std::uint32_t kTakerPositions = 40, kTakerOrientations = 72;
 constexpr double kMoved = 0.01;  // [m] an object moved by more needs new candidates
 
 config::GraspPlannerSettings load_settings(const NodeContext& context) {
@@ -32,8 +33,23 @@ Duration list_time(const GraspList& list) {
                       12e-6 * static_cast<double>(list.closure_tests) + 10e-6 * static_cast<double>(list.frames));
 }
 Duration choice_time(const Choice& choice) {
-  return from_seconds(0.002 + 4e-4 * static_cast<double>(choice.reaches) + 3e-5 * static_cast<double>(choice.states) +
-                      4e-5 * static_cast<double>(choice.touch_tests));
+  return from_seconds(0.002 + 4e-4 * static_cast<double>(choice.reaches) + 5e-5 * static_cast<double>(choice.transfer_reaches) +
+                      3e-5 * static_cast<double>(choice.states) + 4e-5 * static_cast<double>(choice.touch_tests));
+}
+
+// A person's list is one of several for an object: fewer frames do.
+GraspListSettings taker_settings(const config::GraspPlannerSettings& text) {
+  GraspListSettings s = list_settings(text, 1);
+  s.positions = std::min(s.positions, kTakerPositions);
+  s.orientations = std::min(s.orientations, kTakerOrientations);
+  return s;
+}
+
+std::shared_ptr<TransferBook> transfer_book(const config::GraspPlannerSettings& text, const std::shared_ptr<const HandKit>& robot,
+                                            const GraspStore& store) {
+  if (text.taker().empty()) return nullptr;
+  const auto taker = std::make_shared<const HandKit>(HandModel::load(hand_description(text.taker())));
+  return std::make_shared<TransferBook>(robot, taker, taker_settings(text), store);
 }
 
 }  // namespace
@@ -76,6 +92,8 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_contacts = t.rank_contacts();
   s.rank_room = t.rank_room();
   s.rank_exchange = t.rank_exchange();
+  s.rank_partner = t.rank_partner();
+  s.rank_transfer = t.rank_transfer();
   s.rank_sturdy = t.rank_sturdy();
   s.sturdy_margin = positive("sturdy_margin", t.sturdy_margin());
   return s;
@@ -89,6 +107,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       chooser_(std::make_shared<const GraspChooser>(context.robot, kit_, context.objects, choice_settings(settings_))),
       // The list of an object is the same whatever the seed of the node: it is kept on disk and shared.
       book_(std::make_shared<GraspBook>(kit_, list_settings(settings_, 1), GraspStore(settings_.store() ? default_store() : ""))),
+      transfers_(transfer_book(settings_, kit_, GraspStore(settings_.store() ? default_store() : ""))),
       reply_out_(bus.advertise<GraspReply>()),
       candidates_out_(bus.advertise<GraspCandidates>()) {
   positive("candidates_period", settings_.candidates_period());
@@ -106,19 +125,31 @@ void Node::prepare(const Scene& scene) {
     const ObjectModel* model = objects_(o.model);
     if (model == nullptr || !prepared_.insert(o.model).second) continue;
     auto problem = std::make_shared<std::string>();
-    bus_.run_job(
-        [book = book_, model, problem](const CancelToken& token) {
-          try {
-            const auto page = book->page(*model, [&token] { return token.cancelled(); });
-            return page ? list_time(page->list) : Duration{};
-          } catch (const ConfigError& e) {
-            *problem = e.what();
-            return Duration{};
-          }
-        },
-        [this, problem] {
-          if (!problem->empty()) bus_.set_degraded(*problem);
-        });
+    const auto prepare_by = [&](const std::function<Duration(const std::function<bool()>& cancelled)>& work) {
+      bus_.run_job(
+          [work, problem](const CancelToken& token) {
+            try {
+              return work([&token] { return token.cancelled(); });
+            } catch (const ConfigError& e) {
+              *problem = e.what();
+              return Duration{};
+            }
+          },
+          [this, problem] {
+            if (!problem->empty()) bus_.set_degraded(*problem);
+          });
+    };
+    prepare_by([book = book_, model](const std::function<bool()>& cancelled) {
+      const auto page = book->page(*model, cancelled);
+      return page ? list_time(page->list) : Duration{};
+    });
+    if (!transfers_) continue;
+    prepare_by([book = book_, transfers = transfers_, model](const std::function<bool()>& cancelled) {
+      const auto page = book->page(*model, cancelled);
+      const auto taken = page ? transfers->taker_page(*model, cancelled) : nullptr;
+      const auto table = taken ? transfers->table(*model, *page, cancelled) : nullptr;
+      return table ? list_time(taken->list) + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs)) : Duration{};
+    });
   }
 }
 
@@ -160,7 +191,8 @@ void Node::choose(const GraspRequest& request, bool reply) {
   }
   const bool work = result->reply.reason.empty();
   bus_.run_job(
-      [book = book_, chooser = chooser_, request, scene = scene_, people = people_, model, result, work](const CancelToken& token) {
+      [book = book_, transfers = transfers_, chooser = chooser_, request, scene = scene_, people = people_, model, result,
+       work](const CancelToken& token) {
         if (!work) return Duration{};
         const auto cancelled = [&token] { return token.cancelled(); };
         try {
@@ -169,7 +201,8 @@ void Node::choose(const GraspRequest& request, bool reply) {
             result->reply.reason = "cancelled";
             return Duration{};
           }
-          const Choice choice = chooser->choose(request, page->list, *page->object, scene, people, cancelled);
+          const auto table = transfers ? transfers->known(model->name) : nullptr;
+          const Choice choice = chooser->choose(request, page->list, *page->object, scene, people, cancelled, table.get());
           result->reply.grasps = choice.grasps;
           result->reply.rejected = choice.refusals();
           for (Refusal& r : page->list.refusals()) result->reply.rejected.push_back(std::move(r));

@@ -33,7 +33,8 @@ class Node {
   ObjectLibrary objects_;
   std::shared_ptr<const HandKit> kit_;
   std::shared_ptr<const GraspChooser> chooser_;
-  std::shared_ptr<GraspBook> book_;  // used by jobs only, one after the other
+  std::shared_ptr<GraspBook> book_;          // used by jobs only, one after the other
+  std::shared_ptr<TransferBook> transfers_;  // likewise; nullptr: no hand of a person is known
   std::unique_ptr<Publisher<GraspReply>> reply_out_;
   std::unique_ptr<Publisher<GraspCandidates>> candidates_out_;
   Scene scene_;

@@ -9,10 +9,23 @@
 namespace handsel::grasp_planner {
 namespace {
 
+constexpr double kTiltStep = std::numbers::pi / 6;
 constexpr double kDifferent = 0.5;    // [rad] between two partners' hands
 constexpr std::size_t kPlaced = 120;  // best double grasps of one robot grasp that partners are picked from
 
 double promise_of(const TransferPartner& p) { return 0.6 * p.opposition / std::numbers::pi + 0.4 * p.quality; }
+
+// Tilts of the object about level axes, with that angle: upright, then in steps of 30 degrees four ways.
+std::vector<std::pair<Eigen::Matrix3d, double>> tilts(const TransferSettings& s) {
+  std::vector<std::pair<Eigen::Matrix3d, double>> out{{Eigen::Matrix3d::Identity(), 0.0}};
+  for (double tilt = kTiltStep; tilt < s.most_tilt + 1e-3; tilt += kTiltStep) {
+    for (int k = 0; k < 4; ++k) {
+      const double way = 0.5 * std::numbers::pi * k;
+      out.emplace_back(Eigen::AngleAxisd(tilt, Vector3(std::cos(way), std::sin(way), 0)).toRotationMatrix(), tilt);
+    }
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -21,8 +34,11 @@ TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const
   DoubleSettings pairs;
   pairs.most_of_each = settings.most_of_each;
   pairs.clearance = settings.clearance;
+  pairs.palm_clearance = settings.palm_clearance;
   pairs.least_opposition = settings.least_opposition;
   pairs.passed = &object;
+  pairs.taken = Taken::spread;
+  pairs.p_object_middle = object.box().center();
   doubles_ = list_double_grasps(robot, human, pairs);
   std::vector<std::vector<TransferPartner>> all(partners_.size());
   for (const DoubleGrasp& d : doubles_.grasps)
@@ -58,9 +74,9 @@ TransferPlaces::TransferPlaces(const Person& person, const HumanArm& arm, const 
   // Before the person, the arm bent: from the middle of the chest out to the shoulder, elbow to chest high.
   const Vector3 across = Vector3::UnitZ().cross(to_robot_);
   const double side = across.dot(arm.outward) >= 0 ? 1.0 : -1.0;
-  for (const double ahead : {0.54, 0.62, 0.7}) {
+  for (const double ahead : {0.62, 0.54, 0.7}) {
     for (const double aside : {0.1, 0.0, 0.2}) {
-      for (const double below : {0.2, 0.3}) {
+      for (const double below : {0.25, 0.15, 0.35}) {
         Vector3 p = chest_ + ahead * to_robot_ + side * aside * across;
         p.z() = arm.shoulder.z() - below;
         places_.push_back(p);
@@ -74,35 +90,71 @@ std::optional<TransferPose> TransferPlaces::best(
     const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach, int most_reaches) const {
   const TransferSettings& s = table.settings();
   const double least_cosine = std::cos(s.most_aim);
+  struct Held {
+    Eigen::Matrix3d R;
+    double tilt;
+    const TransferPartner* partner;
+  };
+  // Whether the hand of a partner at a place would do; the pose without the arm's joints.
+  const auto judge = [&](const Held& held, const Vector3& place, double most_strain) -> std::optional<TransferPose> {
+    Vector3 way = place - chest_;
+    way.z() = 0;
+    const double cosine = (held.R * held.partner->T_object_wrist.linear().col(2)).dot(way.normalized());
+    if (cosine < least_cosine) return std::nullopt;
+    TransferPose pose;
+    pose.T_world_object.linear() = held.R;
+    pose.T_world_object.translation() = place - held.R * p_object_middle_;
+    const auto wrist = wrist_posture(arm_, pose.T_world_object * held.partner->T_object_wrist);
+    if (!wrist || wrist->strain > most_strain) return std::nullopt;
+    pose.partner = *held.partner;
+    pose.wrist = *wrist;
+    pose.aim = std::acos(std::min(1.0, cosine));
+    pose.score = 0.4 * (held.partner->opposition - s.least_opposition) / (std::numbers::pi - s.least_opposition) +
+                 0.4 * (1 - wrist->strain / s.most_strain) + 0.2 * (1 - pose.aim / s.most_aim) - 0.3 * held.tilt;
+    return pose;
+  };
   std::vector<TransferPose> found;
-  for (int k = 0; k < s.headings; ++k) {
-    const Eigen::Matrix3d R =
-        Eigen::AngleAxisd(2 * std::numbers::pi * k / s.headings, Vector3::UnitZ()).toRotationMatrix() * R_world_object_;
-    for (const TransferPartner& partner : table.partners(robot_grasp)) {
-      const Vector3 hand = R * partner.T_object_wrist.linear().col(2);
-      for (const Vector3& place : places_) {
-        Vector3 way = place - chest_;
-        way.z() = 0;
-        const double cosine = hand.dot(way.normalized());
-        if (cosine < least_cosine) continue;
-        Pose T_world_object = Pose::Identity();
-        T_world_object.linear() = R;
-        T_world_object.translation() = place - R * p_object_middle_;
-        const auto wrist = wrist_posture(arm_, T_world_object * partner.T_object_wrist);
-        if (!wrist || wrist->strain > s.most_strain) continue;
-        TransferPose pose{T_world_object, {}, partner, *wrist, std::acos(std::min(1.0, cosine))};
-        pose.score = 0.4 * (partner.opposition - s.least_opposition) / (std::numbers::pi - s.least_opposition) +
-                     0.4 * (1 - wrist->strain / s.most_strain) + 0.2 * (1 - pose.aim / s.most_aim);
-        found.push_back(std::move(pose));
-      }
+  std::vector<std::pair<Eigen::Matrix3d, double>> turns;
+  for (const auto& [R_tilt, tilt] : tilts(s)) {
+    for (int k = 0; k < s.headings; ++k) {
+      const Eigen::Matrix3d R_turn = Eigen::AngleAxisd(2 * std::numbers::pi * k / s.headings, Vector3::UnitZ()).toRotationMatrix();
+      turns.emplace_back(R_turn * R_tilt * R_world_object_, tilt);
     }
   }
-  std::stable_sort(found.begin(), found.end(), [](const TransferPose& a, const TransferPose& b) { return a.score > b.score; });
-  for (std::size_t i = 0; i < found.size() && most_reaches > 0; ++i, --most_reaches) {
-    auto q = reach(found[i].T_world_object, found[i].T_world_object * T_object_hand);
+  for (const auto& [R, tilt] : turns) {
+    std::vector<Held> likely;  // what is hopeless in the middle is so everywhere
+    for (const TransferPartner& partner : table.partners(robot_grasp)) {
+      if (judge({R, tilt, &partner}, places_.front(), 1.3 * s.most_strain)) likely.push_back({R, tilt, &partner});
+    }
+    for (const Vector3& place : places_) {
+      std::optional<TransferPose> at_place;
+      for (const Held& held : likely) {
+        auto pose = judge(held, place, s.most_strain);
+        if (pose && (!at_place || pose->score > at_place->score)) at_place = std::move(pose);
+      }
+      if (at_place) found.push_back(std::move(*at_place));
+    }
+  }
+  // The best of every turn first: where the robot's arm does not get to in one, it seldom does a little beside.
+  const auto better = [](const TransferPose& x, const TransferPose& y) { return x.score > y.score; };
+  std::vector<TransferPose> ordered, again;
+  for (auto begin = found.begin(); begin != found.end();) {
+    const auto end = std::find_if(begin, found.end(), [&](const TransferPose& p) {
+      return !p.T_world_object.linear().isApprox(begin->T_world_object.linear(), 1e-9);
+    });
+    std::stable_sort(begin, end, better);
+    ordered.push_back(std::move(*begin));
+    std::move(begin + 1, end, std::back_inserter(again));
+    begin = end;
+  }
+  std::stable_sort(ordered.begin(), ordered.end(), better);
+  std::stable_sort(again.begin(), again.end(), better);
+  std::move(again.begin(), again.end(), std::back_inserter(ordered));
+  for (std::size_t i = 0; i < ordered.size() && most_reaches > 0; ++i, --most_reaches) {
+    auto q = reach(ordered[i].T_world_object, ordered[i].T_world_object * T_object_hand);
     if (!q) continue;
-    found[i].arm_joints = std::move(*q);
-    return found[i];
+    ordered[i].arm_joints = std::move(*q);
+    return ordered[i];
   }
   return std::nullopt;
 }

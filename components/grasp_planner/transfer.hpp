@@ -12,13 +12,15 @@
 namespace handsel::grasp_planner {
 
 struct TransferSettings {
-  double clearance{0.01};         ///< between the two hands [m]
+  double clearance{0.004};        ///< between the two hands [m]
+  double palm_clearance{0.01};    ///< between either palm and the other hand [m]
   double least_opposition{2.1};   ///< angle of the wrists, more than 120 degrees [rad]
   std::size_t most_of_each{400};  ///< best grasps taken from each list
   std::size_t partners{10};       ///< grasps of the person kept for each of the robot, clearly different ones
   double most_strain{kComfortableStrain};
   double most_aim{1.05};  ///< angle between the person's hand and the level way from their body to the object [rad]
   int headings{24};       ///< of the object
+  double most_tilt{0};    ///< it may be tilted by up to this [rad]; upright is better
 };
 
 /// What a person's hand could do with the object in one grasp of the robot.
@@ -54,10 +56,10 @@ struct TransferPose {
   TransferPartner partner;
   WristPosture wrist;  ///< of the person
   double aim{};        ///< angle between the person's hand and the way from their body to the object [rad]
-  double score{};      ///< [0, 1]: legibility (opposition), comfort (strain), aim
+  double score{};      ///< [0, 1]: legibility (opposition), comfort (strain), aim, little tilt
 };
 
-/// Exchange poses for one person: places before their chest and headings of the object, which keeps its tilt.
+/// Exchange poses for one person: places before their chest and headings of the object.
 class TransferPlaces {
  public:
   /// `p_object_middle`: of the object's box, object frame. `R_world_object`: how it is held now.

@@ -261,17 +261,25 @@ ARM = [
 WRIST_TO_HAND = 0.1105
 
 
+def lwr(prefix, parent, arm, limits=None):
+    """The arm's joints and links from `parent` on, and the name of its last link. `limits`: of single joints [deg]."""
+    out = []
+    for i, (name, height, axis, limit, speed, torque, mass, shapes) in enumerate(arm):
+        child = f"{prefix}arm_link_{i + 1}"
+        lower, upper = (limits or {}).get(name, (-limit, limit))
+        out += joint(prefix + name, "revolute", parent, child, (0, 0, height), (0, 0, 0), axis,
+                     (lower * DEG, upper * DEG, math.floor(speed * DEG * 1000) / 1000, torque))
+        out += link(child, mass, shapes)
+        parent = child
+    return out, parent
+
+
 def jido():
     out = link("base_link", 150, [box(0.68, 0.60, 0.36, (0, 0, 0.2)), box(0.26, 0.221, 0.70, (0.165, 0, 0.73))])
     out += joint("arm_mount", "fixed", "base_link", "arm_base", ARM_BASE[0], to_rpy(ARM_BASE[1]))
     out += link("arm_base", 2.0, [cylinder(0.08, 0.11, (0, 0, 0.055))])
-    parent = "arm_base"
-    for i, (name, height, axis, limit, speed, torque, mass, shapes) in enumerate(ARM):
-        child = f"arm_link_{i + 1}"
-        out += joint(name, "revolute", parent, child, (0, 0, height), (0, 0, 0), axis,
-                     (-limit * DEG, limit * DEG, math.floor(speed * DEG * 1000) / 1000, torque))
-        out += link(child, mass, shapes)
-        parent = child
+    arm, parent = lwr("", "arm_base", ARM)
+    out += arm
     out += joint("hand_mount", "fixed", parent, "palm", (0, 0, WRIST_TO_HAND - ARM[-1][1]))
     out += Hand().urdf()
     out += joint("head_pan", "revolute", "base_link", "pan_link", (0.243, 0, 1.244), (0, 0, 0), (0, 0, 1), (-170 * DEG, 170 * DEG, 2.0, 10))
@@ -279,6 +287,56 @@ def jido():
     out += joint("head_tilt", "revolute", "pan_link", "tilt_link", (0, 0, 0.06), (0, 0, 0), (0, -1, 0), (-45 * DEG, 30 * DEG, 2.0, 10))
     out += link("tilt_link", 0.8, [box(0.07, 0.2, 0.07, (0.03, 0, 0.04))])
     out += joint("camera_fixed", "fixed", "tilt_link", "camera", (0.057, 0, 0.046))
+    return out + link("camera")
+
+
+# --- Duo: two such arms and hands on a torso that leans, both shoulders tilted by 60 degrees (proportions of DLR's Justin) ------------------
+TORSO_HEIGHT, TORSO_LINK = 0.7055, 0.300
+HEAD = (0.088, 0, 0.2593)
+SHOULDER = (0.088, 0.256, 0.190)
+# The shoulder's joints begin where axes 1 and 2 meet.
+DUO_ARM = [("arm_a1", 0.0, (0, 0, 1), 170, 110, 176, 2.35, [sphere(0.083)])] + [
+    (name, 0.0 if name == "arm_a2" else height, *rest) for name, height, *rest in ARM[1:]]
+DUO_WRIST = {"arm_a5": (-45, 80), "arm_a6": (-45, 135)}
+DUO_WRIST_TO_HAND = 0.118
+
+
+def duo():
+    out = link("base_link", 120, [cylinder(0.30, 0.34, (0, 0, 0.22)), cylinder(0.13, 0.18, (0, 0, 0.48))])
+    out += joint("torso_turn", "revolute", "base_link", "torso_base", (0, 0, 0.6), (0, 0, 0), (0, 0, 1), (-140 * DEG, 200 * DEG, 1.0, 400))
+    out += link("torso_base", 8, [cylinder(0.11, 0.1, (0, 0, 0.04))])
+    # Each link of the torso is followed by a joint that turns back: the chest stays upright, both angles are measured from the vertical.
+    parent = "torso_base"
+    for name, at, lower, upper in (("torso_lower", TORSO_HEIGHT - 0.6, -70, 90), ("torso_upper", TORSO_LINK, -70, 90)):
+        out += joint(name, "revolute", parent, f"{name}_link", (0, 0, at), (0, 0, 0), (0, 1, 0), (lower * DEG, upper * DEG, 0.8, 300))
+        out += link(f"{name}_link", 6, [cylinder(0.075, 0.2, (0, 0, TORSO_LINK / 2))])
+        child = "chest" if name == "torso_upper" else "torso_elbow"
+        out += joint(f"{name}_back", "revolute", f"{name}_link", child, (0, 0, TORSO_LINK), (0, 0, 0), (0, -1, 0),
+                     (lower * DEG, upper * DEG, 0.8, 300), mimic=name)
+        if child == "torso_elbow":
+            out += link(child, 2, [sphere(0.08)])
+            parent = child
+    out += link("chest", 14, [box(0.2, 0.24, 0.3, (0.03, 0, 0.08))])
+    for side, prefix, sign in (("right", "", -1), ("left", "left_", 1)):
+        # Axis 1 points outward and 30 degrees up, x of its frame down and inward on the right; the left arm is the mirror image.
+        z = (0, sign * math.sqrt(3) / 2, 0.5)
+        y = (1, 0, 0)
+        x = (y[1] * z[2] - y[2] * z[1], y[2] * z[0] - y[0] * z[2], y[0] * z[1] - y[1] * z[0])
+        R = [[x[i], y[i], z[i]] for i in range(3)]
+        dock = (SHOULDER[0], sign * SHOULDER[1], SHOULDER[2])
+        out += joint(f"{side}_dock", "fixed", "chest", f"{side}_shoulder", dock, to_rpy(R))
+        out += link(f"{side}_shoulder", 2.0, [rod(0.075, (0, 0, -0.17), (0, 0, -0.04))])
+        limits = DUO_WRIST if sign < 0 else {name: (-upper, -lower) for name, (lower, upper) in DUO_WRIST.items()}
+        arm, last = lwr(prefix, f"{side}_shoulder", DUO_ARM, limits)
+        out += arm
+        out += joint(f"{side}_hand_mount", "fixed", last, f"{prefix}palm", (0, 0, DUO_WRIST_TO_HAND - ARM[-1][1]),
+                     (0, 0, 0) if sign < 0 else (0, 0, math.pi))
+        out += Hand(prefix, left=sign > 0).urdf()
+    out += joint("head_pan", "revolute", "chest", "pan_link", HEAD, (0, 0, 0), (0, 0, 1), (-105 * DEG, 105 * DEG, 2.0, 10))
+    out += link("pan_link", 0.8, [cylinder(0.045, 0.06, (0, 0, -0.01))])
+    out += joint("head_tilt", "revolute", "pan_link", "tilt_link", (0, 0, 0.06), (0, 0, 0), (0, -1, 0), (-90 * DEG, 10 * DEG, 2.0, 10))
+    out += link("tilt_link", 1.2, [box(0.09, 0.2, 0.09, (0.03, 0, 0.05))])
+    out += joint("camera_fixed", "fixed", "tilt_link", "camera", (0.077, 0, 0.056))
     return out + link("camera")
 
 
@@ -295,3 +353,4 @@ write("../hands/human_left/human_left.urdf", "human_left", Hand("left_", HUMAN_S
 write("../hands/allegro/allegro.urdf", "allegro", allegro())
 write("../hands/barrett/barrett.urdf", "barrett", barrett())
 write("jido/jido.urdf", "jido", jido())
+write("duo/duo.urdf", "duo", duo())

@@ -1,0 +1,227 @@
+// Double grasps and regrasp sequences of the robot with two arms on three objects: what each step says is checked by forward kinematics and
+// FCL, and that nothing shorter would do by trying every grasp.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/support/duo_stage.hpp"
+
+namespace handsel::grasp_planner {
+namespace {
+
+const DuoStage& duo() {
+  static const DuoStage stage;
+  return stage;
+}
+
+std::vector<std::string> objects() {
+  const char* asked = std::getenv("HANDSEL_OBJECTS");
+  if (asked != nullptr && std::string(asked) == "all") return {"bottle", "box", "can"};
+  return {"bottle"};
+}
+
+const HandOnObject& hand(int arm, const std::string& object) { return hand_on_object(arm == 0 ? "sah" : "sah_left", object, 60, 144); }
+
+void expect_hand_on(int arm, std::size_t grasp, const std::string& object, const Vector& q, const Pose& T_world_object) {
+  const Grasp& g = hand(arm, object).list.grasps[grasp].grasp;
+  const RegraspArm side = duo().arms(object)[static_cast<std::size_t>(arm)];
+  const Pose T = duo().robot.link_pose(q, side.arm.palm), wanted = T_world_object * g.T_object_hand;
+  EXPECT_LT((T.translation() - wanted.translation()).norm(), 1e-4);
+  EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(T.linear().transpose() * wanted.linear())).angle(), 1e-3);
+  EXPECT_LT((RobotModel::part(q, *side.arm.fingers) - g.hand_joints).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+/// Least distance of the object's surface to the links that `judged` names, by FCL.
+double object_distance(const std::string& object, const Vector& q, const Pose& T_world_object,
+                       const std::function<bool(const std::string&)>& judged) {
+  const Shape mesh = std::make_shared<TriangleMesh>(hand(0, object).object->mesh());
+  std::vector<Pose> T;
+  duo().robot.forward(q, T);
+  double least = 1;
+  for (std::size_t l = 0; l < T.size(); ++l) {
+    if (!judged(duo().robot.links()[l].name)) continue;
+    for (const PlacedShape& s : duo().robot.links()[l].collision)
+      least = std::min(least, shape_distance(s.shape, T[l] * s.T_parent_shape, mesh, T_world_object).distance);
+  }
+  return least;
+}
+
+bool is_finger_or_palm(const std::string& link) {
+  for (const char* part : {"palm", "thumb", "fore", "middle", "ring"})
+    if (link.find(part) != std::string::npos) return true;
+  return false;
+}
+
+/// Walks through the steps: who holds the object when, and whether the robot can be so.
+void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectState state) {
+  const RobotModel& robot = duo().robot;
+  CollisionWorld world(robot, [](const std::string& name) { return object_model(name); });
+  world.set_scene(duo().scene());
+  for (const RegraspStep& s : plan.steps) {
+    SCOPED_TRACE(name(s.kind));
+    for (int i = 0; i < robot.dof(); ++i) {
+      EXPECT_GE(s.q[i], robot.axes()[static_cast<std::size_t>(i)].lower - 1e-9);
+      EXPECT_LE(s.q[i], robot.axes()[static_cast<std::size_t>(i)].upper + 1e-9);
+    }
+    const CollisionVerdict v = world.check(s.q);
+    EXPECT_TRUE(v.free) << v.first << " touches " << v.second;
+    EXPECT_GT(object_distance(object, s.q, s.T_world_object, [](const std::string& link) { return !is_finger_or_palm(link); }), 0);
+    if (s.kind == RegraspStepKind::pick) {
+      EXPECT_EQ(state.arm, -1);
+      EXPECT_LT((state.T_world_object.matrix() - s.T_world_object.matrix()).cwiseAbs().maxCoeff(), 1e-12);
+    } else {
+      EXPECT_EQ(state.arm, s.from);
+      EXPECT_EQ(state.grasp, s.grasp_from);
+      expect_hand_on(s.from, s.grasp_from, object, s.q, s.T_world_object);
+    }
+    if (s.kind == RegraspStepKind::place) {
+      state = {-1, {}, s.T_world_object};
+      continue;
+    }
+    expect_hand_on(s.to, s.grasp_to, object, s.q, s.T_world_object);
+    // The hand that comes is opened, clear of the object, and gets there without touching anything.
+    EXPECT_GT(
+        object_distance(object, s.before, s.T_world_object,
+                        [&](const std::string& link) { return is_finger_or_palm(link) && (link.starts_with("left_") == (s.to == 1)); }),
+        0.001);
+    Vector there = RobotModel::with(s.q, *duo().arms(object)[static_cast<std::size_t>(s.to)].arm.fingers,
+                                    hand(s.to, object).list.grasps[s.grasp_to].grasp.pregrasp_joints);
+    for (int n = 0; n <= 4; ++n) {
+      const CollisionVerdict way = world.check(s.before + n / 4.0 * (there - s.before));
+      EXPECT_TRUE(way.free) << n << "/4 of the way: " << way.first << " touches " << way.second;
+    }
+    state = {s.to, s.grasp_to, Pose::Identity()};
+  }
+}
+
+void print(const RegraspPlan& plan, const std::string& object, const char* what) {
+  std::printf("%-7s %s:", object.c_str(), what);
+  for (const RegraspStep& s : plan.steps)
+    std::printf(" %s%s", name(s.kind),
+                s.kind == RegraspStepKind::pass ? (s.to == 1 ? " right to left" : " left to right")
+                : s.to == 0 || s.from == 0      ? " right"
+                                                : " left");
+  std::printf(" (%llu judged, %llu double grasps)\n", static_cast<unsigned long long>(plan.judged),
+              static_cast<unsigned long long>(plan.double_grasps));
+}
+
+/// Whether some grasp of an arm, reached at both places by inverse kinematics alone, would do without passing.
+bool one_hand_reaches_both(int arm, const std::string& object, const Pose& a, const Pose& b) {
+  const RegraspArm side = duo().arms(object)[static_cast<std::size_t>(arm)];
+  return std::any_of(side.list->grasps.begin(), side.list->grasps.end(), [&](const ListedGrasp& g) {
+    return duo().robot.inverse(*side.arm.arm, a * g.grasp.T_object_hand, duo().robot.rest_posture()) &&
+           duo().robot.inverse(*side.arm.arm, b * g.grasp.T_object_hand, duo().robot.rest_posture());
+  });
+}
+
+TEST(Duo, its_description_lacks_nothing_and_it_is_its_own_mirror_image) {
+  const RobotModel& robot = duo().robot;
+  const auto arms = manipulators(duo().file, robot);
+  ASSERT_EQ(arms.size(), 2U);
+  EXPECT_EQ(arms[1].hand, "sah_left");
+  Vector q = robot.rest_posture();
+  for (std::size_t i = 0; i < 7; ++i) {
+    q[arms[0].arm->axes[i]] += 0.1 * static_cast<double>(i);
+    q[arms[1].arm->axes[i]] = -q[arms[0].arm->axes[i]];
+  }
+  const Pose right = robot.link_pose(q, arms[0].palm), left = robot.link_pose(q, arms[1].palm);
+  const Eigen::Matrix3d mirror = Vector3(1, -1, 1).asDiagonal();
+  EXPECT_LT((mirror * right.translation() - left.translation()).norm(), 1e-6);
+  EXPECT_LT((mirror * right.linear() * mirror - left.linear()).cwiseAbs().maxCoeff(), 1e-6);
+  // The chest stays upright however the torso leans.
+  q[robot.require_group("torso").axes[1]] = 0.7;
+  EXPECT_GT(robot.link_pose(q, robot.link_index("chest")).linear()(2, 2), 1 - 1e-9);
+}
+
+TEST(Regrasp, from_one_side_of_the_table_to_the_other_the_object_changes_hands_once) {
+  for (const std::string& object : objects()) {
+    RegraspPlanner planner = duo().planner(object);
+    RegraspTask task;
+    task.start.T_world_object = DuoStage::standing(object, 0.5, -0.55);
+    task.goal.T_world_object = DuoStage::standing(object, 0.5, 0.55);
+    const RegraspPlan plan = planner.plan(task);
+    ASSERT_TRUE(plan.solved) << object << ": " << plan.reason;
+    print(plan, object, "across the table");
+    EXPECT_GT(plan.double_grasps, 20U);
+    for (int arm = 0; arm < 2; ++arm) EXPECT_FALSE(one_hand_reaches_both(arm, object, task.start.T_world_object, task.goal.T_world_object));
+    ASSERT_EQ(plan.steps.size(), 3U);
+    EXPECT_EQ(plan.steps[1].kind, RegraspStepKind::pass);
+    expect_sequence(plan, object, task.start);
+  }
+}
+
+TEST(Regrasp, a_hand_changes_its_own_grasp_through_the_other_hand) {
+  for (const std::string& object : objects()) {
+    RegraspPlanner planner = duo().planner(object);
+    // Two grasps that can be passed on, by a first search each; the second far from the first.
+    RegraspTask first;
+    first.start.T_world_object = DuoStage::standing(object, 0.5, -0.35);
+    first.goal.arm = 1;
+    const RegraspPlan picked = planner.plan(first);
+    ASSERT_TRUE(picked.solved) << object << ": " << picked.reason;
+    RegraspTask task;
+    task.start = {0, picked.steps.front().grasp_to, Pose::Identity()};
+    const GraspList& list = hand(0, object).list;
+    const Pose& held = list.grasps[*task.start.grasp].grasp.T_object_hand;
+    RegraspPlan plan;
+    int tried = 0;
+    for (std::size_t i = 0; i < list.grasps.size() && !plan.solved && tried < 12; ++i) {
+      if ((list.grasps[i].grasp.T_object_hand.linear().transpose() * held.linear()).trace() > 1)
+        continue;  // turned by less than 90 degrees
+      ++tried;
+      task.goal = {0, i, Pose::Identity()};
+      plan = planner.plan(task);
+    }
+    ASSERT_TRUE(plan.solved) << object << ": " << plan.reason;
+    print(plan, object, "another grasp of the same hand");
+    ASSERT_EQ(plan.steps.size(), 2U);
+    EXPECT_EQ(plan.steps[0].kind, RegraspStepKind::pass);
+    EXPECT_EQ(plan.steps[1].kind, RegraspStepKind::pass);
+    EXPECT_EQ(plan.steps[1].grasp_to, *task.goal.grasp);
+    expect_sequence(plan, object, task.start);
+  }
+}
+
+TEST(Regrasp, with_one_arm_it_puts_down_and_takes_up_again) {
+  const std::string object = "bottle";
+  RegraspPlanner planner = duo().planner(object, 1);
+  RegraspTask task;
+  task.start.T_world_object = DuoStage::standing(object, 0.5, -0.4);
+  task.goal.arm = 0;
+  const RegraspPlan picked = planner.plan(task);
+  ASSERT_TRUE(picked.solved) << picked.reason;
+  task.start = {0, picked.steps.front().grasp_to, Pose::Identity()};
+  for (const double yaw : {0.0, 1.0, 2.0, -1.0, -2.0, 3.1}) task.placements.push_back(DuoStage::standing(object, 0.55, -0.35, yaw));
+  const GraspList& list = hand(0, object).list;
+  RegraspPlan plan;
+  for (std::size_t i = 0; i < list.grasps.size() && plan.steps.size() != 2; i += 3) {
+    if (i == *task.start.grasp) continue;
+    task.goal = {0, i, Pose::Identity()};
+    plan = planner.plan(task);
+    // Whatever it takes: put down and taken up in turn.
+    for (std::size_t n = 0; n < plan.steps.size(); ++n)
+      EXPECT_EQ(plan.steps[n].kind, n % 2 == 0 ? RegraspStepKind::place : RegraspStepKind::pick);
+    expect_sequence(plan, object, task.start);
+  }
+  ASSERT_TRUE(plan.solved) << plan.reason;
+  print(plan, object, "another grasp, one arm");
+  ASSERT_EQ(plan.steps.size(), 2U);
+}
+
+TEST(Regrasp, says_what_stands_in_the_way) {
+  const std::string object = "bottle";
+  RegraspPlanner planner = duo().planner(object);
+  RegraspTask task;
+  task.start.T_world_object = DuoStage::standing(object, 0.5, -0.4);
+  task.goal.T_world_object = make_pose({3, 0, 1});
+  const RegraspPlan plan = planner.plan(task);
+  EXPECT_FALSE(plan.solved);
+  EXPECT_TRUE(plan.steps.empty());
+  EXPECT_NE(plan.reason.find("no posture of the arm reaches it"), std::string::npos) << plan.reason;
+  ASSERT_FALSE(plan.rejected.empty());
+  task.goal.arm = 2;
+  EXPECT_THROW(planner.plan(task), ConfigError);
+}
+
+}  // namespace
+}  // namespace handsel::grasp_planner
