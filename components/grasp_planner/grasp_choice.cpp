@@ -18,6 +18,7 @@ constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
 constexpr int kExchangeHeadings = 8;
 constexpr int kTransferReaches = 16;            // inverse kinematics tried for the places of one grasp ...
 constexpr std::uint64_t kTransferBudget = 600;  // ... and of all
+constexpr std::size_t kTransferTries = 12;      // grasps looked at for a place to hand over, for each that is wanted
 constexpr double kSameDistance = 0.02;          // [m] grasps nearer than this ...
 constexpr double kSameAngle = 0.35;             // [rad] ... and less turned count as one variant
 
@@ -319,6 +320,7 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
   };
   // For a person, those that can be handed over come first; the others only when too few of them can be picked up.
   std::vector<std::pair<double, std::size_t>> others;
+  std::size_t tries = 0;
   for (const auto& [rank, index] : order) {
     if (!search.places) {
       consider(rank, index, {});
@@ -326,8 +328,11 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
     }
     const Grasp& g = list.grasps[index].grasp;
     std::optional<TransferPose> transfer;
-    if (found.size() < enough && !pairs->partners(index).empty() && !search.below_support(search.T_world_object * g.T_object_hand, g))
+    const bool try_it = found.size() < enough && tries < kTransferTries * enough && !pairs->partners(index).empty();
+    if (try_it && !search.below_support(search.T_world_object * g.T_object_hand, g)) {
+      ++tries;
       transfer = search.transfer(index, g);
+    }
     if (transfer) {
       consider(rank, index, std::move(transfer));
     } else {

@@ -51,7 +51,7 @@ struct RegraspSettings {
   double clearance{0.004};               ///< between the hands [m]
   double stand_off{0.09};                ///< of a hand before it comes and after it went [m]
   double lift{0.08};                     ///< what is picked up or put down must be able to go this far straight up [m]
-  int exchange_tries{60};                ///< places and turns of the object tried to pass it in one double grasp
+  int exchange_tries{200};               ///< places and turns of the object tried to pass it in one double grasp
   std::uint64_t most_steps_tried{3000};  ///< the search ends when so many picks, passes and places were judged
 };
 

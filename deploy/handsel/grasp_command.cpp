@@ -1,14 +1,13 @@
 #include "deploy/handsel/grasp_command.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <memory>
 
-#include "components/grasp_planner/double_grasp.hpp"
 #include "components/grasp_planner/epsilon.hpp"
 #include "deploy/handsel/grasp_input.hpp"
+#include "deploy/handsel/grasp_pair_command.hpp"
 #include "deploy/handsel/grasp_show_command.hpp"
 #include "deploy/handsel/grasp_table.hpp"
 #include "deploy/handsel/json_lines.hpp"
@@ -20,8 +19,6 @@ namespace {
 using nlohmann::json;
 using namespace command;
 using namespace grasp_planner;
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 json numbers(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -149,40 +146,6 @@ int table(const TableOptions& o) {
   return all ? 0 : 1;
 }
 
-struct PairOptions : ListOptions {
-  std::string hand2{"sah"};
-  std::size_t most_of_each{200};
-  double clearance{0.005}, opposition{0};
-};
-
-int pairs(const PairOptions& o) {
-  const Listed a = list_with(o.hand, o), b = list_with(o.hand2, o);
-  DoubleSettings settings;
-  settings.most_of_each = o.most_of_each;
-  settings.clearance = o.clearance;
-  settings.least_opposition = o.opposition * kDegree;
-  const auto start = std::chrono::steady_clock::now();
-  const DoubleList found = list_double_grasps({a.kit.get(), &a.list, {}}, {b.kit.get(), &b.list, {}}, settings);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const bool table = !json_wanted(o.as_json);
-  if (table) std::printf("%8s %8s %8s %12s %8s\n", "first", "second", "quality", "opposed[deg]", "score");
-  for (const DoubleGrasp& d : found.grasps) {
-    const std::uint64_t first = a.list.grasps[d.first].grasp.id, second = b.list.grasps[d.second].grasp.id;
-    if (table) {
-      std::printf("%8llu %8llu %8.3f %12.0f %8.3f\n", static_cast<unsigned long long>(first), static_cast<unsigned long long>(second),
-                  d.quality, d.opposition / kDegree, d.score);
-    } else {
-      std::cout
-          << json{{"first", first}, {"second", second}, {"quality", d.quality}, {"opposition", d.opposition}, {"score", d.score}}.dump()
-          << '\n';
-    }
-  }
-  std::fprintf(stderr, "%zu double grasps of %llu pairs in %.2f s; %llu collide, %llu not opposed\n", found.grasps.size(),
-               static_cast<unsigned long long>(found.pairs), seconds, static_cast<unsigned long long>(found.colliding),
-               static_cast<unsigned long long>(found.not_opposed));
-  return found.grasps.empty() ? 1 : 0;
-}
-
 }  // namespace
 
 void add_grasp_commands(CLI::App& app, int& exit_code) {
@@ -200,15 +163,6 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   add_list_options(*listing, *o);
   listing->callback([o, &exit_code] { exit_code = list(*o); });
 
-  CLI::App* doubling = grasp->add_subcommand("double", "Pairs of grasps of two hands that do not collide, best first");
-  auto d = std::make_shared<PairOptions>();
-  add_list_options(*doubling, *d);
-  doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")->capture_default_str();
-  doubling->add_option("--best", d->most_of_each, "grasps taken from each list")->check(CLI::PositiveNumber)->capture_default_str();
-  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(CLI::NonNegativeNumber)->capture_default_str();
-  doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));
-  doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
-
   CLI::App* tabling =
       grasp->add_subcommand("table", "Hands against objects: numbers of grasps, best quality, time and reasons, a line each");
   auto t = std::make_shared<TableOptions>();
@@ -222,6 +176,7 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   tabling->add_flag("--json", t->as_json, "JSON Lines also on a terminal");
   tabling->callback([t, &exit_code] { exit_code = table(*t); });
 
+  add_grasp_pairs(*grasp, exit_code);
   add_grasp_show(*grasp, exit_code);
 }
 

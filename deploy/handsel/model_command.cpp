@@ -8,6 +8,7 @@
 #include "common/config/resources.hpp"
 #include "common/geometry/segments.hpp"
 #include "common/model/hand_model.hpp"
+#include "common/model/manipulator.hpp"
 #include "common/model/robot_capsules.hpp"
 #include "deploy/handsel/json_lines.hpp"
 #include "deploy/handsel/terminal.hpp"
@@ -18,9 +19,11 @@ namespace {
 using nlohmann::json;
 using namespace command;
 
+bool is_urdf(const std::string& robot) { return robot.ends_with(".urdf") || robot.ends_with(".xml"); }
+
 /// A URDF file, a description file or the name of a robot.
 RobotModel load_any(const std::string& robot, Meshes meshes) {
-  if (robot.ends_with(".urdf") || robot.ends_with(".xml")) return RobotModel::load_urdf(robot, {}, meshes);
+  if (is_urdf(robot)) return RobotModel::load_urdf(robot, {}, meshes);
   return RobotModel::load(robot_description(robot));
 }
 
@@ -120,10 +123,29 @@ std::vector<std::string> lacks_of(const RobotModel& robot) {
 
 namespace {
 
+/// Further arms: their hands' descriptions and joints.
+void check_other_arms(const std::filesystem::path& description, const RobotModel& robot, std::vector<std::string>& lacks) {
+  for (const Manipulator& m : manipulators(description, robot)) {
+    if (m.name == "arm") continue;
+    try {
+      const HandModel hand = HandModel::load(hand_description(m.hand));
+      const auto& axes = hand.model().axes();
+      bool same = axes.size() == m.fingers->axes.size();
+      for (std::size_t i = 0; same && i < axes.size(); ++i)
+        same = axes[i].name == robot.axes()[static_cast<std::size_t>(m.fingers->axes[i])].name;
+      if (!same) lacks.push_back("group \"" + m.fingers->name + "\" does not have the joints of hand " + hand.name() + " in its order");
+    } catch (const std::exception& error) {
+      lacks.push_back("hand of arm \"" + m.name + "\": " + error.what());
+    }
+  }
+}
+
 int check(const std::string& name, bool as_json) {
   std::vector<std::string> lacks;
   try {
-    lacks = lacks_of(load_any(name, Meshes::load));
+    const RobotModel robot = load_any(name, Meshes::load);
+    lacks = lacks_of(robot);
+    if (!is_urdf(name)) check_other_arms(robot_description(name), robot, lacks);
   } catch (const ConfigError& error) {
     lacks.push_back(error.what());
   }

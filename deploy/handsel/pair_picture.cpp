@@ -54,7 +54,7 @@ void draw_taker(Canvas& canvas, const Person& person, const TransferPose& transf
 
 Picture double_grasp_picture(const Graspable& object, const HandKit& a, const Grasp& first, const HandKit& b, const Grasp& second,
                              int size) {
-  const Eigen::AlignedBox3d box = around(object.box().center(), 0.28);
+  const Eigen::AlignedBox3d box = around(object.box().center(), 0.22);
   return from_sides(box, {Vector3(1, -1.6, 0.9), Vector3(1.6, 1, 0.5), Vector3(-0.3, -0.2, 2)}, size, [&](Canvas& canvas, std::size_t) {
     draw_object(canvas, object);
     draw_hand(canvas, a, first.hand_joints, first.T_object_hand, kFirst);

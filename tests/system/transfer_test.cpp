@@ -79,7 +79,7 @@ double distance(const Solids& a, const Solids& b) {
 double angle_between(const Vector3& a, const Vector3& b) { return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)); }
 
 // The ball has no up; two hands on the mug leave little choice.
-double most_tilt(const std::string& object) { return (object == "ball" ? 90 : object == "mug" ? 30 : 0) * kDegree; }
+double most_tilt(const std::string& object) { return (object == "ball" ? 90 : object == "mug" ? 60 : 0) * kDegree; }
 
 // The hand's orientation put together from the joints of the arm, each turned by what is said of it; and each within comfort.
 void expect_comfort(const Person& person, const TransferPose& t, const Pose& T_world_wrist) {
@@ -120,7 +120,7 @@ void expect_transfer(const std::string& object, int place) {
   request.object = "thing";
   request.start = robot.rest_posture();
   request.for_human = "anna";
-  request.max_grasps = 3;
+  request.max_grasps = 8;
   const Choice choice = stage().chooser.choose(request, robot_hand.list, *robot_hand.object, scene, people, {}, table.get());
   ASSERT_FALSE(choice.grasps.empty()) << choice.why_none(robot_hand.list);
   ASSERT_EQ(choice.transfers.size(), choice.grasps.size());
