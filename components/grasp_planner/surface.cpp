@@ -1,4 +1,5 @@
 #include "components/grasp_planner/surface.hpp"
+#include "components/grasp_planner/placement.hpp"
 
 #include <algorithm>
 #include <array>
@@ -186,20 +187,17 @@ double normalised_curvature(double mean_curvature, double radius) { return std::
 Vector3 mass_centre(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;
   for (const Vector3& v : mesh.vertices) box.extend(v);
-  const Vector3 o = box.center();
-  double volume = 0, area = 0;
-  Vector3 by_volume = Vector3::Zero(), by_area = Vector3::Zero();
+  const MassProperties filled = mass_properties(mesh);
+  if (filled.volume > 0.02 * box.volume()) return filled.com.cwiseMax(box.min()).cwiseMin(box.max());
+  double area = 0;
+  Vector3 by_area = Vector3::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Corners k = corners(mesh, t);
-    const double part = (k.a - o).dot((k.b - o).cross(k.c - o)) / 6, face = area_vector(k).norm();
-    volume += part;
+    const double face = area_vector(k).norm();
     area += face;
-    by_volume += part * (k.a + k.b + k.c - 3 * o) / 4;
-    by_area += face * (k.a + k.b + k.c - 3 * o) / 3;
+    by_area += face * (k.a + k.b + k.c) / 3;
   }
-  if (!(area > 0)) return o;
-  const Vector3 inside = volume > 0.02 * box.volume() ? Vector3(by_volume / volume) : Vector3(by_area / area);
-  return o + inside.cwiseMax(-0.5 * box.sizes()).cwiseMin(0.5 * box.sizes());
+  return area > 0 ? Vector3(by_area / area) : box.center();
 }
 
 MeshFindings orient(TriangleMesh& mesh) {

@@ -5,7 +5,10 @@
 #include <iostream>
 #include <memory>
 
+#include <Eigen/Eigenvalues>
+
 #include "components/grasp_planner/epsilon.hpp"
+#include "components/grasp_planner/placement.hpp"
 #include "deploy/handsel/grasp_input.hpp"
 #include "deploy/handsel/grasp_pair_command.hpp"
 #include "deploy/handsel/grasp_show_command.hpp"
@@ -117,6 +120,41 @@ int list(const ListOptions& o) {
   return listed.list.grasps.empty() ? 1 : 0;
 }
 
+// ---- placements
+
+int placements(const ListOptions& o) {
+  const ObjectModel object = object_of(o);
+  const MassProperties mass = mass_properties(object.mesh);
+  const std::vector<Placement> found = stable_placements(object.mesh, object.com);
+  std::fprintf(stderr, "%s: mass centre %.4f %.4f %.4f m", object.name.c_str(), object.com.x(), object.com.y(), object.com.z());
+  if (mass.volume > 0) {
+    const Vector3 principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(mass.inertia_per_mass).eigenvalues();
+    std::fprintf(stderr, ", volume %.4g l, principal inertia %.3g %.3g %.3g m^2 a kg when filled evenly", 1e3 * mass.volume, principal[0],
+                 principal[1], principal[2]);
+  }
+  std::fprintf(stderr, "; %zu ways to stand\n", found.size());
+  const bool text = !json_wanted(o.as_json);
+  if (text) std::printf("%9s %9s %9s %9s  %s\n", "tips [deg]", "height", "margin", "area", "side that is down (object frame)");
+  for (const Placement& p : found) {
+    const Vector3 down = p.T_support_object.linear().transpose() * -Vector3::UnitZ();
+    if (text) {
+      std::printf("%10.1f %9.4f %9.4f %9.5f  %6.3f %6.3f %6.3f\n", p.tipping * 180 / M_PI, p.height, p.margin, p.area, down.x(), down.y(),
+                  down.z());
+    } else {
+      const Eigen::Quaterniond q(p.T_support_object.linear());
+      std::cout << json{{"T_support_object", {{"p", numbers(p.T_support_object.translation())}, {"q", {q.x(), q.y(), q.z(), q.w()}}}},
+                        {"down", numbers(down)},
+                        {"tipping", p.tipping},
+                        {"height", p.height},
+                        {"margin", p.margin},
+                        {"area", p.area}}
+                       .dump()
+                << '\n';
+    }
+  }
+  return found.empty() ? 1 : 0;
+}
+
 struct TableOptions : ListOptions {
   std::vector<std::string> hands{"sah", "allegro", "barrett"}, objects;
   bool fit{};
@@ -175,6 +213,14 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   tabling->add_option("--orientations", t->orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
   tabling->add_flag("--json", t->as_json, "JSON Lines also on a terminal");
   tabling->callback([t, &exit_code] { exit_code = table(*t); });
+
+  CLI::App* standing =
+      grasp->add_subcommand("placements", "How an object stands by itself, hardest to tip over first, and how its mass is spread");
+  auto s = std::make_shared<ListOptions>();
+  standing->add_option("--object", s->object, "mesh file or object description")->required();
+  standing->add_option("--scale", s->scale, "of the mesh")->check(CLI::PositiveNumber);
+  standing->add_flag("--json", s->as_json, "JSON Lines also on a terminal");
+  standing->callback([s, &exit_code] { exit_code = placements(*s); });
 
   add_grasp_pairs(*grasp, exit_code);
   add_grasp_show(*grasp, exit_code);
