@@ -6,10 +6,12 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <numbers>
 
 #include "common/config/resources.hpp"
 #include "common/model/human_body.hpp"
 #include "components/grasp_planner/grasp_choice.hpp"
+#include "components/grasp_planner/placement.hpp"
 #include "deploy/handsel/grasp_input.hpp"
 #include "deploy/handsel/json_lines.hpp"
 #include "deploy/handsel/pair_picture.hpp"
@@ -140,6 +142,20 @@ struct Stage {
     Pose T = make_pose({x, y, top - low});
     T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()).toRotationMatrix();
     return T;
+  }
+
+  /// On the table any way it stands by itself, upright or not, turned in eighths.
+  std::vector<Pose> resting(double x, double y) const {
+    constexpr int kTurns = 8;
+    std::vector<Pose> out;
+    for (int k = 0; k < kTurns; ++k) out.push_back(standing(x, y, 2 * std::numbers::pi * k / kTurns));
+    for (const Placement& placement : stable_placements(object.mesh, object.com)) {
+      if ((placement.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999) continue;
+      for (int k = 0; k < kTurns; ++k)
+        out.push_back(make_pose({x, y, top}, Eigen::Quaterniond(Eigen::AngleAxisd(2 * std::numbers::pi * k / kTurns, Vector3::UnitZ()))) *
+                      placement.T_support_object);
+    }
+    return out;
   }
 
   std::filesystem::path file;
@@ -287,10 +303,7 @@ int regrasp(const RegraspOptions& o) {
   } else {
     task.goal.T_world_object = stage.standing(o.to[0], o.to[1]);
   }
-  if (o.again) {
-    for (int k = 0; k < 8; ++k)
-      task.placements.push_back(stage.standing(0.5 * (o.from[0] + o.to[0]), 0.5 * (o.from[1] + o.to[1]), 45 * k * kDegree));
-  }
+  if (o.again) task.placements = stage.resting(0.5 * (o.from[0] + o.to[0]), 0.5 * (o.from[1] + o.to[1]));
   const auto start = Clock::now();
   const RegraspPlan plan = planner.plan(task);
   std::fprintf(stderr, "%zu steps; %llu double grasps, %llu steps judged in %.2f s\n", plan.steps.size(), whole(plan.double_grasps),
@@ -344,7 +357,7 @@ void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
       ->capture_default_str();
   changing->add_option("--to", r->to, "where it shall stand")->delimiter(',')->expected(2)->capture_default_str();
   changing->add_option("--hold-with", r->to_arm, "instead of that: the arm that shall hold it in the end, counted from 0");
-  changing->add_flag("--put-down", r->again, "it may be put down half way");
+  changing->add_flag("--put-down", r->again, "it may be put down half way, any way it stands by itself");
   changing->callback([r, &exit_code] { exit_code = regrasp(*r); });
 }
 
