@@ -86,7 +86,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
 
-void Controller::on(const RobotState& state, TimePoint sampled) {
+void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
   const auto n = static_cast<Eigen::Index>(robot_->dof());
   if (state.robot != robot_->name() || state.position.size() != n || !state.position.allFinite()) return;
   constexpr double kRestart = 0.5;
@@ -97,6 +97,11 @@ void Controller::on(const RobotState& state, TimePoint sampled) {
   state_ = state;
   robot_seen_.mark(sampled);
   new_state_ = true;
+  constexpr Duration kFresh = std::chrono::milliseconds(50);  // older ones waited while this process slept
+  if (asleep_ && age < kFresh) {
+    asleep_ = false;
+    ready_ = state.mode == DriveMode::enabled;
+  }
   if (ready_ && !restarted) return;
   // The posture of a robot side that has just come up is the first set-point.
   ready_ = true;
@@ -573,6 +578,9 @@ void Controller::write(int axis, const AxisState& s) noexcept {
 }
 
 bool Controller::step(TimePoint now, bool late) noexcept {
+  constexpr Duration kSleep = std::chrono::milliseconds(100);
+  asleep_ = asleep_ || (last_step_ < now && now - last_step_ > kSleep);
+  last_step_ = now;
   if (!ready_) return false;
   ++cycles_;
   run_guard(now);
@@ -591,6 +599,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
     refused_ = false;
     refusal_.clear();
   }
+  if (asleep_) return false;
   next_ = set_point_;
   resync(now);
   step_yield(now);

@@ -70,7 +70,8 @@ class Controller {
   std::string accept(const HandCommand& command, Duration age, TimePoint now);
 
   // Samples: `sampled` is the arrival minus the age at arrival.
-  void on(const RobotState& state, TimePoint sampled);
+  /// `age`: of the sample when it arrived.
+  void on(const RobotState& state, TimePoint sampled, Duration age = {});
   void on(const HumanState& people, TimePoint sampled);
   void on(const Go& go, TimePoint sampled);
   void on(const TrajectoryForecast& forecast, TimePoint sampled);
@@ -78,7 +79,8 @@ class Controller {
   void on(const ActionStatus& action, TimePoint sampled);
 
   /// Advances by one period, whatever time has passed. `late`: the cycle began more than a period after it was due.
-  /// False until the robot's posture is known: nothing may be sent.
+  /// False until the robot's posture is known: nothing may be sent. So it is after a sleep of a tenth of a second: the robot side has
+  /// stopped by itself in the meantime, and what was sent last counts no longer.
   bool step(TimePoint now, bool late) noexcept;
 
   const MotionState3& set_point() const { return set_point_; }  ///< all axes
@@ -178,7 +180,8 @@ class Controller {
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
-  bool ready_{};
+  bool ready_{}, asleep_{};
+  TimePoint last_step_{TimePoint::max()};
   MotionState3 set_point_, next_;
   Vector effort_;
   LimitShares shares_;

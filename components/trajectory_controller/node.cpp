@@ -15,7 +15,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       active_out_(bus.advertise<ActiveTrajectory>()),
       status_out_(bus.advertise<ExecutionStatus>()) {
   command_.robot = context.robot->name();
-  bus.subscribe<RobotState>([this](const RobotState& m, const Receipt& r) { core_.on(m, r.arrival); });
+  bus.subscribe<RobotState>([this](const RobotState& m, const Receipt& r) { core_.on(m, r.arrival, r.age); });
   bus.subscribe<HumanState>([this](const HumanState& m, const Receipt& r) { core_.on(m, r.arrival - r.age); });
   bus.subscribe<Go>([this](const Go& m, const Receipt& r) { core_.on(m, r.arrival); });
   bus.subscribe<TrajectoryForecast>([this](const TrajectoryForecast& m, const Receipt& r) { core_.on(m, r.arrival); });

@@ -9,5 +9,6 @@ silence trajectory_controller for 1500ms
 expect rest within 700ms
 expect status names trajectory_controller within 1s
 expect back trajectory_controller within 3500ms
+listen for 500ms
 expect no limit violations
 stop
