@@ -30,6 +30,35 @@ TEST(Controller, sends_nothing_before_the_posture_is_known_and_then_holds_it) {
   EXPECT_TRUE(has(b, Cause::no_go));
 }
 
+TEST(Controller, sends_nothing_after_a_sleep_until_it_knows_where_the_robot_has_stopped) {
+  for (const bool stopped : {true, false}) {
+    ControllerBench b;
+    b.start();
+    ASSERT_EQ(b.send(b.command(goal(), 1)), "");
+    b.run(0.5);
+    ASSERT_FALSE(b.at_rest());
+    const Vector sent = b.core.set_point().position;
+    b.now += std::chrono::milliseconds(1500);
+    if (stopped) {
+      b.drive = DriveMode::protective_stop;
+      b.measured[0] += 0.2;
+    }
+    b.robot_speaks = false;
+    b.run(0.05);
+    EXPECT_FALSE(b.ready);
+    b.robot_speaks = true;
+    b.tick();
+    b.tick();
+    EXPECT_TRUE(b.ready);
+    if (stopped) {
+      EXPECT_EQ(b.core.set_point().position, b.measured);
+      EXPECT_TRUE(b.at_rest());
+    } else {
+      EXPECT_LT((b.core.set_point().position - sent).norm(), 0.01) << "the robot side did not stop: goes on from what was sent last";
+    }
+  }
+}
+
 TEST(Controller, runs_a_trajectory_in_its_own_time_and_ends_exactly_there) {
   ControllerBench b;
   b.start();
