@@ -84,9 +84,9 @@ class SearchSpace : public Budget {
   mutable std::vector<double> at_, costs_;
   double step_{};
   int tool_{-1};
-  bool only_drives_{};        // no axis but those of the platform
-  bool bound_{};              // by what outside layers forbid: not when it starts there, the arm must be able to leave
-  bool widely_{};             // else every motion is judged exactly
+  bool only_drives_{};  // no axis but those of the platform
+  bool bound_{};        // by what outside layers forbid: not when it starts there, the arm must be able to leave
+  bool widely_{};       // else every motion is judged exactly
   std::vector<Vector> tight_ends_;
   double reach_{};
 };

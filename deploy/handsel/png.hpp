@@ -12,7 +12,8 @@ using Colour = std::array<std::uint8_t, 3>;  ///< red, green, blue
 
 class Picture {
  public:
-  Picture(int width, int height, Colour fill) : width_(width), height_(height), points_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
+  Picture(int width, int height, Colour fill)
+      : width_(width), height_(height), points_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill) {}
   int width() const { return width_; }
   int height() const { return height_; }
   /// Outside the picture nothing happens. x to the right, y down.

@@ -8,6 +8,7 @@
 #include "components/path_planner/path_planner.hpp"
 #include "components/path_planner/search.hpp"
 #include "tests/support/panda_problems.hpp"
+#include "tests/support/quantile.hpp"
 #include "tests/support/thread_time.hpp"
 
 namespace handsel::path_planner {
@@ -15,11 +16,6 @@ namespace {
 
 constexpr int kRepeats = 5;
 constexpr double kPatience = 2.0;  // [s] of a search of the peer
-
-double at(std::vector<double> times, double share) {
-  std::sort(times.begin(), times.end());
-  return 1e3 * times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
-}
 
 int compare(std::size_t most) {
   if (!test::reference_data("problems/panda")) {
@@ -93,7 +89,7 @@ int compare(std::size_t most) {
   }
   std::printf("%zu problems; times of the thread, ours the least of %d\n", runs, kRepeats);
   const auto row = [](const char* name, const std::vector<double>& times) {
-    std::printf("%-32s p50 %8.3f ms  p95 %8.3f ms\n", name, at(times, 0.5), at(times, 0.95));
+    std::printf("%-32s p50 %8.3f ms  p95 %8.3f ms\n", name, test::quantile_ms(times, 0.5), test::quantile_ms(times, 0.95));
   };
   row("ours: the ends are free", ends_times);
   row("ours: search", search_times);
@@ -102,7 +98,8 @@ int compare(std::size_t most) {
   row("ours: all", all_times);
   row("OMPL RRT-Connect and FCL, search", peer_times);
   std::printf("solved: ours %d, the peer %d; ratio of searches p50 %.1f x, p95 %.1f x\n", solved, peer_solved,
-              at(peer_times, 0.5) / at(search_times, 0.5), at(peer_times, 0.95) / at(search_times, 0.95));
+              test::quantile_ms(peer_times, 0.5) / test::quantile_ms(search_times, 0.5),
+              test::quantile_ms(peer_times, 0.95) / test::quantile_ms(search_times, 0.95));
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include "components/path_planner/path_planner.hpp"
 #include "components/path_planner/search.hpp"
 #include "tests/support/beside_the_table.hpp"
+#include "tests/support/quantile.hpp"
 #include "tests/support/thread_time.hpp"
 
 namespace handsel::path_planner {
@@ -15,11 +16,6 @@ namespace {
 
 constexpr unsigned kSeed = 4;
 constexpr double kPatience = 2.0;  // [s] of a search of the peer
-
-double at(std::vector<double> times, double share) {
-  std::sort(times.begin(), times.end());
-  return 1e3 * times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
-}
 
 void compare(int queries) {
   test::BesideTheTable table(kSeed);
@@ -63,11 +59,15 @@ void compare(int queries) {
     peer_times.push_back(test::thread_time() - begin);
   }
   std::printf("%d queries, seed %u; times of the thread, ours the least of 3\n", queries, kSeed);
-  std::printf("ours, search              p50 %8.2f ms  p95 %8.2f ms  solved %d\n", at(search_times, 0.5), at(search_times, 0.95), solved);
-  std::printf("ours, smoothed and judged p50 %8.2f ms  p95 %8.2f ms\n", at(all_times, 0.5), at(all_times, 0.95));
-  std::printf("OMPL BiTRRT and FCL       p50 %8.2f ms  p95 %8.2f ms  solved %d\n", at(peer_times, 0.5), at(peer_times, 0.95), peer_solved);
-  std::printf("ratio of searches         p50 %8.1f x   p95 %8.1f x\n", at(peer_times, 0.5) / at(search_times, 0.5),
-              at(peer_times, 0.95) / at(search_times, 0.95));
+  std::printf("ours, search              p50 %8.2f ms  p95 %8.2f ms  solved %d\n", test::quantile_ms(search_times, 0.5),
+              test::quantile_ms(search_times, 0.95), solved);
+  std::printf("ours, smoothed and judged p50 %8.2f ms  p95 %8.2f ms\n", test::quantile_ms(all_times, 0.5),
+              test::quantile_ms(all_times, 0.95));
+  std::printf("OMPL BiTRRT and FCL       p50 %8.2f ms  p95 %8.2f ms  solved %d\n", test::quantile_ms(peer_times, 0.5),
+              test::quantile_ms(peer_times, 0.95), peer_solved);
+  std::printf("ratio of searches         p50 %8.1f x   p95 %8.1f x\n",
+              test::quantile_ms(peer_times, 0.5) / test::quantile_ms(search_times, 0.5),
+              test::quantile_ms(peer_times, 0.95) / test::quantile_ms(search_times, 0.95));
 }
 
 }  // namespace

@@ -14,8 +14,8 @@
 
 #include "components/grasp_planner/grasp_book.hpp"
 #include "components/grasp_planner/grasp_choice.hpp"
-#include "components/trajectory_controller/hand_executor.hpp"
 #include "sim/world.hpp"
+#include "tests/support/fingers.hpp"
 
 namespace handsel::test {
 
@@ -253,14 +253,7 @@ class Execution {
   }
 
   void close() {
-    std::vector<double> lower, upper;
-    for (const int a : hand_.axes) {
-      lower.push_back(robot_.axes()[static_cast<std::size_t>(a)].lower);
-      upper.push_back(robot_.axes()[static_cast<std::size_t>(a)].upper);
-    }
-    fingers_ = std::make_unique<trajectory_controller::HandExecutor>(trajectory_controller::HandSettings{}, hand_.axes, lower, upper,
-                                                                     robot_.comfort_limits(), robot_.stop_limits());
-    fingers_->reset(command_.position);
+    fingers_ = test::fingers_of(robot_, hand_, command_.position);
     fingers_out_ = {command_.position, Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
     HandCommand closing;
     closing.action = HandAction::grasp;

@@ -18,11 +18,11 @@
 #include <sstream>
 
 #include "components/grasp_planner/grasp_book.hpp"
-#include "components/trajectory_controller/hand_executor.hpp"
 #include "sim/hand_measure.hpp"
 #include "sim/object_body.hpp"
 #include "sim/robot_grasp.hpp"
 #include "sim/settings.hpp"
+#include "tests/support/fingers.hpp"
 #include "tests/support/motion_draw.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -127,14 +127,7 @@ class Rig {
   bool fallen() const { return !(((T_hand_object_.inverse() * in_hand()).translation()).norm() < kFallen); }
 
   bool close() {
-    std::vector<double> lower, upper;
-    for (const int a : hand_.axes) {
-      lower.push_back(robot_.axes()[static_cast<std::size_t>(a)].lower);
-      upper.push_back(robot_.axes()[static_cast<std::size_t>(a)].upper);
-    }
-    fingers_ = std::make_unique<trajectory_controller::HandExecutor>(trajectory_controller::HandSettings{}, hand_.axes, lower, upper,
-                                                                     robot_.comfort_limits(), robot_.stop_limits());
-    fingers_->reset(q_);
+    fingers_ = test::fingers_of(robot_, hand_, q_);
     out_ = {q_, Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
     HandCommand closing;
     closing.action = HandAction::grasp;

@@ -1,0 +1,25 @@
+// The controller's hand executor for the hand of a robot.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/model/robot_model.hpp"
+#include "components/trajectory_controller/hand_executor.hpp"
+
+namespace handsel::test {
+
+/// At rest in `posture`, all axes [rad].
+inline std::unique_ptr<trajectory_controller::HandExecutor> fingers_of(const RobotModel& robot, const Group& hand, const Vector& posture) {
+  std::vector<double> lower, upper;
+  for (const int axis : hand.axes) {
+    lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
+    upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
+  }
+  auto fingers = std::make_unique<trajectory_controller::HandExecutor>(trajectory_controller::HandSettings{}, hand.axes, lower, upper,
+                                                                       robot.comfort_limits(), robot.stop_limits());
+  fingers->reset(posture);
+  return fingers;
+}
+
+}  // namespace handsel::test

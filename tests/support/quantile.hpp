@@ -1,0 +1,17 @@
+// Quantiles of measured times.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace handsel::test {
+
+/// Of times in seconds the one that a share of them stays below [ms]; 0 of none.
+inline double quantile_ms(std::vector<double> times, double share) {
+  if (times.empty()) return 0;
+  std::sort(times.begin(), times.end());
+  return 1e3 * times[std::min(times.size() - 1, static_cast<std::size_t>(share * static_cast<double>(times.size())))];
+}
+
+}  // namespace handsel::test
