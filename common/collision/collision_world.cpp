@@ -7,9 +7,7 @@
 #include <map>
 #include <set>
 
-#include <Eigen/Eigenvalues>
-
-#include "common/collision/collision_shape.hpp"
+#include "common/collision/enclosing.hpp"
 #include "common/collision/wide_capsules.hpp"
 #include "common/collision/wide_world.hpp"
 #include "common/model/object_extent.hpp"
@@ -66,49 +64,6 @@ Pose along(const Vector3& a, const Vector3& b) {
   const Vector3 d = b - a;
   const Vector3 axis = d.norm() > 1e-12 ? d : Vector3(Vector3::UnitZ());
   return make_pose(0.5 * (a + b), Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis));
-}
-
-/// Larger by `margin` on every side; of a mesh the box around it, T becomes its pose.
-CollisionShapePtr widened(const CollisionShapePtr& shape, double margin, Pose& T) {
-  const auto grown = [&](const auto& solid) -> Shape {
-    using S = std::decay_t<decltype(solid)>;
-    if constexpr (std::is_same_v<S, Box>) {
-      return Box{solid.size + Vector3::Constant(2 * margin)};
-    } else if constexpr (std::is_same_v<S, Cylinder>) {
-      return Cylinder{solid.radius + margin, solid.length + 2 * margin};
-    } else if constexpr (std::is_same_v<S, Sphere>) {
-      return Sphere{solid.radius + margin};
-    } else if constexpr (std::is_same_v<S, Capsule>) {
-      return Capsule{solid.radius + margin, solid.length};
-    } else {
-      Eigen::AlignedBox3d box;
-      for (const Vector3& vertex : solid->vertices) box.extend(vertex);
-      T = T * Eigen::Translation3d(box.center());
-      return Box{box.sizes() + Vector3::Constant(2 * margin)};
-    }
-  };
-  return CollisionShape::make(std::visit(grown, shape->shape()));
-}
-
-/// A capsule around points, along their longest extent.
-LinkCapsule enclosing_capsule(const std::vector<Vector3>& points) {
-  Vector3 mean = Vector3::Zero();
-  for (const Vector3& p : points) mean += p / static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Vector3& p : points) covariance += (p - mean) * (p - mean).transpose();
-  const Vector3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
-  double low = 0, high = 0, radius = 0;
-  for (const Vector3& p : points) radius = std::max(radius, (p - mean).cross(axis).norm());
-  for (const Vector3& p : points) {
-    const double across = (p - mean).cross(axis).norm(), x = (p - mean).dot(axis), cap = std::sqrt(radius * radius - across * across);
-    low = std::min(low, x + cap);
-    high = std::max(high, x - cap);
-  }
-  LinkCapsule capsule;
-  capsule.a = mean + low * axis;
-  capsule.b = mean + high * axis;
-  capsule.radius = radius;
-  return capsule;
 }
 
 }  // namespace
