@@ -44,7 +44,7 @@ struct TopicRow {
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 40960, "sim ros2_lane", "spark") \
   X(Scene, "scene", state, 10, 0.3, 81920, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
-    "manipulation_planner attention driver ros2_lane") \
+    "manipulation_planner attention ros2_lane") \
   X(HumanState, "human_state", state, 30, 0.1, 131072, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller") \
@@ -52,7 +52,7 @@ struct TopicRow {
   X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", \
     "collision_checker path_planner trajectory_planner manipulation_planner") \
   X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor spark") \
-  X(TaskStatus, "task_status", state, 0, 0, 131072, "supervisor", "handsel") \
+  X(TaskStatus, "task_status", state, 0, 0, 167936, "supervisor", "handsel") \
   X(ActionGoal, "action_goal", request, 0, 0, 512, "supervisor", "manipulation_planner") \
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", \
     "supervisor attention trajectory_controller ros2_lane") \
@@ -61,10 +61,10 @@ struct TopicRow {
   X(HandCommand, "hand_command", command, 0, 0, 704, "manipulation_planner", "trajectory_controller") \
   X(ExecutionStatus, "execution_status", state, 50, 0.06, 704, "trajectory_controller", "manipulation_planner supervisor ros2_lane") \
   X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 2621440, "trajectory_controller", \
-    "collision_checker attention manipulation_planner driver ros2_lane") \
+    "collision_checker attention manipulation_planner ros2_lane") \
   X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.06, 512, "collision_checker", "trajectory_controller attention") \
-  X(AttentionState, "attention_state", state, 10, 0.3, 1280, "attention", "bridge") \
-  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 512, "attention", "spark trajectory_controller") \
+  X(AttentionState, "attention_state", state, 10, 0.3, 3584, "attention", "bridge") \
+  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 640, "attention", "spark trajectory_controller supervisor manipulation_planner") \
   X(PathRequest, "path_request", request, 0, 0, 1343488, "manipulation_planner", "path_planner") \
   X(PathReply, "path_reply", reply, 0, 0, 1310720, "path_planner", "manipulation_planner") \
   X(TrajectoryRequest, "trajectory_request", request, 0, 0, 1310720, "manipulation_planner ros2_lane", "trajectory_planner") \

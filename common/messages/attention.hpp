@@ -13,6 +13,16 @@ namespace handsel {
 enum class Behaviour : std::uint8_t { search, track, avoid, pick, place, give, receive };
 const char* name(Behaviour);
 
+/// What attention wants of the task that runs.
+enum class TaskChange : std::uint8_t {
+  none,
+  suspend,
+  resume,
+  abort,
+  give,  ///< hand what is held to `person`: they reach for it
+};
+const char* name(TaskChange);
+
 struct BehaviourState {
   Behaviour behaviour{};
   double period{};                         ///< of its clock now [s]
@@ -21,6 +31,8 @@ struct BehaviourState {
   bool released{};
   double stimulus{};         ///< what it watches, SI
   double speed_factor{1.0};  ///< what it asks for, [-1, 1]
+  bool winner{};             ///< decides the speed or the gaze now
+  std::string reason;        ///< of its speed factor, one phrase for people
 };
 
 /// Topic AttentionState, profile state, 10 Hz.
@@ -41,6 +53,8 @@ struct AttentionAdvice {
   Vector3 target_shift{Vector3::Zero()};  ///< of the exchange point, world [m]
   double cost_gain{1.0};                  ///< on the human-aware costs
   double human_period{};                  ///< how often interpretation of people is wanted [s]; 0 = as it comes
+  TaskChange change{};                    ///< of the task that runs
+  std::string person;                     ///< whom the change is about; empty: nobody
 };
 
 }  // namespace handsel

@@ -51,7 +51,8 @@ struct HandCommand {
   std::uint64_t epoch{};
   std::string robot;
   HandAction action{HandAction::move};
-  Vector position;         ///< actuated hand axes, in the order of the group "hand" [rad]
+  std::string group{};     ///< the hand's axes; empty: "hand"
+  Vector position;         ///< actuated hand axes, in the order of the group [rad]
   Vector effort;           ///< likewise, of a grasp: what they squeeze with [Nm]; empty: as before while holding, else the settings' own
   double pull_force{4.0};  ///< [N] beyond the load's weight, for release_on_pull
   double payload{};        ///< mass of what is grasped, 0: unknown [kg]

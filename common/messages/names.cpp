@@ -18,7 +18,9 @@ static_assert(ends_with(kCauseNames, Cause::cost_ahead));
 static_assert(ends_with(kModeNames, Mode::fault));
 static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
-static_assert(ends_with(kActionKindNames, ActionKind::go_to));
+static_assert(ends_with(kActionKindNames, ActionKind::carry));
+static_assert(ends_with(kStepStateNames, StepState::dropped));
+static_assert(ends_with(kTaskChangeNames, TaskChange::give));
 static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));
 static_assert(ends_with(kFactNames, FactKind::released));
 static_assert(ends_with(kHolderNames, Holder::human));
@@ -33,6 +35,8 @@ const char* name(Mode value) { return look_up(kModeNames, value); }
 const char* name(TaskKind value) { return look_up(kTaskKindNames, value); }
 const char* name(TaskState value) { return look_up(kTaskStateNames, value); }
 const char* name(ActionKind value) { return look_up(kActionKindNames, value); }
+const char* name(StepState value) { return look_up(kStepStateNames, value); }
+const char* name(TaskChange value) { return look_up(kTaskChangeNames, value); }
 const char* name(FactKind value) { return look_up(kFactNames, value); }
 const char* name(Holder value) { return look_up(kHolderNames, value); }
 const char* name(HealthState value) { return look_up(kHealthStateNames, value); }

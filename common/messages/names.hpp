@@ -38,7 +38,9 @@ inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "
 inline constexpr const char* kTaskKindNames[] = {"give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
                                                  "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
 inline constexpr const char* kTaskStateNames[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
-inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to"};
+inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to", "regrasp", "carry"};
+inline constexpr const char* kStepStateNames[] = {"waiting", "running", "done", "failed", "dropped"};
+inline constexpr const char* kTaskChangeNames[] = {"none", "suspend", "resume", "abort", "give"};
 inline constexpr const char* kDriveModeNames[] = {"off", "braked", "enabled", "protective_stop", "user_stop", "emergency_stop"};
 inline constexpr const char* kFactNames[] = {
     "in_contact_zone",  "in_danger_zone", "in_interaction_zone", "in_social_zone", "approaching",        "attentive",          "reaching",

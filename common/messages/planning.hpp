@@ -91,7 +91,15 @@ struct PathReply {
   std::uint64_t checks{};           ///< states judged
 };
 
-/// Topic TrajectoryRequest, profile request: a broken line to soft motion.
+/// A node of a motion of the tool (chapter section 4.6.1).
+struct TipNode {
+  Pose T_world_tip{Pose::Identity()};
+  bool has_elbow{};
+  double elbow{};  ///< angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad]
+  Vector also;     ///< where the further active axes are to be [rad]
+};
+
+/// Topic TrajectoryRequest, profile request: a broken line to soft motion, of joints or of the tool.
 struct TrajectoryRequest {
   Stamp stamp{};
   RequestId id;
@@ -101,6 +109,12 @@ struct TrajectoryRequest {
   Attachment attachment;
   std::vector<std::string> allowed_contacts;
   double speed_scale{1.0};  ///< (0, 1] on the comfort velocity limits
+  /// Nodes of the tool after `start`; empty: `nodes` are those of joints, and what follows is not used.
+  std::vector<TipNode> poses;
+  std::vector<std::uint32_t> also;  ///< robot axes that are active besides the arm (hand, head)
+  bool upright{};                   ///< as in PathRequest
+  Vector3 upright_axis{Vector3::UnitZ()};
+  double most_tilt{};
 };
 
 /// Topic TrajectoryReply, profile reply.
@@ -109,9 +123,12 @@ struct TrajectoryReply {
   RequestId id;
   bool solved{};
   std::string reason;
-  Trajectory trajectory;  ///< group axes
-  double duration_ptp{};  ///< with a stop at each node [s]
-  Refusals corners;       ///< corners that keep their stop, and why
+  Trajectory trajectory;            ///< of `axes`; of a motion of the tool that is not solved: as far as it goes
+  double duration_ptp{};            ///< with a stop at each node [s]
+  Refusals corners;                 ///< corners that keep their stop, and why
+  std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
+  std::uint32_t reached{};          ///< nodes on the way given; all of them when solved
+  Vector speeds;                    ///< share of the comfort velocity limits on each leg, because of people; empty: 1 everywhere
 };
 
 struct Contact {
@@ -137,6 +154,9 @@ struct Grasp {
   double quality{};        ///< weighted sum of the four parts, [0, 1]
   Vector arm_joints;       ///< arm axes reaching the grasp; empty until a robot was considered
   Vector approach_joints;  ///< arm axes at the stand-off before it
+  bool has_platform{};     ///< the arm reaches it from `platform` (x, y [m], heading [rad], world), not from where it stands
+  Vector3 platform{Vector3::Zero()};
+  double visible{};  ///< share of the object that the person it is for (else the robot's head) sees past the hand
 };
 
 /// Topic GraspRequest, profile request.
@@ -148,6 +168,11 @@ struct GraspRequest {
   std::string for_human;  ///< person who will take it, or empty: leave room for that hand
   std::uint32_t max_grasps{20};
   std::uint64_t seed{};
+  std::string group;                    ///< axes of the arm; empty: "arm"
+  bool has_goal{};                      ///< it is to be put down again: the grasp must serve at `T_world_goal` too
+  Pose T_world_goal{Pose::Identity()};  ///< the object where it will stand
+  double least_visible{};               ///< of Grasp::visible, [0, 1]
+  bool move_platform{};                 ///< where no grasp is in reach, places of the platform are searched
 };
 
 /// Topic GraspReply, profile reply: reachable, collision-free, best first.

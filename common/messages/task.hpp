@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,23 @@ struct TaskGoal {
   std::string object;
   std::string human;  ///< empty: the nearest attentive person
   std::string surface;
-  double value{};  ///< speed: [0, 1]
+  double value{};    ///< speed: [0, 1]
+  std::string onto;  ///< box where what is taken, cleared or tidied ends; empty: where there is room
 };
 
 enum class TaskState : std::uint8_t { accepted, running, paused, succeeded, failed, cancelled, refused };
 const char* name(TaskState);
+
+enum class StepState : std::uint8_t { waiting, running, done, failed, dropped };
+const char* name(StepState);
+
+/// A task or an action in the tree of a plan.
+struct PlanStep {
+  std::string text;       ///< "give mug to anna"
+  std::uint32_t depth{};  ///< 0: the goal; its parts follow it one deeper
+  StepState state{};
+  std::string reason;  ///< of a failure, or why it was dropped
+};
 
 /// Topic TaskStatus, profile state.
 struct TaskStatus {
@@ -55,9 +68,11 @@ struct TaskStatus {
   std::string phase;              ///< of the running action
   std::string reason;             ///< of a failure or refusal
   Refusals refusals;              ///< gathered on the way
+  std::vector<PlanStep> tree;     ///< the plan with what it was made of, depth first
+  double cost{};                  ///< of what is left of the plan
 };
 
-enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to };
+enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to, regrasp, carry };
 const char* name(ActionKind);
 
 /// Topic ActionGoal, profile request: supervisor -> manipulation planner. The same id twice is one action.
@@ -82,9 +97,10 @@ struct ActionStatus {
   ActionState state{ActionState::idle};
   std::string phase;  ///< planning, approach, grasp, lift, carry, offer, release, retreat
   std::string object, human;
-  bool holding{};                           ///< the hand holds `object`
-  bool exchange_engaged{};                  ///< the exchanging forearm and hand are excepted from separation
-  Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
+  bool holding{};                                                    ///< the hand holds `object`
+  bool exchange_engaged{};                                           ///< the exchanging forearm and hand are excepted from separation
+  Vector3 exchange_point{Vector3::Zero()};                           ///< world, valid while kind is give or receive [m]
+  double time_to_exchange{std::numeric_limits<double>::infinity()};  ///< until the object changes hands, as foreseen [s]
   std::string reason;
   Refusals refusals;
 };

@@ -13,6 +13,8 @@ void describe(WireIo& io, BehaviourState& m, handsel_BehaviourState& w) {
   io.flag("released", m.released, w.released);
   io.number("stimulus", m.stimulus, w.stimulus, {-1e9, 1e9});
   io.number("speed_factor", m.speed_factor, w.speed_factor, kSigned);
+  io.flag("winner", m.winner, w.winner);
+  io.text("reason", m.reason, w.reason, Text::sentence);
 }
 
 void describe(WireIo& io, AttentionState& m, handsel_AttentionState& w) {
@@ -31,6 +33,8 @@ void describe(WireIo& io, AttentionAdvice& m, handsel_AttentionAdvice& w) {
   io.point("target_shift", m.target_shift, w.target_shift);
   io.number("cost_gain", m.cost_gain, w.cost_gain, {0, 1e3});
   io.number("human_period", m.human_period, w.human_period, kPeriod);
+  io.choice("change", m.change, w.change, kTaskChangeNames);
+  io.text("person", m.person, w.person, Text::maybe_empty);
 }
 
 HANDSEL_WIRE(AttentionState)

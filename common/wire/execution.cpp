@@ -45,6 +45,7 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
   io.integer("id", m.id, w.id);
   io.integer("epoch", m.epoch, w.epoch);
   io.choice("action", m.action, w.action, kHandActions);
+  io.text("group", m.group, w.group, Text::maybe_empty);
   io.vector("position", m.position, w.position, kCoordinate);
   io.vector("effort", m.effort, w.effort, kCoordinate);
   io.number("pull_force", m.pull_force, w.pull_force, {0, 1e5});

@@ -32,6 +32,9 @@ void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {
   io.number("quality", m.quality, w.quality, {-1e3, 1e3});
   io.vector("arm_joints", m.arm_joints, w.arm_joints, kCoordinate);
   io.vector("approach_joints", m.approach_joints, w.approach_joints, kCoordinate);
+  io.flag("has_platform", m.has_platform, w.has_platform);
+  io.point("platform", m.platform, w.platform);
+  io.number("visible", m.visible, w.visible, {0, 1});
   io.check(m.hand_joints.size() == m.pregrasp_joints.size() || m.pregrasp_joints.size() == 0, "pregrasp_joints",
            "has not as many values as hand_joints");
   io.check(m.hand_effort.size() == m.hand_joints.size() || m.hand_effort.size() == 0, "hand_effort",
@@ -87,6 +90,13 @@ void describe(WireIo& io, PathReply& m, handsel_PathReply& w) {
   io.check(equally_wide(m.path), "path", "has points with different numbers of axes");
 }
 
+void describe(WireIo& io, TipNode& m, handsel_TipNode& w) {
+  io.pose("T_world_tip", m.T_world_tip, w.T_world_tip);
+  io.flag("has_elbow", m.has_elbow, w.has_elbow);
+  io.number("elbow", m.elbow, w.elbow, kCoordinate);
+  io.vector("also", m.also, w.also, kCoordinate);
+}
+
 void describe(WireIo& io, TrajectoryRequest& m, handsel_TrajectoryRequest& w) {
   io.stamp(m.stamp, w.stamp);
   io.part("id", m.id, w.id);
@@ -96,6 +106,11 @@ void describe(WireIo& io, TrajectoryRequest& m, handsel_TrajectoryRequest& w) {
   io.part("attachment", m.attachment, w.attachment);
   describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
   io.number("speed_scale", m.speed_scale, w.speed_scale, {0, 1, true});
+  io.list("poses", m.poses, w.poses, 256);
+  io.indices("also", m.also, w.also, kMaxAxes, kMaxAxes - 1);
+  io.flag("upright", m.upright, w.upright);
+  io.direction("upright_axis", m.upright_axis, w.upright_axis, m.upright);
+  io.number("most_tilt", m.most_tilt, w.most_tilt, kTurn);
   io.check(equally_wide(m.nodes), "nodes", "have different numbers of axes");
 }
 
@@ -107,6 +122,9 @@ void describe(WireIo& io, TrajectoryReply& m, handsel_TrajectoryReply& w) {
   io.part("trajectory", m.trajectory, w.trajectory);
   io.number("duration_ptp", m.duration_ptp, w.duration_ptp, kTime);
   io.list("corners", m.corners, w.corners, 256, true);
+  io.indices("axes", m.axes, w.axes, kMaxAxes, kMaxAxes - 1);
+  io.integer("reached", m.reached, w.reached, 0, 4096);
+  io.vector("speeds", m.speeds, w.speeds, {0, 1});
 }
 
 void describe(WireIo& io, GraspRequest& m, handsel_GraspRequest& w) {
@@ -117,6 +135,11 @@ void describe(WireIo& io, GraspRequest& m, handsel_GraspRequest& w) {
   io.text("for_human", m.for_human, w.for_human, Text::maybe_empty);
   io.integer("max_grasps", m.max_grasps, w.max_grasps, 1, 200);
   io.integer("seed", m.seed, w.seed);
+  io.text("group", m.group, w.group, Text::maybe_empty);
+  io.flag("has_goal", m.has_goal, w.has_goal);
+  io.pose("T_world_goal", m.T_world_goal, w.T_world_goal);
+  io.number("least_visible", m.least_visible, w.least_visible, {0, 1});
+  io.flag("move_platform", m.move_platform, w.move_platform);
 }
 
 void describe(WireIo& io, GraspReply& m, handsel_GraspReply& w) {

@@ -20,6 +20,14 @@ void describe(WireIo& io, TaskGoal& m, handsel_TaskGoal& w) {
   io.text("surface", m.surface, w.surface, Text::maybe_empty);
   io.number("value", m.value, w.value, {-1e9, 1e9});
   io.check(m.kind != TaskKind::speed || (m.value >= 0 && m.value <= 1), "value", "must be from 0 to 1 for a speed goal");
+  io.text("onto", m.onto, w.onto, Text::maybe_empty);
+}
+
+void describe(WireIo& io, PlanStep& m, handsel_PlanStep& w) {
+  io.text("text", m.text, w.text, Text::sentence);
+  io.integer("depth", m.depth, w.depth, 0, 16);
+  io.choice("state", m.state, w.state, kStepStateNames);
+  io.text("reason", m.reason, w.reason, Text::sentence);
 }
 
 void describe(WireIo& io, TaskStatus& m, handsel_TaskStatus& w) {
@@ -32,6 +40,8 @@ void describe(WireIo& io, TaskStatus& m, handsel_TaskStatus& w) {
   io.text("phase", m.phase, w.phase, Text::sentence);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.list("refusals", m.refusals, w.refusals, 256, true);
+  io.list("tree", m.tree, w.tree, 128, true);
+  io.number("cost", m.cost, w.cost, {0, 1e9});
   io.check(m.step <= m.plan.size(), "step", "is beyond the end of plan");
 }
 
@@ -59,6 +69,7 @@ void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
   io.flag("holding", m.holding, w.holding);
   io.flag("exchange_engaged", m.exchange_engaged, w.exchange_engaged);
   io.point("exchange_point", m.exchange_point, w.exchange_point);
+  io.horizon("time_to_exchange", m.time_to_exchange, w.time_to_exchange, 0);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.list("refusals", m.refusals, w.refusals, 256, true);
 }
