@@ -44,11 +44,11 @@ struct TopicRow {
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 40960, "sim ros2_lane", "spark") \
   X(Scene, "scene", state, 10, 0.3, 81920, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
-    "manipulation_planner attention ros2_lane") \
+    "manipulation_planner attention supervisor ros2_lane") \
   X(HumanState, "human_state", state, 30, 0.1, 131072, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller") \
-  X(Facts, "facts", state, 20, 0.3, 98304, "spark", "supervisor attention") \
+  X(Facts, "facts", state, 20, 0.3, 98304, "spark", "supervisor attention manipulation_planner") \
   X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", \
     "collision_checker path_planner trajectory_planner manipulation_planner") \
   X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor spark") \

@@ -520,6 +520,10 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
     case ActionKind::receive:
       outcome = Outcome::failure("receive needs a person who offers; this version does not take objects");
       break;
+    case ActionKind::regrasp:
+    case ActionKind::carry:
+      outcome = Outcome::failure(std::string(name(goal.kind)) + " needs two hands, robot " + robot_->name() + " has one");
+      break;
   }
   co_return outcome;
 }
