@@ -83,10 +83,19 @@ AttentionAdvice Attention::advice() const {
 
 AttentionState Attention::state() const {
   AttentionState state;
-  for (const Entry& e : entries_) {
-    const double stimulus = std::isfinite(e.stimulus) ? e.stimulus : e.settings.far;
-    state.behaviours.push_back({e.schema->kind(), e.clock.period(), e.clock.activations(), e.clock.activations_at_fastest(now_), e.released,
-                                stimulus, std::clamp(e.schema->speed_factor(), -1.0, 1.0)});
+  const AttentionAdvice now = advice();
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const Entry& e = entries_[i];
+    BehaviourState& b = state.behaviours.emplace_back();
+    b.behaviour = e.schema->kind();
+    b.period = e.clock.period();
+    b.activations = e.clock.activations();
+    b.activations_at_fastest = e.clock.activations_at_fastest(now_);
+    b.released = e.released;
+    b.stimulus = std::isfinite(e.stimulus) ? e.stimulus : e.settings.far;
+    b.speed_factor = std::clamp(e.schema->speed_factor(), -1.0, 1.0);
+    b.winner = gaze_ == static_cast<int>(i) || (now.speed_factor < 1 && now.limiting == b.behaviour);
+    if (b.speed_factor < 1) b.reason = e.schema->reason();
   }
   return state;
 }
