@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/config/resources.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::grasp_planner {
 namespace {
@@ -20,6 +21,12 @@ config::GraspPlannerSettings load_settings(const NodeContext& context) {
 std::shared_ptr<const HandKit> load_kit(const NodeContext& context) {
   if (context.robot->hand().empty()) throw ConfigError("robot " + context.robot->name() + " names no hand; the grasp planner needs one");
   return std::make_shared<const HandKit>(HandModel::load(hand_description(context.robot->hand())));
+}
+
+std::shared_ptr<const RobotModel> mobile(const NodeContext& context) {
+  if (context.description.empty()) return nullptr;
+  auto model = on_platform(*context.robot, context.description);
+  return model ? std::make_shared<const RobotModel>(std::move(*model)) : nullptr;
 }
 
 double positive(const char* key, double value) {
@@ -96,6 +103,10 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_transfer = t.rank_transfer();
   s.rank_sturdy = t.rank_sturdy();
   s.sturdy_margin = positive("sturdy_margin", t.sturdy_margin());
+  s.rank_visible = t.rank_visible();
+  s.rank_drive = t.rank_drive();
+  s.platform_room = t.platform_room();
+  s.platform_reaches = static_cast<std::uint32_t>(positive("platform_reaches", t.platform_reaches()));
   return s;
 }
 
@@ -104,7 +115,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       settings_(load_settings(context)),
       objects_(context.objects),
       kit_(load_kit(context)),
-      chooser_(std::make_shared<const GraspChooser>(context.robot, kit_, context.objects, choice_settings(settings_))),
+      chooser_(std::make_shared<const GraspChooser>(context.robot, kit_, context.objects, choice_settings(settings_), mobile(context))),
       // The list of an object is the same whatever the seed of the node: it is kept on disk and shared.
       book_(std::make_shared<GraspBook>(kit_, list_settings(settings_, 1), GraspStore(settings_.store() ? default_store() : ""))),
       transfers_(transfer_book(settings_, kit_, GraspStore(settings_.store() ? default_store() : ""))),
@@ -186,6 +197,10 @@ void Node::choose(const GraspRequest& request, bool reply) {
   } else if (request.start.size() != chooser_->robot().dof()) {
     result->reply.reason =
         "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(chooser_->robot().dof());
+  } else if (!request.group.empty() && request.group != "arm") {
+    result->reply.reason = "grasps are planned for the group \"arm\", not for \"" + request.group + "\"";
+  } else if (!(request.least_visible <= 1)) {
+    result->reply.reason = "least_visible is " + std::to_string(request.least_visible) + "; it is a share, 0 to 1";
   } else {
     T_world_proposed_ = object->T_world_object;
   }
