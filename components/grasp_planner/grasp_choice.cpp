@@ -79,9 +79,16 @@ std::string Choice::why_none(const GraspList& list) const {
     return "no stable grasp of hand " + list.hand + " on object " + list.object + " in " + std::to_string(list.frames) +
            " frames; mostly " + reason_text(static_cast<FrameReason>(most - list.reasons.begin()));
   }
-  const auto most = std::max_element(reasons.begin() + 1, reasons.end());
+  const auto most = [&](ChoiceReason first, ChoiceReason last) {
+    const auto begin = reasons.begin() + static_cast<std::ptrdiff_t>(first), end = reasons.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+    return std::max_element(begin, end) - reasons.begin();
+  };
+  const auto first = most(ChoiceReason::below_support, ChoiceReason::not_considered);
   std::string why = "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here; mostly " +
-                    reason_text(static_cast<ChoiceReason>(most - reasons.begin()));
+                    reason_text(static_cast<ChoiceReason>(first));
+  const auto later = most(ChoiceReason::goal_support, ChoiceReason::hidden);
+  const auto count = reasons[static_cast<std::size_t>(later)];
+  if (count > 0 && later != first) why += "; and with " + std::to_string(count) + ", " + reason_text(static_cast<ChoiceReason>(later));
   if (platform.none) why += "; the robot's description tells of no platform that could drive elsewhere";
   if (platform.places > 0) why += "; nor does one from " + std::to_string(platform.places) + " other places of the platform";
   return why;

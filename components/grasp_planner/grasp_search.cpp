@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/cost/person_frame.hpp"
+#include "common/model/object_extent.hpp"
 #include "components/grasp_planner/double_grasp.hpp"
 #include "components/grasp_planner/retreat.hpp"
 #include "components/grasp_planner/visibility.hpp"
@@ -57,6 +58,7 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
     prepare(goal->world, then);
     carrying.emplace(robot(), self.library_);
     prepare(*carrying, scene);
+    goal_is_taken = something_at_goal();
   }
   const auto found = std::find_if(people.people.begin(), people.people.end(), [&](const Person& p) { return p.id == request.for_human; });
   if (found != people.people.end()) person = &*found;
@@ -208,6 +210,23 @@ bool GraspChooser::Search::way_in_free(Site& site, const Vector& approach_q, con
   return site.world.check_motion(from, to, kMotionStep).free;
 }
 
+bool GraspChooser::Search::something_at_goal() const {
+  const auto touched = [&](const Shape& shape, const Pose& T_world_shape) {
+    return touch(*CollisionShape::make(shape), T_world_shape, *object.shape(), request.T_world_goal);
+  };
+  const bool furniture = std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& box) {
+    const double slack = box.supports ? std::min(kSupportSlack, 0.5 * box.size.z()) : 0.0;
+    return touched(Box{box.size - Vector3(0, 0, slack)}, box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * slack));
+  });
+  return furniture || std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) {
+           if (o.id == request.object || o.holder == Holder::robot || o.holder == Holder::human) return false;
+           const ObjectModel* model = self.library_ ? self.library_(o.model) : nullptr;
+           if (model != nullptr) return touched(std::make_shared<const TriangleMesh>(model->mesh), o.T_world_object);
+           const auto shape = primitive_shape(o.primitive, 0);
+           return shape && touched(*shape, o.T_world_object);
+         });
+}
+
 // Where the straight way in begins; T_open must be that of the grasp.
 std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q, const Grasp& g) {
   const Pose T_world_hand = site.T_world_object * g.T_object_hand;
@@ -250,13 +269,7 @@ ChoiceReason GraspChooser::Search::put_down(const Grasp& g, PuttingDown& down) {
   const auto at = reach(T_world_hand, RobotModel::with(request.start, *self.arm_, g.arm_joints), 2);
   if (!at) return ChoiceReason::goal_out_of_reach;
   carrying->set_attachment({request.object, g.T_object_hand.inverse()}, {});
-  ++out.states;
-  const CollisionVerdict verdict = carrying->check(whole(*at, g.hand_joints));
-  if (!verdict.free) {
-    goal_is_taken = verdict.first == "object " + request.object && !verdict.id.empty();
-    return goal_is_taken ? ChoiceReason::goal_taken : ChoiceReason::goal_collision;
-  }
-  if (!free(goal->world, *at, g.pregrasp_joints)) return ChoiceReason::goal_collision;
+  if (!free(*carrying, *at, g.hand_joints) || !free(goal->world, *at, g.pregrasp_joints)) return ChoiceReason::goal_collision;
   Pose T_above = T_world_hand;
   T_above.translation().z() += settings().lift;
   const auto above = reach(T_above, RobotModel::with(request.start, *self.arm_, *at), 0);

@@ -53,6 +53,7 @@ struct GraspChooser::Search {
   bool free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q);
   bool way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
+  bool something_at_goal() const;
   ChoiceReason pick_up(Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 

@@ -199,8 +199,6 @@ void Node::choose(const GraspRequest& request, bool reply) {
         "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(chooser_->robot().dof());
   } else if (!request.group.empty() && request.group != "arm") {
     result->reply.reason = "grasps are planned for the group \"arm\", not for \"" + request.group + "\"";
-  } else if (!(request.least_visible <= 1)) {
-    result->reply.reason = "least_visible is " + std::to_string(request.least_visible) + "; it is a share, 0 to 1";
   } else {
     T_world_proposed_ = object->T_world_object;
   }

@@ -222,6 +222,7 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   standing->add_flag("--json", s->as_json, "JSON Lines also on a terminal");
   standing->callback([s, &exit_code] { exit_code = placements(*s); });
 
+  add_grasp_choose(*grasp, exit_code);
   add_grasp_pairs(*grasp, exit_code);
   add_grasp_show(*grasp, exit_code);
 }

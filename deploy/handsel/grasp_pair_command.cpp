@@ -3,17 +3,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <iostream>
 #include <memory>
-#include <numbers>
 
-#include "common/config/resources.hpp"
-#include "common/model/human_body.hpp"
 #include "components/grasp_planner/grasp_choice.hpp"
-#include "components/grasp_planner/placement.hpp"
-#include "deploy/handsel/grasp_input.hpp"
-#include "deploy/handsel/json_lines.hpp"
+#include "deploy/handsel/grasp_stage.hpp"
 #include "deploy/handsel/pair_picture.hpp"
 #include "deploy/handsel/terminal.hpp"
 
@@ -21,32 +15,11 @@ namespace handsel {
 namespace {
 
 using nlohmann::json;
-using namespace command;
 using namespace grasp_planner;
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-unsigned long long whole(std::uint64_t n) { return n; }
-
-void write(const Picture& picture, const std::string& file) {
-  std::ofstream out(file, std::ios::binary);
-  out << picture.png();
-  if (!out.flush()) throw ConfigError(file + " cannot be written");
-  std::fprintf(stderr, "%s: %d x %d\n", file.c_str(), picture.width(), picture.height());
-}
-
-json pose_line(const Pose& T) {
-  const Eigen::Quaterniond q(T.linear());
-  return {{"p", {T.translation().x(), T.translation().y(), T.translation().z()}}, {"q", {q.x(), q.y(), q.z(), q.w()}}};
-}
-
-json numbers(const Vector& v) { return std::vector<double>(v.data(), v.data() + v.size()); }
-
-void print_refusals(const Refusals& refusals) {
-  for (const Refusal& r : refusals) std::fprintf(stderr, "  %s: %s\n", r.what.c_str(), r.reason.c_str());
-}
 
 // ---- double
 
@@ -94,79 +67,6 @@ int pairs(const PairOptions& o) {
   return found.grasps.empty() ? 1 : 0;
 }
 
-// ---- what a robot does before a table
-
-struct StageOptions : ListOptions {
-  std::string robot, png;
-  std::vector<double> table{0.85, -0.62, 0.7, 0.7, 0.72};  // middle x y, size x y, height
-  int size{420};
-};
-
-void add_stage_options(CLI::App& command, StageOptions& o) {
-  add_list_options(command, o);
-  command.remove_option(command.get_option("--hand"));
-  command.remove_option(command.get_option("--seed"));
-  command.add_option("--robot", o.robot, "robot description: name or file")->capture_default_str();
-  command.add_option("--table", o.table, "middle x,y, size x,y and height [m], seen from the robot's base")
-      ->delimiter(',')
-      ->expected(5)
-      ->capture_default_str();
-  command.add_option("--png", o.png, "draws it into this file");
-  command.add_option("--size", o.size, "of one of its pictures")->check(CLI::Range(64, 2000))->capture_default_str();
-}
-
-/// The robot, its arms and their lists on the object, which is known by the name "object".
-struct Stage {
-  explicit Stage(const StageOptions& o)
-      : file(robot_description(o.robot)), robot(std::make_shared<const RobotModel>(RobotModel::load(file))) {
-    object = object_of(o);
-    for (const Manipulator& m : manipulators(file, *robot)) {
-      lists.push_back(list_with(m.hand, o));
-      arms.push_back({m, lists.back().kit.get(), nullptr});
-    }
-    if (arms.empty()) throw ConfigError("robot " + robot->name() + " has no arm with a hand");
-    for (std::size_t i = 0; i < arms.size(); ++i) arms[i].list = &lists[i].list;
-    scene.robot_known = true;
-    scene.robot_position = robot->rest_posture();
-    scene.boxes.push_back({"table", make_pose({o.table[0], o.table[1], 0.5 * o.table[4]}), {o.table[2], o.table[3], o.table[4]}, true});
-    top = o.table[4];
-  }
-
-  ObjectLibrary library() const {
-    return [this](const std::string&) { return &object; };
-  }
-  /// The object on the table, its lowest point there.
-  Pose standing(double x, double y, double yaw = 0) const {
-    double low = 0;
-    for (const Vector3& v : object.mesh.vertices) low = std::min(low, v.z());
-    Pose T = make_pose({x, y, top - low});
-    T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()).toRotationMatrix();
-    return T;
-  }
-
-  /// On the table any way it stands by itself, upright or not, turned in eighths.
-  std::vector<Pose> resting(double x, double y) const {
-    constexpr int kTurns = 8;
-    std::vector<Pose> out;
-    for (int k = 0; k < kTurns; ++k) out.push_back(standing(x, y, 2 * std::numbers::pi * k / kTurns));
-    for (const Placement& placement : stable_placements(object.mesh, object.com)) {
-      if ((placement.T_support_object.linear() * Vector3::UnitZ()).z() > 0.999) continue;
-      for (int k = 0; k < kTurns; ++k)
-        out.push_back(make_pose({x, y, top}, Eigen::Quaterniond(Eigen::AngleAxisd(2 * std::numbers::pi * k / kTurns, Vector3::UnitZ()))) *
-                      placement.T_support_object);
-    }
-    return out;
-  }
-
-  std::filesystem::path file;
-  std::shared_ptr<const RobotModel> robot;
-  ObjectModel object;
-  std::vector<Listed> lists;
-  std::vector<RegraspArm> arms;
-  Scene scene;
-  double top{};
-};
-
 // ---- transfer
 
 struct TransferOptions : StageOptions {
@@ -190,11 +90,8 @@ int transfer(const TransferOptions& o) {
 
   Scene scene = stage.scene;
   scene.objects.push_back({"object", stage.object.name, stage.standing(o.at[0], o.at[1]), Holder::surface, "table", 0});
+  const Person person = somebody(o.person[0], o.person[1], o.stature);
   HumanState people;
-  Person person;
-  person.id = "person";
-  person.stature = o.stature;
-  person.joints = standing_body({o.person[0], o.person[1], 0}, std::atan2(-o.person[1], -o.person[0]), o.stature);
   people.people.push_back(person);
   GraspRequest request;
   request.object = "object";

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTop = 0.72;
 
-const HandOnObject& mug() { return hand_on_object("sah", "mug"); }
+const HandOnObject& mug() { return hand_on_object("sah", "mug", 60, 144); }
 const ObjectModel* library(const std::string& name) { return object_model(name); }
 
 struct Robot {
@@ -106,7 +106,7 @@ void expect_put_down(const Choice& c, std::size_t i, const Scene& scene, const P
 
 TEST(Goal, every_grasp_is_free_at_both_ends) {
   const char* asked = std::getenv("HANDSEL_RUNS");
-  const int runs = asked != nullptr ? std::max(1, std::atoi(asked)) : 6;
+  const int runs = asked != nullptr ? std::max(1, std::atoi(asked)) : 12;
   std::size_t judged = 0, without = 0;
   for (int seed = 1; seed <= runs; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -115,10 +115,10 @@ TEST(Goal, every_grasp_is_free_at_both_ends) {
     Scene scene = table_with_mug();
     // Something low and something high stand about.
     scene.boxes.push_back({"book", make_pose({0.8 + 0.2 * unit(random), -0.7 + 0.1 * unit(random), kTop + 0.03}), {0.2, 0.15, 0.06}, true});
-    scene.boxes.push_back({"shelf", make_pose({0.8 + 0.1 * unit(random), -0.75, kTop + 0.35}), {0.5, 0.25, 0.03}, false});
+    scene.boxes.push_back({"shelf", make_pose({0.85 + 0.1 * unit(random), -0.8, kTop + 0.3}), {0.5, 0.25, 0.03}, false});
     GraspRequest r = request(4);
     r.has_goal = true;
-    r.T_world_goal = standing(0.75 + 0.2 * unit(random), -0.55 + 0.2 * unit(random), M_PI * unit(random));
+    r.T_world_goal = standing(0.73 + 0.15 * unit(random), -0.52 + 0.15 * unit(random), 1.2 * unit(random));
     const Choice c = choose(r, scene);
     ASSERT_EQ(c.goals.size(), c.grasps.size());
     if (c.grasps.empty()) ++without;
@@ -166,8 +166,9 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
 
   // A shelf above leaves no way down from above.
   Scene low = scene;
-  low.boxes.push_back({"shelf", make_pose({0.8, -0.65, kTop + 0.16}), {0.5, 0.4, 0.02}, false});
-  r.T_world_goal = standing(0.78, -0.62);
+  low.boxes.push_back({"shelf", make_pose({0.9, -0.73, kTop + 0.16}), {0.3, 0.3, 0.02}, false});
+  r.T_world_goal = standing(0.82, -0.65);
+  ASSERT_FALSE(choose(r, scene).grasps.empty());
   c = choose(r, low);
   EXPECT_TRUE(c.grasps.empty());
   EXPECT_GT(count(c, ChoiceReason::goal_collision) + count(c, ChoiceReason::goal_lowering), 0U);
@@ -205,19 +206,22 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   std::vector<std::vector<Pose>> T_step;
-  double widest = 0, least = 1, most = 0;
+  double difference = 0, least = 1, most = 0;
+  int grasps = 0;
   for (std::size_t i = 0; i < mug().list.grasps.size(); i += mug().list.grasps.size() / 8 + 1) {
     const Grasp& g = mug().list.grasps[i].grasp;
     const Vector3 eye = mug().object->box().center() + 0.9 * Vector3(normal(random), normal(random), normal(random)).normalized();
     mug().kit->forward(g.hand_joints, T_step);
     const double share = visible_share(*mug().object, mug().kit->shape.placed(T_step, g.T_object_hand), eye);
     const double expected = seen_by_steps(g, eye);
-    EXPECT_NEAR(share, expected, 0.12) << "grasp " << g.id;
-    widest = std::max(widest, std::abs(share - expected));
+    EXPECT_NEAR(share, expected, 0.18) << "grasp " << g.id;  // of some sixty points, other ones
+    difference += std::abs(share - expected);
+    ++grasps;
     least = std::min(least, share);
     most = std::max(most, share);
   }
-  std::printf("shares %.2f to %.2f, at most %.3f beside those by steps\n", least, most, widest);
+  std::printf("shares %.2f to %.2f, on average %.3f beside those by steps\n", least, most, difference / grasps);
+  EXPECT_LT(difference / grasps, 0.07);
   EXPECT_LT(least, most - 0.2);
   // A hand that is far away hides nothing.
   mug().kit->forward(mug().list.grasps[0].grasp.hand_joints, T_step);
@@ -228,9 +232,9 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
   const Scene scene = table_with_mug();
   GraspRequest r = request(30);
   const auto least = [](const Choice& c) {
-    double least = 1;
-    for (const Grasp& g : c.grasps) least = std::min(least, g.visible);
-    return least;
+    double share = 1;
+    for (const Grasp& g : c.grasps) share = std::min(share, g.visible);
+    return share;
   };
   const auto mean = [](const Choice& c) {
     double sum = 0;

@@ -41,7 +41,8 @@ class GraspNode : public testing::Test {
       out << line << '\n';
     }
     out.close();
-    context_.robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
+    context_.description = kDeploy / "robots/jido/jido.txtpb";
+    context_.robot = std::make_shared<const RobotModel>(RobotModel::load(context_.description));
     context_.objects = library;
     context_.settings = folder_;
     node_ = std::make_unique<Node>(network_.add("grasp_planner"), context_);
@@ -68,8 +69,7 @@ class GraspNode : public testing::Test {
     network_.run_for(milliseconds(50));
   }
 
-  void ask(std::uint64_t number, const std::string& object) {
-    GraspRequest r;
+  void ask(std::uint64_t number, const std::string& object, GraspRequest r = {}) {
     r.id = {7, number};
     r.object = object;
     r.start = context_.robot->rest_posture();
@@ -127,6 +127,37 @@ TEST_F(GraspNode, says_what_is_wrong_with_a_request) {
   ASSERT_TRUE(wait([&] { return replies_.size() == 3; }));
   EXPECT_TRUE(replies_[2].grasps.empty());
   EXPECT_NE(replies_[2].reason.find("none of"), std::string::npos) << replies_[2].reason;
+}
+
+TEST_F(GraspNode, heeds_goal_sight_and_platform) {
+  GraspRequest goal;
+  goal.has_goal = true;
+  goal.T_world_goal = make_pose({3, -0.5, 0.8});
+  ask(1, "cup", goal);
+  ASSERT_TRUE(wait([&] { return replies_.size() == 1; }));
+  EXPECT_TRUE(replies_[0].grasps.empty());
+  EXPECT_NE(replies_[0].reason.find("to be put"), std::string::npos) << replies_[0].reason;
+  GraspRequest sight;
+  sight.least_visible = 0.7;
+  ask(2, "cup", sight);
+  ASSERT_TRUE(wait([&] { return replies_.size() == 2; }));
+  ASSERT_FALSE(replies_[1].grasps.empty()) << replies_[1].reason;
+  for (const Grasp& g : replies_[1].grasps) EXPECT_GE(g.visible, 0.7);
+  GraspRequest left;
+  left.group = "left_arm";
+  ask(3, "cup", left);
+  ASSERT_TRUE(wait([&] { return replies_.size() == 3; }));
+  EXPECT_NE(replies_[2].reason.find("left_arm"), std::string::npos) << replies_[2].reason;
+  scene_.boxes[0].T_world_box.translation().x() += 2;
+  scene_.objects[0].T_world_object.translation().x() += 2;
+  publish_scene();
+  GraspRequest drive;
+  drive.move_platform = true;
+  ask(4, "cup", drive);
+  ASSERT_TRUE(wait([&] { return replies_.size() == 4; }));
+  ASSERT_FALSE(replies_[3].grasps.empty()) << replies_[3].reason;
+  EXPECT_TRUE(replies_[3].grasps[0].has_platform);
+  EXPECT_GT(replies_[3].grasps[0].platform.x(), 1.0);
 }
 
 TEST_F(GraspNode, candidates_follow_the_object_until_it_is_in_a_hand) {
