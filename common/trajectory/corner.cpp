@@ -41,15 +41,29 @@ Corner::Corner(const std::vector<Leg>& legs, std::size_t first, const CornerLane
       inverse_(lanes.inverse_limits()),
       limits_(limits),
       axes_(static_cast<int>(a_.from.size())),
-      stride_(lanes.stride()) {}
+      stride_(lanes.stride()) {
+  if (a_.zones.empty() && b_.zones.empty()) return;
+  scaled_.resize(static_cast<std::size_t>(3 * stride_ / kLanes));
+  std::copy(inverse_, inverse_ + 3 * stride_, scaled_.data()->value);
+}
+
+void Corner::keep_share(double before, double after) noexcept {
+  if (a_.zones.empty() && b_.zones.empty()) return;
+  const double share = std::min(a_.share(a_.duration - before, a_.duration), b_.share(0, after));
+  if (share == share_) return;
+  share_ = share;
+  double* to = scaled_.data()->value;
+  for (int i = 0; i < stride_; ++i) to[i] = inverse_[i] / share;
+}
 
 void Corner::place(double before, double after) noexcept {
+  keep_share(before, after);
   left_ = a_.path_state(a_.duration - before);
   joined_ = b_.path_state(after);
 }
 
 double Corner::least_duration() noexcept {
-  LaneArray zero{}, v, a, xf, vf, af;
+  LaneArray zero{}, v, a, xf, vf, af, V{};
   LaneBlock block;
   double least = 0;
   for (int first = 0; first < axes_; first += kLanes) {
@@ -62,7 +76,8 @@ double Corner::least_duration() noexcept {
       vf[i] = wb * joined_.velocity;
       af[i] = wb * joined_.acceleration;
     }
-    const double *V = limits_.velocity.data() + first, *A = limits_.acceleration.data() + first, *J = limits_.jerk.data() + first;
+    const double *A = limits_.acceleration.data() + first, *J = limits_.jerk.data() + first;
+    for (int i = 0; i < here; ++i) V[i] = share_ * limits_.velocity[first + i];
     const std::uint32_t odd = lane_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
     least = std::max(least, *std::max_element(block.minimum, block.minimum + here));
     for (std::uint32_t left = odd; left != 0; left &= left - 1) {
@@ -93,6 +108,8 @@ double Corner::overlap_excess(double shared, double enough) noexcept {
   AxisProfile p, q;
   a_.part(a_.duration - shared, a_.duration, p);
   b_.part(0, shared, q);
+  if (p.count + q.count > Blend::kSegments) return enough + 1;
+  keep_share(shared, shared);
   blend_.count = 0;
   double left_p = p.segments[0].duration, left_q = q.segments[0].duration;
   for (int i = 0, k = 0; i < p.count && k < q.count;) {
@@ -112,7 +129,7 @@ double Corner::overlap_excess(double shared, double enough) noexcept {
 }
 
 double Corner::excess(double enough) const noexcept {
-  return lane_kernels().blend_share(blend_, step_a_, step_b_, inverse_, stride_, 1 + enough) - 1;
+  return lane_kernels().blend_share(blend_, step_a_, step_b_, scaled_.empty() ? inverse_ : scaled_.data()->value, stride_, 1 + enough) - 1;
 }
 
 void Corner::add_to(Trajectory& out) const {

@@ -42,6 +42,8 @@ class Corner {
 
  private:
   double excess(double enough) const noexcept;
+  /// The lowest share of the velocity limits between these places.
+  void keep_share(double before, double after) noexcept;
 
   const Leg &a_, &b_;
   const double *step_a_, *step_b_, *inverse_;
@@ -49,6 +51,8 @@ class Corner {
   int axes_, stride_;
   AxisState left_, joined_, from_;
   Blend blend_;
+  double share_{1};            // of the velocity limits
+  std::vector<Lane8> scaled_;  // inverse_ for that share; empty: 1
 };
 
 }  // namespace handsel::detail

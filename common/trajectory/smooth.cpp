@@ -55,7 +55,7 @@ std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, co
   if (good > kLeastSaving) keep({CornerMethod::overlap, good, good, good, 0});
   if (!only_best) best = kLeastSaving;
   const double reach_a = std::min(settings.tau.value_or(a.slowing), a.duration / 2);
-  const double reach_b = std::min(settings.tau.value_or(b.slowing), b.duration / 2);
+  const double reach_b = std::min(settings.tau.value_or(b.starting), b.duration / 2);
   for (const double reach : kReaches) {
     if (!settings.three_segments && !settings.stretching) break;
     const double before = reach * reach_a, after = reach * reach_b, stop = before + after;
@@ -105,12 +105,22 @@ void settle(Corner& corner, const Candidate& c) {
 }
 
 void add_leg(const Leg& leg, double begin, double end, Trajectory& out) {
-  AxisProfile p;
-  leg.part(begin, end, p);
-  for (std::size_t i = 0; i < out.axes.size(); ++i) {
-    const double d = leg.step[static_cast<Eigen::Index>(i)];
-    for (int k = 0; k < p.count; ++k) out.axes[i].segments.push_back({p.segments[k].duration, d * p.segments[k].jerk});
+  for (std::size_t k = 0; k < leg.knots.size(); ++k) {
+    const double ends = k + 1 < leg.knots.size() ? leg.knots[k + 1].time : leg.duration;
+    const double lasts = std::min(end, ends) - std::max(begin, leg.knots[k].time);
+    if (!(lasts > 0)) continue;
+    for (std::size_t i = 0; i < out.axes.size(); ++i)
+      out.axes[i].segments.push_back({lasts, leg.step[static_cast<Eigen::Index>(i)] * leg.knots[k].segment.jerk});
   }
+}
+
+std::string why_bad_speeds(const std::vector<SpeedZones>& speeds, std::size_t nodes) {
+  if (!speeds.empty() && speeds.size() + 1 != nodes)
+    return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " + std::to_string(nodes - 1);
+  for (const SpeedZones& leg : speeds)
+    for (const SpeedZone& zone : leg)
+      if (!(zone.share > 0 && zone.share <= 1 && std::isfinite(zone.end))) return "a share of the velocity limits must be in (0, 1]";
+  return {};
 }
 
 std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes, const SmoothSettings& settings) {
@@ -143,31 +153,34 @@ const char* name(CornerMethod method) {
   return "";
 }
 
-Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, const KinematicLimits& limits) {
+Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, const KinematicLimits& limits,
+                           const SpeedZones& speeds) {
   Trajectory out;
   for (const double x : from) out.axes.push_back({{x, 0, 0}, {}});
   if (from != to) {
-    const Leg leg(from, to, limits);
+    const Leg leg(from, to, limits, speeds);
     add_leg(leg, 0, leg.duration, out);
   }
   return out;
 }
 
 SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits, const SmoothSettings& settings,
-                    const CornerIsFree& is_free) {
+                    const CornerIsFree& is_free, const std::vector<SpeedZones>& speeds) {
   SmoothResult out;
   if (!(out.reason = why_bad_nodes(nodes, settings)).empty()) return out;
+  if (!(out.reason = why_bad_speeds(speeds, nodes.size())).empty()) return out;
   if (!(out.reason = why_bad_limits(limits, static_cast<int>(nodes[0].size()))).empty()) return out;
   std::vector<Leg> legs;
   std::vector<int> node_of;
   legs.reserve(nodes.size());
+  out.legs.assign(nodes.size() - 1, 0.0);
   const Eigen::VectorXd* last = &nodes[0];
   for (std::size_t k = 1; k < nodes.size(); ++k) {
     if ((nodes[k] - *last).lpNorm<Eigen::Infinity>() < 1e-12) continue;
-    legs.emplace_back(*last, nodes[k], limits);
+    legs.emplace_back(*last, nodes[k], limits, speeds.empty() ? SpeedZones{} : speeds[k - 1]);
     node_of.push_back(static_cast<int>(k));
     last = &nodes[k];
-    out.duration_ptp += legs.back().duration;
+    out.duration_ptp += out.legs[k - 1] = legs.back().duration;
     if (!(legs.back().duration > 0) || !std::isfinite(legs.back().duration)) {
       out.reason = "the way to node " + std::to_string(k) + " cannot be computed with such limits";
       return out;

@@ -34,6 +34,16 @@ double within_reach(const Trajectory& trajectory, const Vector& from, double rea
   return last;
 }
 
+/// Whether one of the last `legs` legs must be slower than it was timed, to less than `share` of that. Speeds as in TrajectoryReply.
+bool slower_ahead(const Vector& before, const Vector& now, std::size_t legs, double share) {
+  const auto from_end = [](const Vector& speeds, std::size_t k) {
+    return static_cast<Eigen::Index>(k) < speeds.size() ? speeds[speeds.size() - 1 - static_cast<Eigen::Index>(k)] : 1.0;
+  };
+  for (std::size_t k = 0; k < legs; ++k)
+    if (from_end(now, k) < share * from_end(before, k)) return true;
+  return false;
+}
+
 }  // namespace
 
 /// From a state in motion onto the trajectory.
@@ -129,18 +139,25 @@ Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
   co_return true;
 }
 
+bool ManipulationPlanner::gone(const Running& running) const {
+  return execution_->trajectory != running.command || execution_->motion != MotionState::running;
+}
+
 Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& motion) {
   if (active_.trajectory != running.command || active_.rest.size() != static_cast<int>(arm_.axes.size()))
     co_return Outcome::failure("the controller tells of another motion");
-  const double duration = active_.rest.duration(), offset = duration - running.duration;
-  const bool standing = at_rest();
-  const double leave = active_.time + (standing ? 0.0 : settings_.replan_time());
-  if (!standing && leave <= offset) co_return Outcome::failure("it has not begun yet");
-  if (leave + settings_.replan_time() > duration) co_return Outcome::failure("it is nearly there");
-  const MotionState3 from = active_.rest.at(leave);
-  const Vector start = RobotModel::with(posture(), arm_, from.position);
+  const double duration = active_.rest.duration();
+  Leave leave;
+  leave.offset = duration - running.duration;
+  leave.standing = at_rest();
+  leave.at = active_.time + (leave.standing ? 0.0 : settings_.replan_time());
+  if (!leave.standing && leave.at <= leave.offset) co_return Outcome::failure("it has not begun yet");
+  if (leave.at + settings_.replan_time() > duration) co_return Outcome::failure("it is nearly there");
+  leave.from = active_.rest.at(leave.at);
+  leave.rest = duration - leave.at;
+  const Vector start = RobotModel::with(posture(), arm_, leave.from.position);
   const Running* now = &running;
-  const auto ended = [this, now] { return execution_->trajectory != now->command || execution_->motion != MotionState::running; };
+  const auto ended = [this, now] { return gone(*now); };
 
   PathRequest request = path_request(start, motion);
   request.running = running.nodes;
@@ -153,52 +170,83 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
     ++live_counts_.refused;
     co_return Outcome::failure(path_reply_->reason);
   }
-  if (path_reply_->outcome == PathOutcome::kept) {
-    ++live_counts_.kept;
-    co_return Outcome{};
-  }
-  const bool only_cheaper = path_reply_->outcome == PathOutcome::improved;
+  const PathOutcome outcome = path_reply_->outcome;
   const std::vector<Vector> nodes = path_reply_->path;
-  if (only_cheaper) {
-    const TrajectoryRequest as_before = trajectory_request(remainder(running.nodes, from.position, settings_.live_reach()), start, motion);
-    comparison_ = as_before.id;
+  const bool kept = outcome == PathOutcome::kept, only_cheaper = outcome == PathOutcome::improved;
+  const std::vector<Vector> as_before = remainder(running.nodes, leave.from.position, settings_.live_reach());
+  const bool compared = only_cheaper || (kept && settings_.live_pace() > 0 && !as_before.empty());
+  if (compared) {
+    const TrajectoryRequest along = trajectory_request(as_before, start, motion);
+    comparison_ = along.id;
     comparison_reply_.reset();
-    out_->trajectory_requests.push_back(as_before);
+    out_->trajectory_requests.push_back(along);
   }
-  out_->trajectory_requests.push_back(trajectory_request(nodes, start, motion));
+  if (!kept) out_->trajectory_requests.push_back(trajectory_request(nodes, start, motion));
   const bool timed = co_await waiting_.until(
-      [this, ended, only_cheaper] { return (trajectory_reply_ && (!only_cheaper || comparison_reply_)) || ended(); },
+      [this, ended, kept, compared] { return ((kept || trajectory_reply_) && (!compared || comparison_reply_)) || ended(); },
       settings_.replan_time());
   if (!timed || ended()) co_return Outcome::failure("no trajectory came in time");
-  if (!trajectory_reply_->solved) {
-    ++live_counts_.refused;
-    co_return Outcome::failure(trajectory_reply_->reason);
+  if (!kept) {
+    if (!trajectory_reply_->solved) {
+      ++live_counts_.refused;
+      co_return Outcome::failure(trajectory_reply_->reason);
+    }
+    auto ways = std::make_shared<Ways>();
+    ways->over = trajectory_reply_->trajectory;
+    if (only_cheaper && comparison_reply_->solved) ways->along = comparison_reply_->trajectory;
+    const TrajectoryReply reply = *trajectory_reply_;
+    Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
+    if (over.good) ++live_counts_.taken;
+    if (over.good || ways->worth) co_return over;
+    ++live_counts_.slower;
+    if (!only_cheaper || ended()) co_return over;
+  } else {
+    ++live_counts_.kept;
   }
+  if (!compared || !comparison_reply_->solved || settings_.live_pace() <= 0) co_return Outcome{};
+  Outcome retimed = co_await retime(running, motion, leave, as_before);
+  if (retimed.good) ++live_counts_.retimed;
+  co_return Outcome{};
+}
+
+/// Slower where a leg ahead must be; faster where all of the way then is.
+Routine<Outcome> ManipulationPlanner::retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes) {
+  const TrajectoryReply reply = *comparison_reply_;
   auto ways = std::make_shared<Ways>();
-  ways->over = trajectory_reply_->trajectory;
-  if (only_cheaper && comparison_reply_->solved) ways->along = comparison_reply_->trajectory;
+  ways->over = reply.trajectory;
+  if (!slower_ahead(running.speeds, reply.speeds, nodes.size() - 1, 1 - settings_.live_pace())) {
+    std::optional<double> lasts = leave.standing ? reply.trajectory.duration() : std::optional<double>();
+    if (const Switched along = join(leave.from, reply.trajectory); !leave.standing && along.ok()) lasts = along.trajectory.duration();
+    if (!lasts || *lasts > (1 - settings_.live_pace()) * leave.rest) co_return Outcome::failure("it would go as before");
+  }
+  Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
+  co_return over;
+}
+
+Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& motion, const Leave& leave, const std::shared_ptr<Ways>& ways,
+                                              const TrajectoryReply& timed, const std::vector<Vector>& nodes) {
+  const Running* now = &running;
+  const bool standing = leave.standing;
   if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-  const std::function<void()> job = [this, ways, standing, from, world = world_,
-                                     around = Around{scene_, people_, layers_.at(waiting_.now()), attachment_, motion.allowed, start}] {
+  const std::function<void()> job = [this, ways, standing, from = leave.from, world = world_,
+                                     around = Around{scene_, people_, layers_.at(waiting_.now()), attachment_, motion.allowed,
+                                                     RobotModel::with(posture(), arm_, leave.from.position)}] {
     weigh(*ways, *world, around, from, standing);
   };
   Outcome worked = co_await work(job);
   if (!worked.good) co_return worked;
-  if (ended()) co_return Outcome::failure("the motion has ended");
+  if (gone(running)) co_return Outcome::failure("the motion has ended");
   if (!ways->over) {
     ++live_counts_.refused;
     co_return Outcome::failure("no free motion leads over to the new path");
   }
-  if (!ways->worth) {
-    ++live_counts_.slower;
-    co_return Outcome::failure("the new path takes longer than it is worth");
-  }
-  if (standing ? !at_rest() || active_.time > leave + 1e-6 : active_.time + kEarly > leave) {
+  if (!ways->worth) co_return Outcome::failure("the new path takes longer than it is worth");
+  if (standing ? !at_rest() || active_.time > leave.at + 1e-6 : active_.time + kEarly > leave.at) {
     ++live_counts_.refused;
     co_return Outcome::failure("the new path came too late");
   }
   TrajectoryCommand command = command_for(*ways->over, motion);
-  command.switch_at = standing ? 0.0 : leave - offset;
+  command.switch_at = standing ? 0.0 : leave.at - leave.offset;
   Outcome heard = co_await send(command);
   if (!heard.good) co_return heard;
   if (execution_->motion == MotionState::refused) {
@@ -207,10 +255,10 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
     co_await waiting_.until([this, now] { return execution_->trajectory == now->command; }, 1.0);
     co_return why;
   }
-  ++live_counts_.taken;
   running.command = command.id;
   running.duration = command.trajectory.duration();
   running.nodes = nodes;
+  running.speeds = timed.speeds;
   co_return Outcome{};
 }
 

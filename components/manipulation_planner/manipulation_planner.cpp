@@ -279,7 +279,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   const TrajectoryCommand command = command_for(trajectory_reply_->trajectory, motion);
   Outcome heard = co_await send(command);
   if (!heard.good) co_return heard;
-  Running running{command.id, command.trajectory.duration(), nodes};
+  Running running{command.id, command.trajectory.duration(), nodes, trajectory_reply_->speeds};
   const Running* now = &running;
   const auto ended = [this, now] {
     return execution_->trajectory != now->command ||

@@ -62,8 +62,8 @@ class ManipulationPlanner {
 
   /// What became of running paths.
   struct LiveCounts {
-    std::uint64_t looks{}, kept{}, slower{}, taken{}, refused{};  ///< asked for; came back as they were; cheaper but longer; gone over to;
-                                                                  ///< turned down on the way
+    /// Asked for; came back as they were; cheaper but longer; gone over to; turned down on the way; kept, but timed anew.
+    std::uint64_t looks{}, kept{}, slower{}, taken{}, refused{}, retimed{};
   };
   const LiveCounts& live_counts() const { return live_counts_; }
 
@@ -92,6 +92,20 @@ class ManipulationPlanner {
     std::uint64_t command{};
     double duration{};  // of its trajectory [s]
     std::vector<Vector> nodes;
+    Vector speeds;  // as in TrajectoryReply, of the legs between the nodes
+  };
+  /// A path that is offered while another runs.
+  struct Ways {
+    std::optional<Trajectory> over;   // onto it; empty: nothing leads there
+    std::optional<Trajectory> along;  // the old one, timed for the people as they are now; empty: it must be left
+    bool worth{true};                 // going over to it
+  };
+  /// Where the path that runs would be left, and what runs from there on.
+  struct Leave {
+    double at{}, offset{};  // on the time of what runs; of that at which its trajectory began [s]
+    MotionState3 from;
+    bool standing{};
+    double rest{};  // of what runs, from there on, at full speed [s]
   };
   struct GraspList {
     Outcome outcome;
@@ -120,6 +134,11 @@ class ManipulationPlanner {
   Routine<Outcome> execute(const std::vector<Vector>& nodes, Motion& motion);
   Routine<Outcome> send(const TrajectoryCommand& command);
   Routine<Outcome> go_on(Running& running, const Motion& motion);
+  Routine<Outcome> go_over(Running& running, const Motion& motion, const Leave& leave, const std::shared_ptr<Ways>& ways,
+                           const TrajectoryReply& timed, const std::vector<Vector>& nodes);
+  /// The path that runs, as it would be timed for the people as they are now, where that makes a difference.
+  Routine<Outcome> retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes);
+  bool gone(const Running& running) const;
   /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good exchange posture any more; true: it is none, even
   /// where there is no other.
   Routine<bool> follow(Motion& motion, const Vector& goal);
@@ -141,12 +160,6 @@ class ManipulationPlanner {
     Attachment attachment;
     std::vector<std::string> allowed;
     Vector posture;  // axes that are not the arm's
-  };
-  /// A path that is offered while another runs.
-  struct Ways {
-    std::optional<Trajectory> over;   // onto it; empty: nothing leads there
-    std::optional<Trajectory> along;  // the old one, timed for the people as they are now; empty: it must be left
-    bool worth{true};                 // going over to it
   };
   void weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const;
   double cost_at(const Vector& q, const Vector& posture) const;

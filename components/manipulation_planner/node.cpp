@@ -25,8 +25,8 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
     positive("live_time", s.live_time());
     positive("replan_time", s.replan_time());
     positive("live_reach", s.live_reach());
-    if (s.live_slower() < 0 || s.live_gain() < 0 || s.live_gain() >= 1)
-      throw ConfigError("manipulation_planner.txtpb: live_slower must be >= 0, live_gain in [0, 1)");
+    if (s.live_slower() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_pace() < 0 || s.live_pace() >= 1)
+      throw ConfigError("manipulation_planner.txtpb: live_slower must be >= 0, live_gain and live_pace in [0, 1)");
   }
   return s;
 }

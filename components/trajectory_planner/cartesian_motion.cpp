@@ -1,10 +1,12 @@
 #include "components/trajectory_planner/cartesian_motion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "common/model/platform.hpp"
 #include "common/model/srs_arm.hpp"
 #include "common/trajectory/limits_check.hpp"
 #include "common/trajectory/segment_table.hpp"
@@ -69,6 +71,7 @@ class CartesianPlanning {
     choose_elbows();
     while (!timed() || !followed()) {
     }
+    motion_.given = given_;
     if (motion_.reached == 0 && !motion_.reason.empty()) return std::move(motion_);
     approximated();
     motion_.solved = motion_.reason.empty();
@@ -98,9 +101,11 @@ class CartesianPlanning {
     if (request_.start.size() != robot_.dof() || !request_.start.allFinite())
       return refuse(text("the start has %d axes, the robot %d", static_cast<int>(request_.start.size()), robot_.dof()));
     if (request_.nodes.empty()) return refuse("there are no nodes");
+    if (!(request_.speed_scale > 0 && request_.speed_scale <= 1)) return refuse("the speed scale must be in (0, 1]");
     for (const int axis : request_.also)
       if (axis < 0 || axis >= robot_.dof() || std::count(group_.axes.begin(), group_.axes.end(), axis) > 0)
-        return refuse("axis " + std::to_string(axis) + " cannot be active besides the arm");
+        return refuse("axis " + std::to_string(axis) + " cannot be active besides the arm" +
+                      (axis >= robot_.dof() ? ": the robot has " + std::to_string(robot_.dof()) : ""));
     for (std::size_t k = 0; k < request_.nodes.size(); ++k) {
       const CartesianWaypoint& node = request_.nodes[k];
       if (!node.T_root_tool.matrix().allFinite() || (node.elbow && !std::isfinite(*node.elbow)) || !node.also.allFinite())
@@ -109,6 +114,9 @@ class CartesianPlanning {
         return refuse(of_node(k + 1) + " gives " + std::to_string(node.also.size()) + " further axes, the request names " +
                       std::to_string(request_.also.size()));
     }
+    if (const Group* platform = robot_.group(kPlatformGroup))
+      for (std::size_t i = 0; i < platform_.size(); ++i) platform_[i] = further(platform->axes[i]);
+    T_root_base_ = base_at(request_.start(request_.also));
     chain_.emplace(robot_, group_, request_.start);
     arm_ = ik::SrsArm::recognise(*chain_);
     if (!arm_) return refuse("the arm is not one of shoulder, elbow and wrist: its joints do not follow from tool pose and elbow angle");
@@ -118,6 +126,26 @@ class CartesianPlanning {
     if (const CollisionVerdict verdict = world_.check(request_.start); !verdict.free)
       return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
     return true;
+  }
+
+  /// Its place among the further active axes; -1: it is none.
+  int further(int axis) const {
+    const auto found = std::find(request_.also.begin(), request_.also.end(), axis);
+    return found == request_.also.end() ? -1 : static_cast<int>(found - request_.also.begin());
+  }
+
+  bool drives() const { return platform_[0] >= 0 || platform_[1] >= 0 || platform_[2] >= 0; }
+
+  Pose base_at(const Vector& also) const {
+    if (!drives()) return Pose::Identity();
+    const std::vector<int>& axes = robot_.require_group(kPlatformGroup).axes;
+    const auto at = [&](std::size_t i) { return platform_[i] < 0 ? request_.start[axes[i]] : also[platform_[i]]; };
+    return make_pose({at(0), at(1), 0}, Eigen::Quaterniond(Eigen::AngleAxisd(at(2), Vector3::UnitZ())));
+  }
+
+  /// The pose of the tool as the arm sees it, whose chain was made where the platform stood at the start.
+  Pose for_arm(const Pose& T_root_tool, const Vector& also) const {
+    return drives() ? T_root_base_ * base_at(also).inverse() * T_root_tool : T_root_tool;
   }
 
   /// The active values of the nodes, as far as legs between them exist; elbows left open are those of the start.
@@ -181,17 +209,27 @@ class CartesianPlanning {
   }
 
   /// The posture at the end of a leg, on the branch of its beginning; nullopt where joints meet a limit or jump.
-  std::optional<ik::Axes> along_leg(std::size_t leg, double elbow_from, double elbow_to, const ik::Axes& from) const {
+  std::optional<ik::Axes> along_leg(std::size_t leg, double elbow_from, double elbow_to, const ik::Axes& from,
+                                    std::vector<SpeedAlong::Look>* looks = nullptr) const {
     const Node &a = motion_.path.nodes_[leg], &b = motion_.path.nodes_[leg + 1];
     const Vector step = b.active - a.active;
     const double far = std::max({kMetre * step.head<3>().norm(), step.segment<3>(3).norm(), std::abs(elbow_to - elbow_from)});
     const int parts = std::max(1, static_cast<int>(std::ceil(far / kProbe)));
     ik::Axes q = from;
+    const auto look = [&](double share) {
+      if (looks == nullptr) return;
+      looks->push_back(request_.people->at(whole(q, a.active.tail(a.active.size() - kElbow) + share * step.tail(step.size() - kElbow))));
+      looks->back().at = share;
+    };
+    look(0);
     for (int k = 1; k <= parts; ++k) {
       const double share = static_cast<double>(k) / parts;
-      const auto next = arm_->nearest(motion_.path.pose_at(a.active + share * step, leg), elbow_from + share * (elbow_to - elbow_from), q);
+      const Vector active = a.active + share * step;
+      const Pose T = for_arm(motion_.path.pose_at(active, leg), active.tail(active.size() - kElbow));
+      const auto next = arm_->nearest(T, elbow_from + share * (elbow_to - elbow_from), q);
       if (!next || (*next - q).lpNorm<Eigen::Infinity>() > 4 * settings_.largest_step) return std::nullopt;
       q = *next;
+      look(share);
     }
     return q;
   }
@@ -249,7 +287,7 @@ class CartesianPlanning {
     bool reach = false, inside = false;
     for (int i = 0; i < settings_.elbows; ++i) {
       const double elbow = node.active[kTool] + 2 * M_PI * i / settings_.elbows;
-      const std::vector<ik::Axes> found = arm_->branches(node.T_root_tool, elbow);
+      const std::vector<ik::Axes> found = arm_->branches(for_arm(node.T_root_tool, node.active.tail(node.active.size() - kElbow)), elbow);
       reach |= !found.empty();
       inside |= std::any_of(found.begin(), found.end(), [&](const ik::Axes& q) { return arm_->turned_inside(q, middle).has_value(); });
     }
@@ -263,7 +301,7 @@ class CartesianPlanning {
     const Eigen::Index n = motion_.path.nodes_[0].active.size();
     KinematicLimits out{Vector(n), Vector(n), Vector(n)};
     const auto set = [&](Eigen::Index i, const RateBounds& bounds) {
-      out.velocity[i] = bounds.velocity;
+      out.velocity[i] = request_.speed_scale * bounds.velocity;
       out.acceleration[i] = bounds.acceleration;
       out.jerk[i] = bounds.jerk;
     };
@@ -282,22 +320,30 @@ class CartesianPlanning {
   bool timed() {
     CartesianTrajectory& path = motion_.path;
     postures_.clear();
+    motion_.speeds.clear();
+    motion_.cost = 0;
     ik::Axes q = RobotModel::part(request_.start, group_);
     postures_.push_back(q);
     for (std::size_t k = 1; k < path.nodes_.size(); ++k) {
-      const auto next = along_leg(k - 1, path.nodes_[k - 1].active[kTool], path.nodes_[k].active[kTool], q);
+      std::vector<SpeedAlong::Look> looks;
+      const auto next = along_leg(k - 1, path.nodes_[k - 1].active[kTool], path.nodes_[k].active[kTool], q,
+                                  request_.people != nullptr ? &looks : nullptr);
       if (!next) {
         end_before(given_[k], why_no_way(k));
         return false;
       }
       postures_.push_back(q = *next);
+      if (looks.empty()) continue;
+      motion_.speeds.push_back(SpeedAlong::zones(looks));
+      for (const SpeedAlong::Look& look : looks) motion_.cost = std::max(motion_.cost, std::clamp(look.cost, 0.0, 1.0));
     }
     std::vector<Vector> line;
     for (const Node& node : path.nodes_) line.push_back(node.active);
     const KinematicLimits limits = active_limits();
     SmoothSettings smoothing;
     smoothing.allowed_excess = settings_.allowed_excess;
-    SmoothResult smoothed = smooth(line, limits, smoothing, [this](const Trajectory& corner) { return corner_free(corner); });
+    SmoothResult smoothed = smooth(
+        line, limits, smoothing, [this](const Trajectory& corner) { return corner_free(corner); }, motion_.speeds);
     if (!smoothed.ok()) {
       end_before(1, smoothed.reason);
       return true;
@@ -310,7 +356,7 @@ class CartesianPlanning {
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
       for (const CornerReport& corner : motion_.corners)
         if (corner.node == static_cast<int>(k)) begin -= corner.saved;
-      const double lasts = straight_motion(line[k], line[k + 1], limits).duration();
+      const double lasts = smoothed.legs[k];
       path.middles_.push_back(begin + 0.5 * lasts);
       begin += lasts;
     }
@@ -319,7 +365,7 @@ class CartesianPlanning {
 
   /// From the posture of a node to one nearby, and whether the way there is continuous and free.
   bool advance(const Pose& T, double elbow, const Vector& also, ik::Axes& q, Vector& last_judged) const {
-    const auto next = arm_->nearest(T, elbow, q);
+    const auto next = arm_->nearest(for_arm(T, also), elbow, q);
     if (!next || (*next - q).lpNorm<Eigen::Infinity>() > settings_.largest_step) return false;
     q = *next;
     const Vector all = whole(q, also);
@@ -431,8 +477,8 @@ class CartesianPlanning {
 
   std::string why_stopped(std::size_t given, const Pose& T, double elbow, const Vector& also, const ik::Axes& q) const {
     const std::string way = "on the way to " + of_node(given);
-    const auto next = arm_->nearest(T, elbow, q);
-    if (!next) return way + (arm_->branches(T, elbow).empty() ? " the arm does not reach" : " a joint meets its limit");
+    const auto next = arm_->nearest(for_arm(T, also), elbow, q);
+    if (!next) return way + (arm_->branches(for_arm(T, also), elbow).empty() ? " the arm does not reach" : " a joint meets its limit");
     Eigen::Index joint = 0;
     if ((*next - q).cwiseAbs().maxCoeff(&joint) > settings_.largest_step)
       return way + " joint " + robot_.axes()[static_cast<std::size_t>(group_.axes[static_cast<std::size_t>(joint)])].name +
@@ -443,7 +489,7 @@ class CartesianPlanning {
 
   void approximated() {
     const KinematicLimits& all = robot_.comfort_limits();
-    const KinematicLimits limits{all.velocity(motion_.axes), all.acceleration(motion_.axes), all.jerk(motion_.axes)};
+    const KinematicLimits limits{request_.speed_scale * all.velocity(motion_.axes), all.acceleration(motion_.axes), all.jerk(motion_.axes)};
     if (motion_.samples.size() < 2) return;
     Derived derived = differentiate(times_, motion_.samples);
     for (MotionState3* end : {&derived.samples.front(), &derived.samples.back()}) {
@@ -479,6 +525,8 @@ class CartesianPlanning {
   std::vector<std::size_t> given_;  // of each node, its number in the request; the start is 0
   std::vector<ik::Axes> postures_;  // at the nodes
   std::vector<double> times_;
+  std::array<int, 3> platform_{-1, -1, -1};  // x, y, heading among the further axes
+  Pose T_root_base_{Pose::Identity()};
   CartesianMotion motion_;
 };
 

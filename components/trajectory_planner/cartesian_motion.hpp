@@ -11,6 +11,7 @@
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/approximate.hpp"
 #include "common/trajectory/smooth.hpp"
+#include "components/trajectory_planner/speed_along.hpp"
 
 namespace handsel::trajectory_planner {
 
@@ -30,9 +31,12 @@ struct HeldLevel {
 
 struct CartesianRequest {
   Vector start;                          ///< all axes of the robot [rad]; the first node is where it is
-  std::vector<int> also;                 ///< robot axes that are active besides the arm: hand, head
+  std::vector<int> also;                 ///< robot axes that are active besides the arm: hand, head; of a robot
+                                         ///< on its platform (common/model/platform.hpp) x, y, heading too
   std::vector<CartesianWaypoint> nodes;  ///< after the start
   std::optional<HeldLevel> level{};
+  double speed_scale{1};             ///< (0, 1] on all velocity limits
+  const SpeedAlong* people{};        ///< lowers those of the active axes along the way; null: nobody is there
 };
 
 struct RateBounds {
@@ -83,7 +87,10 @@ struct CartesianMotion {
   std::size_t reached{};  ///< nodes of the request on the way that follows; all of them when solved. Never a node that collides
   CartesianTrajectory path;
   double duration_ptp{};              ///< with a stop at each node [s]
-  std::vector<CornerReport> corners;  ///< node 0 is the start
+  std::vector<CornerReport> corners;  ///< of nodes of `path`
+  std::vector<std::size_t> given;     ///< of each node of `path` the number in the request; the start is 0
+  std::vector<SpeedZones> speeds;     ///< of each leg of `path`, because of people; empty: nobody is there
+  double cost{};                      ///< largest human-aware cost on the way, [0, 1]
   std::vector<int> axes;              ///< robot axes of what follows: those of the arm, then the further ones
   std::vector<Vector> samples;        ///< positions at each period of `path`
   Executable executable;              ///< TR_app, inside the comfort limits of the robot

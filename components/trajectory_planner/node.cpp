@@ -1,8 +1,12 @@
 #include "components/trajectory_planner/node.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "common/config/resources.hpp"
 #include "common/config/trajectory_planner.pb.h"
 #include "common/cost/cost_settings.hpp"
+#include "common/model/platform.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
@@ -10,15 +14,26 @@ namespace {
 config::TrajectoryPlannerSettings load(const NodeContext& context) {
   config::TrajectoryPlannerSettings s;
   load_text_proto(context.settings / "trajectory_planner.txtpb", s);
-  if (!(s.corner_step() > 0 && s.cost_step() > 0 && s.max_scene_age() > 0 && s.check_time() > 0))
-    throw ConfigError("trajectory_planner.txtpb: corner_step, cost_step, max_scene_age and check_time must be > 0");
-  if (!(s.least_speed_factor() > 0 && s.least_speed_factor() <= 1))
-    throw ConfigError("trajectory_planner.txtpb: least_speed_factor must be in (0, 1]");
+  for (const auto& [key, value] : {std::pair{"corner_step", s.corner_step()},
+                                   {"cost_step", s.cost_step()},
+                                   {"max_scene_age", s.max_scene_age()},
+                                   {"check_time", s.check_time()},
+                                   {"concern_radius", s.concern_radius()},
+                                   {"approach_speed", s.approach_speed()},
+                                   {"unseen_angle", s.unseen_angle()},
+                                   {"tool_speed", s.tool_speed()},
+                                   {"tool_turn_speed", s.tool_turn_speed()}})
+    if (!(value > 0)) throw ConfigError(std::string("trajectory_planner.txtpb: ") + key + " must be > 0");
+  for (const auto& [key, value] : {std::pair{"least_speed_factor", s.least_speed_factor()},
+                                   {"approach_factor", s.approach_factor()},
+                                   {"unseen_factor", s.unseen_factor()}})
+    if (!(value > 0 && value <= 1)) throw ConfigError(std::string("trajectory_planner.txtpb: ") + key + " must be in (0, 1]");
   if (!(s.allowed_excess() >= 0 && s.allowed_excess() <= 0.1))
     throw ConfigError("trajectory_planner.txtpb: allowed_excess must be in [0, 0.1]");
   return s;
 }
 
+constexpr double kLevel = 0.02;  // a platform that leans more does not stand level [rad]
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 constexpr Duration kLeastModelled = std::chrono::milliseconds(2);
 
@@ -27,11 +42,24 @@ constexpr Duration kLeastModelled = std::chrono::milliseconds(2);
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       robot_(context.robot),
+      objects_(context.objects),
+      weights_(load_cost_settings(context.settings)),
       reply_out_(bus.advertise<TrajectoryReply>()),
       world_(*context.robot, context.objects),
-      cost_(*context.robot, load_cost_settings(context.settings)) {
+      cost_(*context.robot, weights_) {
+  if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
   const config::TrajectoryPlannerSettings file = load(context);
-  settings_ = {file.corner_step(), file.cost_step(), file.least_speed_factor(), file.allowed_excess()};
+  settings_.corner_step = file.corner_step();
+  settings_.speed = {file.cost_step(),      file.least_speed_factor(), file.concern_radius(), file.approach_speed(),
+                     file.approach_factor(), file.unseen_angle(),       file.unseen_factor()};
+  settings_.tool.allowed_excess = file.allowed_excess();
+  const auto sped = [](RateBounds& bounds, double velocity) {
+    const double share = velocity / bounds.velocity;
+    bounds = {velocity, share * bounds.acceleration, share * bounds.jerk};
+  };
+  sped(settings_.tool.translation, file.tool_speed());
+  sped(settings_.tool.rotation, file.tool_turn_speed());
+  sped(settings_.tool.elbow, file.tool_turn_speed());
   max_scene_age_ = from_seconds(file.max_scene_age());
   check_time_ = from_seconds(file.check_time());
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
@@ -48,14 +76,22 @@ void Node::on_request(const TrajectoryRequest& request) {
     return;
   }
   if (!desk_.admit(request.id)) return;
-  if (const std::string why = not_ready(); !why.empty()) {
-    TrajectoryReply reply;
-    reply.id = request.id;
-    reply.reason = why;
-    answer(reply);
-    return;
-  }
+  if (const std::string why = not_ready(); !why.empty()) return refuse(request.id, why);
+  if (drives(request) && !(scene_->T_world_base.linear()(2, 2) > std::cos(kLevel)))
+    return refuse(request.id, "the platform does not stand level: it cannot be planned for");
   start(request);
+}
+
+void Node::refuse(const RequestId& id, const std::string& reason) {
+  TrajectoryReply reply;
+  reply.id = id;
+  reply.reason = reason;
+  answer(reply);
+}
+
+bool Node::drives(const TrajectoryRequest& request) const {
+  return on_platform_ && !request.poses.empty() &&
+         std::any_of(request.also.begin(), request.also.end(), [&](std::uint32_t axis) { return static_cast<int>(axis) >= robot_->dof(); });
 }
 
 std::string Node::not_ready() const {
@@ -68,21 +104,31 @@ std::string Node::not_ready() const {
 void Node::start(const TrajectoryRequest& request) {
   struct Work {
     TrajectoryRequest request;
-    std::shared_ptr<const Scene> scene;
-    std::shared_ptr<const HumanState> people;
+    Scene scene;
+    Surroundings around;
     LayersNow layers;
+    bool driving;
     Result result;
   };
-  auto work = std::make_shared<Work>(Work{request, scene_, people_, layers_.at(bus_.now()), {}});
+  auto work = std::make_shared<Work>(Work{request, *scene_, {*people_, scene_->T_world_base}, layers_.at(bus_.now()), drives(request), {}});
+  if (work->driving) {
+    if (request.start.size() == robot_->dof()) work->request.start = with_platform(request.start, scene_->T_world_base);
+    work->scene.T_world_base = work->around.T_world_base = make_pose({0, 0, scene_->T_world_base.translation().z()});
+  }
   bus_.run_job(
       [this, work](const CancelToken&) {
-        world_.set_scene(*work->scene);
-        world_.set_people(*work->people);
-        world_.set_attachment(work->request.attachment, work->request.allowed_contacts);
-        cost_.set_people(*work->people);
-        cost_.set_layers(work->layers);
-        cost_.set_base(work->scene->T_world_base);
-        work->result = plan(*robot_, world_, cost_, work->request, settings_);
+        if (work->driving && !mobile_) mobile_ = std::make_unique<Mobile>(*on_platform_, objects_, weights_);
+        const RobotModel& robot = work->driving ? *on_platform_ : *robot_;
+        CollisionWorld& world = work->driving ? mobile_->world : world_;
+        HumanCost& cost = work->driving ? mobile_->cost : cost_;
+        world.set_scene(work->scene);
+        world.set_people(work->around.people);
+        world.set_attachment(work->request.attachment, work->request.allowed_contacts);
+        cost.set_people(work->around.people);
+        cost.set_layers(work->layers);
+        cost.set_base(work->around.T_world_base);
+        if (const Group* group = robot.group(work->request.group)) cost.set_moving_axes(group->axes);
+        work->result = plan(robot, world, cost, work->around, work->request, settings_);
         return kLeastModelled + check_time_ * static_cast<Duration::rep>(work->result.checks);
       },
       [this, work] { answer(work->result.reply); });

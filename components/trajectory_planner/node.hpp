@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/bus/bus.hpp"
@@ -20,10 +21,23 @@ class Node {
   void on_request(const TrajectoryRequest& request);
   void start(const TrajectoryRequest& request);
   void answer(const TrajectoryReply& reply);
+  void refuse(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
+  /// Whether the platform moves along with the tool.
+  bool drives(const TrajectoryRequest& request) const;
+  /// The robot on its platform.
+  struct Mobile {
+    Mobile(const RobotModel& mobile, const ObjectLibrary& objects, const CostSettings& weights)
+        : world(mobile, objects), cost(mobile, weights) {}
+    CollisionWorld world;
+    HumanCost cost;
+  };
 
   Bus& bus_;
   std::shared_ptr<const RobotModel> robot_;
+  std::optional<RobotModel> on_platform_;
+  ObjectLibrary objects_;
+  CostSettings weights_;
   Settings settings_;
   Duration max_scene_age_{}, check_time_{};
   std::unique_ptr<Publisher<TrajectoryReply>> reply_out_;
@@ -35,6 +49,7 @@ class Node {
   // Used by jobs only, which run one after the other.
   CollisionWorld world_;
   HumanCost cost_;
+  std::unique_ptr<Mobile> mobile_;
 };
 
 }  // namespace handsel::trajectory_planner

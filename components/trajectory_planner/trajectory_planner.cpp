@@ -12,12 +12,14 @@ namespace handsel::trajectory_planner {
 namespace {
 
 std::string why_bad(const RobotModel& robot, const TrajectoryRequest& request) {
+  if (!(request.speed_scale > 0 && request.speed_scale <= 1)) return "speed_scale must be in (0, 1]";
   const Group* group = robot.group(request.group);
   if (group == nullptr) return "the robot has no group \"" + request.group + "\"";
   if (request.start.size() != robot.dof()) {
     return "the start has " + std::to_string(request.start.size()) + " axes, the robot " + std::to_string(robot.dof());
   }
   if (!request.start.allFinite()) return "the start has a number that is not finite";
+  if (!request.poses.empty()) return group->tip < 0 ? "the group \"" + request.group + "\" has no tip" : std::string{};
   if (request.nodes.empty()) return "there are no nodes";
   for (const Vector& node : request.nodes) {
     if (node.size() != static_cast<Eigen::Index>(group->axes.size())) {
@@ -25,7 +27,6 @@ std::string why_bad(const RobotModel& robot, const TrajectoryRequest& request) {
              std::to_string(group->axes.size());
     }
   }
-  if (!(request.speed_scale > 0 && request.speed_scale <= 1)) return "speed_scale must be in (0, 1]";
   return {};
 }
 
@@ -33,19 +34,6 @@ KinematicLimits comfort_limits(const RobotModel& robot, const Group& group, doub
   const KinematicLimits& all = robot.comfort_limits();
   return {RobotModel::part(all.velocity, group) * speed_factor, RobotModel::part(all.acceleration, group),
           RobotModel::part(all.jerk, group)};
-}
-
-double largest_cost(const HumanCost& cost, const TrajectoryRequest& request, const Group& group, double step) {
-  if (!cost.concerned()) return 0;
-  double worst = 0;
-  for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
-    const Vector &a = request.nodes[k], &b = request.nodes[k + 1];
-    const int parts = std::max(1, static_cast<int>(std::ceil((b - a).lpNorm<Eigen::Infinity>() / step)));
-    for (int i = k == 0 ? 0 : 1; i <= parts; ++i) {
-      worst = std::max(worst, cost(RobotModel::with(request.start, group, a + (b - a) * (static_cast<double>(i) / parts))));
-    }
-  }
-  return std::clamp(worst, 0.0, 1.0);
 }
 
 /// Judges corners: position limits on the exact extremes, collisions along the way.
@@ -92,31 +80,96 @@ class CornerJudge {
   MotionJudge motion_;
 };
 
-}  // namespace
+/// Zones of the legs, as far as people are concerned.
+void look_along(const SpeedAlong& people, const TrajectoryRequest& request, const Group& group, Result& result) {
+  if (people.unconcerned()) return;
+  for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
+    const auto looks = people.along(RobotModel::with(request.start, group, request.nodes[k]),
+                                    RobotModel::with(request.start, group, request.nodes[k + 1]));
+    for (const SpeedAlong::Look& look : looks) result.cost = std::max(result.cost, std::clamp(look.cost, 0.0, 1.0));
+    result.speeds.push_back(SpeedAlong::zones(looks));
+  }
+}
 
-Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const TrajectoryRequest& request,
-            const Settings& settings) {
-  Result result;
-  TrajectoryReply& reply = result.reply;
-  reply.id = request.id;
-  if (!(reply.reason = why_bad(robot, request)).empty()) return result;
-  const Group& group = *robot.group(request.group);
-  result.cost = largest_cost(cost, request, group, settings.cost_step);
-  result.speed_factor = request.speed_scale * (1 - (1 - settings.least_speed_factor) * result.cost);
-  const KinematicLimits limits = comfort_limits(robot, group, result.speed_factor);
-  const std::uint64_t checks_before = world.checks();
+void tell_speeds(const TrajectoryRequest& request, Result& result) {
+  result.speed_factor = request.speed_scale;
+  if (result.speeds.empty()) return;
+  Vector& speeds = result.reply.speeds;
+  speeds = Vector::Ones(static_cast<Eigen::Index>(result.speeds.size()));
+  for (std::size_t k = 0; k < result.speeds.size(); ++k)
+    for (const SpeedZone& zone : result.speeds[k])
+      speeds[static_cast<Eigen::Index>(k)] = std::min(speeds[static_cast<Eigen::Index>(k)], zone.share);
+  result.speed_factor *= speeds.minCoeff();
+}
+
+void tell_stops(const std::vector<CornerReport>& corners, TrajectoryReply& reply) {
+  for (const CornerReport& corner : corners)
+    if (corner.method == CornerMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
+}
+
+void plan_joints(const RobotModel& robot, const Group& group, CollisionWorld& world, const HumanCost& cost, const SpeedAlong& people,
+                 const TrajectoryRequest& request, const Settings& settings, Result& result) {
+  look_along(people, request, group, result);
+  tell_speeds(request, result);
   CornerJudge judge(robot, group, world, cost, request.start, settings.corner_step);
   SmoothSettings smoothing;
-  smoothing.allowed_excess = settings.allowed_excess;
-  SmoothResult smoothed = smooth(request.nodes, limits, smoothing, [&judge](const Trajectory& corner) { return judge(corner); });
-  result.checks = world.checks() - checks_before;
-  if (!(reply.reason = smoothed.reason).empty()) return result;
-  for (const CornerReport& corner : smoothed.corners) {
-    if (corner.method == CornerMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
-  }
+  smoothing.allowed_excess = settings.tool.allowed_excess;
+  SmoothResult smoothed = smooth(
+      request.nodes, comfort_limits(robot, group, request.speed_scale), smoothing,
+      [&judge](const Trajectory& corner) { return judge(corner); }, result.speeds);
+  TrajectoryReply& reply = result.reply;
+  if (!(reply.reason = smoothed.reason).empty()) return;
+  tell_stops(smoothed.corners, reply);
   reply.solved = true;
+  reply.reached = static_cast<std::uint32_t>(request.nodes.size());
   reply.duration_ptp = smoothed.duration_ptp;
   reply.trajectory = std::move(smoothed.trajectory);
+}
+
+void plan_tool(const RobotModel& robot, const Group& group, CollisionWorld& world, const SpeedAlong& people, const Pose& T_world_base,
+               const TrajectoryRequest& request, const Settings& settings, Result& result) {
+  const Pose T_base_world = T_world_base.inverse();
+  CartesianRequest wanted;
+  wanted.start = request.start;
+  wanted.also.assign(request.also.begin(), request.also.end());
+  wanted.speed_scale = request.speed_scale;
+  wanted.people = people.unconcerned() ? nullptr : &people;
+  for (const TipNode& node : request.poses)
+    wanted.nodes.push_back({T_base_world * node.T_world_tip, node.has_elbow ? std::optional(node.elbow) : std::nullopt, node.also});
+  if (request.upright) wanted.level = HeldLevel{request.upright_axis, T_base_world.linear() * Vector3::UnitZ(), request.most_tilt};
+  CartesianMotion motion = plan_cartesian(robot, group, world, wanted, settings.tool);
+  TrajectoryReply& reply = result.reply;
+  reply.solved = motion.solved;
+  reply.reason = motion.reason;
+  reply.reached = static_cast<std::uint32_t>(motion.reached);
+  reply.duration_ptp = motion.duration_ptp;
+  reply.axes.assign(motion.axes.begin(), motion.axes.end());
+  reply.trajectory = std::move(motion.executable.approximation.trajectory);
+  result.speeds = std::move(motion.speeds);
+  result.cost = motion.cost;
+  tell_speeds(request, result);
+  for (CornerReport& corner : motion.corners)
+    corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
+  tell_stops(motion.corners, reply);
+}
+
+}  // namespace
+
+Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Surroundings& around,
+            const TrajectoryRequest& request, const Settings& settings) {
+  Result result;
+  result.reply.id = request.id;
+  if (!(result.reply.reason = why_bad(robot, request)).empty()) return result;
+  const Group& group = *robot.group(request.group);
+  const std::uint64_t checks_before = world.checks();
+  const SpeedAlong people(robot, cost, around, settings.speed);
+  if (request.poses.empty()) {
+    result.reply.axes.assign(group.axes.begin(), group.axes.end());
+    plan_joints(robot, group, world, cost, people, request, settings, result);
+  } else {
+    plan_tool(robot, group, world, people, around.T_world_base, request, settings, result);
+  }
+  result.checks = world.checks() - checks_before;
   return result;
 }
 

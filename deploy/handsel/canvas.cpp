@@ -210,4 +210,18 @@ Picture Canvas::picture() const {
   return out;
 }
 
+Picture from_sides(const Eigen::AlignedBox3d& box, const std::vector<Vector3>& directions, int size,
+                   const std::function<void(Canvas&, std::size_t side)>& draw) {
+  Picture out(size * static_cast<int>(directions.size()), size, {255, 255, 255});
+  for (std::size_t side = 0; side < directions.size(); ++side) {
+    Canvas canvas(size, size, eye_on(box, directions[side]));
+    draw(canvas, side);
+    const Picture one = canvas.picture();
+    for (int y = 0; y < size; ++y) {
+      for (int x = 0; x < size; ++x) out.dot(static_cast<int>(side) * size + x, y, one.at(x, y));
+    }
+  }
+  return out;
+}
+
 }  // namespace handsel

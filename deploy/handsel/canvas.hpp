@@ -1,6 +1,7 @@
 // Three-dimensional pictures: triangles onto coloured points, with depth, light and see-through parts. For people, not for time.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "common/geometry/shape.hpp"
@@ -61,5 +62,9 @@ class Canvas {
   std::vector<Sample> samples_;
   std::vector<Piece> seen_through_;
 };
+
+/// The same scene from several sides, one picture beside the other. Each eye looks at the middle of `box`.
+Picture from_sides(const Eigen::AlignedBox3d& box, const std::vector<Vector3>& directions, int size,
+                   const std::function<void(Canvas&, std::size_t side)>& draw);
 
 }  // namespace handsel

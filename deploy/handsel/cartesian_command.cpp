@@ -5,8 +5,8 @@
 
 #include "common/config/resources.hpp"
 #include "components/trajectory_planner/cartesian_motion.hpp"
+#include "deploy/handsel/canvas.hpp"
 #include "deploy/handsel/commands.hpp"
-#include "deploy/handsel/grasp_picture.hpp"
 #include "deploy/handsel/scene_lines.hpp"
 #include "deploy/handsel/trajectory_lines.hpp"
 

@@ -20,6 +20,7 @@ void add_bench_command(CLI::App& app, int& exit_code);
 void add_trajectory_commands(CLI::App& app, int& exit_code);
 /// Of the group "trajectory".
 void add_cartesian_command(CLI::App& trajectory, int& exit_code);
+void add_timed_command(CLI::App& trajectory, int& exit_code);
 void add_model_commands(CLI::App& app, int& exit_code);
 void add_distance_command(CLI::App& app, int& exit_code);
 void add_cost_command(CLI::App& app, int& exit_code);

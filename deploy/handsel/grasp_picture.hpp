@@ -1,8 +1,6 @@
 // Pictures of grasps: the figures of chapter section 3.2, and the pieces others are put together from. Frame of all: the object's.
 #pragma once
 
-#include <functional>
-
 #include "components/grasp_planner/grasp_list.hpp"
 #include "deploy/handsel/canvas.hpp"
 
@@ -28,9 +26,5 @@ void draw_workspace(Canvas& canvas, const grasp_planner::FingerWorkspace& worksp
 /// What each finger's workspace covers of the surface with the hand there, before any inverse kinematics.
 void draw_candidates(Canvas& canvas, const grasp_planner::HandKit& kit, const grasp_planner::FingerWorkspaces& workspaces,
                      const grasp_planner::Graspable& object, const Pose& T_object_hand);
-
-/// The same scene from several sides, one picture beside the other. Each eye looks at the middle of `box`.
-Picture from_sides(const Eigen::AlignedBox3d& box, const std::vector<Vector3>& directions, int size,
-                   const std::function<void(Canvas&, std::size_t side)>& draw);
 
 }  // namespace handsel

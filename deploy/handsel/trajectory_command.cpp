@@ -35,6 +35,7 @@ void add_trajectory_commands(CLI::App& app, int& exit_code) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   add_cartesian_command(*group, exit_code);
+  add_timed_command(*group, exit_code);
 }
 
 }  // namespace handsel

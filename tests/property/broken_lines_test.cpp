@@ -60,7 +60,7 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
     }
     if (request.nodes.size() < 3) continue;
     ++run;
-    const Result result = plan(robot, planning, nobody, request, {});
+    const Result result = plan(robot, planning, nobody, {}, request, {});
     ASSERT_TRUE(result.reply.solved) << "line " << run << ": " << result.reply.reason;
     const Trajectory& found = result.reply.trajectory;
     EXPECT_LE(found.duration(), result.reply.duration_ptp + 1e-9) << "line " << run;

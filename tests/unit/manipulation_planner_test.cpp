@@ -4,6 +4,8 @@
 
 #include "common/config/resources.hpp"
 #include "common/model/human_body.hpp"
+#include "common/trajectory/edit.hpp"
+#include "common/trajectory/smooth.hpp"
 #include "tests/support/cost_layer.hpp"
 
 namespace handsel::manipulation_planner {
@@ -62,6 +64,17 @@ class Rig {
     ActiveTrajectory active;
     active.position = q;
     active.velocity = Vector::Zero(robot->dof());
+    if (moves && way.size() > 0) {
+      const MotionState3 state = way.at(along);
+      q = active.position = RobotModel::with(q, robot->require_group("arm"), state.position);
+      active.velocity(robot->require_group("arm").axes) = state.velocity;
+      active.trajectory = execution.trajectory;
+      active.time = along;
+      active.rest = way;
+      along = std::min(along + 0.02, way.duration());
+      if (along >= way.duration()) execution.motion = MotionState::finished;
+      planner.on(execution);
+    }
     planner.on(active);
     Outbox out;
     planner.step(now, out);
@@ -108,6 +121,10 @@ class Rig {
     }
     reply.reason = "goal 0 in collision: link forearm and box table";
     reply.path = {RobotModel::part(request.start, robot->require_group("arm")), request.goals.front()};
+    if (!request.running.empty()) {
+      reply.outcome = PathOutcome::kept;
+      reply.path = request.running;
+    }
     planner.on(reply);
   }
   void answer(const TrajectoryRequest& request) {
@@ -115,6 +132,15 @@ class Rig {
     reply.id = request.id;
     reply.solved = true;
     target = request.nodes.back();
+    if (moves) {
+      KinematicLimits limits = robot->comfort_limits();
+      const std::vector<int>& axes = robot->require_group("arm").axes;
+      limits = {limits.velocity(axes), limits.acceleration(axes), limits.jerk(axes)};
+      const std::vector<SpeedZones> zones(request.nodes.size() - 1, SpeedZones{{1, share}});
+      reply.trajectory = smooth(request.nodes, limits, {}, {}, zones).trajectory;
+      reply.speeds = Vector::Constant(static_cast<Eigen::Index>(zones.size()), share);
+      return planner.on(reply);
+    }
     for (int i = 0; i < target.size(); ++i) reply.trajectory.axes.push_back({{target[i], 0, 0}, {{1.0, 0.0}}});
     planner.on(reply);
   }
@@ -122,6 +148,22 @@ class Rig {
     phases.push_back(planner.status().phase);
     allowed.push_back(command.allowed_contacts);
     execution.trajectory = command.id;
+    if (moves) {
+      commands.push_back(command);
+      if (command.switch_at > 0) {
+        const double offset = way.duration() - latest;
+        way = cut(way, 0, command.switch_at + offset);
+        jumps.push_back((way.at(way.duration()).position - command.trajectory.at(0).position).norm() +
+                        (way.at(way.duration()).velocity - command.trajectory.at(0).velocity).norm());
+        append(way, command.trajectory);
+      } else {
+        way = command.trajectory;
+        along = 0;
+      }
+      latest = command.trajectory.duration();
+      execution.motion = MotionState::running;
+      return;
+    }
     execution.motion = stops > 0 ? MotionState::stopped : MotionState::finished;
     if (stops > 0)
       --stops;
@@ -163,6 +205,12 @@ class Rig {
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
+  bool moves{};        // trajectories take their time, paths are kept
+  double share{1};     // of the velocity limits, because of people
+  Trajectory way;      // that runs
+  double along{}, latest{};
+  std::vector<TrajectoryCommand> commands;
+  std::vector<double> jumps;  // where one command took over from another
 };
 
 TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
@@ -244,6 +292,40 @@ TEST(ManipulationPlanner, FromAPersonItTouchesItDrawsBackFirst) {
   EXPECT_EQ(rig.allowed.front(), std::vector<std::string>{"anna"});
   EXPECT_TRUE(rig.allowed.back().empty());
   EXPECT_GT(farthest, before + 0.03);
+}
+
+TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave) {
+  Rig rig;
+  rig.people.people.clear();
+  rig.scene.boxes.clear();
+  rig.scene.objects.clear();
+  rig.moves = true;
+  rig.q[rig.robot->require_group("arm").axes[0]] += 1.5;
+  rig.start(ActionKind::go_to);
+  const auto left = [&] { return rig.way.duration() - rig.along; };
+  const auto runs = [&](double duration) {
+    for (double t = 0; t < duration && (rig.way.size() == 0 || left() > 0.02); t += 0.02) rig.cycle();
+  };
+  runs(1.0);
+  EXPECT_EQ(rig.commands.size(), 1u);
+  EXPECT_GT(rig.planner.live_counts().kept, 1u);
+  EXPECT_EQ(rig.planner.live_counts().retimed, 0u);
+  const double before = left();
+  rig.share = 0.5;  // somebody has come near
+  runs(0.6);
+  ASSERT_EQ(rig.commands.size(), 2u);
+  EXPECT_GT(left(), before + 0.2);
+  rig.share = 0.97;  // and has gone
+  const double slow = left();
+  runs(0.6);
+  ASSERT_EQ(rig.commands.size(), 3u);
+  EXPECT_LT(left(), slow - 0.6);
+  EXPECT_EQ(rig.planner.live_counts().retimed, 2u);
+  for (const double jump : rig.jumps) EXPECT_LT(jump, 1e-9);
+  runs(20);
+  EXPECT_EQ(rig.commands.size(), 3u);
+  rig.run(1);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
 }
 
 TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {

@@ -129,6 +129,101 @@ TEST(Smooth, TauZeroStopsAtTheNode) {
   EXPECT_LT(smooth(nodes, kFigure18, settings).trajectory.duration(), stop.duration_ptp - 0.1);
 }
 
+/// The lowest share that holds anywhere between two places of a leg.
+double share_between(const SpeedZones& zones, double from, double to) {
+  double least = 1, begin = 0;
+  for (const SpeedZone& zone : zones) {
+    if (begin <= to && from <= zone.end) least = std::min(least, zone.share);
+    begin = zone.end;
+  }
+  return least;
+}
+
+/// Where on the straight way from a to b, and how far off it.
+std::pair<double, double> place_on(const VectorXd& a, const VectorXd& b, const VectorXd& q) {
+  const double s = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return {s, (q - a - s * (b - a)).norm()};
+}
+
+TEST(Smooth, SpeedFollowsTheZonesOfTheLegsExactly) {
+  const std::uint64_t seed = 43;
+  std::mt19937_64 random(seed);
+  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  constexpr int kLines = 300, kAxes = 7;
+  const KinematicLimits limits{VectorXd::Constant(kAxes, 0.5), VectorXd::Constant(kAxes, 1), VectorXd::Constant(kAxes, 3)};
+  double zoned = 0, at_lowest = 0, unhindered = 0;
+  int smoothed = 0, stops = 0;
+  for (int line = 0; line < kLines; ++line) {
+    std::vector<VectorXd> nodes(static_cast<std::size_t>(2 + random() % 4), VectorXd(kAxes));
+    for (VectorXd& q : nodes)
+      for (double& x : q) x = draw(-1.2, 1.2);
+    std::vector<SpeedZones> speeds(nodes.size() - 1);
+    double lowest = 1;
+    for (SpeedZones& leg : speeds) {
+      for (double end = draw(0.02, 0.4); end < 1; end += draw(0.02, 0.4)) leg.push_back({end, draw(0.2, 1)});
+      leg.push_back({1, draw(0.2, 1)});
+      lowest = std::min(lowest, share_between(leg, 0, 1));
+    }
+    const auto where = [&] { return "seed " + std::to_string(seed) + " line " + std::to_string(line); };
+    const SmoothResult r = smooth(
+        nodes, limits, {},
+        [&](const Trajectory& corner) {
+          std::size_t node = 0;
+          double least = 1e-7;
+          const VectorXd left = corner.at(0).position, joined = corner.at(corner.duration()).position;
+          for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
+            if (const double d = place_on(nodes[k - 1], nodes[k], left).second + place_on(nodes[k], nodes[k + 1], joined).second; d < least) {
+              node = k;
+              least = d;
+            }
+          if (node == 0) return ADD_FAILURE() << where() << ": a corner of no node", true;
+          const double share = std::min(share_between(speeds[node - 1], place_on(nodes[node - 1], nodes[node], left).first + 1e-9, 1),
+                                        share_between(speeds[node], 0, place_on(nodes[node], nodes[node + 1], joined).first - 1e-9));
+          for (const AxisTrajectory& axis : corner.axes) EXPECT_LE(extremes(axis).velocity, 0.5 * share * (1.1 + 1e-9)) << where();
+          return true;
+        },
+        speeds);
+    ASSERT_TRUE(r.ok()) << r.reason;
+    for (const CornerReport& corner : r.corners) ++(corner.method == CornerMethod::stop ? stops : smoothed);
+    EXPECT_EQ(why_not_within(r.trajectory, limits, 0.1 + 1e-9), "") << where();
+    EXPECT_LE(r.trajectory.duration(), r.duration_ptp + 1e-9) << where();
+    EXPECT_LT((final_state(r.trajectory).position - nodes.back()).lpNorm<Eigen::Infinity>(), 1e-9) << where();
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+      sum += r.legs[k];
+      const Trajectory leg = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
+      EXPECT_EQ(why_not_within(leg, limits, 1e-9), "") << where();
+      EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits, {{1, share_between(speeds[k], 0, 1)}}).duration() + 1e-9);
+      EXPECT_GE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits).duration() - 1e-9);
+      for (int i = 0; i <= 500; ++i) {
+        const MotionState3 state = leg.at(leg.duration() * i / 500);
+        const auto [s, off] = place_on(nodes[k], nodes[k + 1], state.position);
+        ASSERT_LT(off, 1e-9) << where();
+        const double share = std::max(share_between(speeds[k], s - 1e-7, s - 1e-7), share_between(speeds[k], s + 1e-7, s + 1e-7));
+        ASSERT_LE(state.velocity.cwiseAbs().maxCoeff(), 0.5 * share + 1e-7) << where() << " leg " << k << " at " << s;
+      }
+    }
+    EXPECT_NEAR(sum, r.duration_ptp, 1e-9);
+    zoned += r.trajectory.duration();
+    at_lowest += smooth(nodes, {lowest * limits.velocity, limits.acceleration, limits.jerk}).trajectory.duration();
+    unhindered += smooth(nodes, limits).trajectory.duration();
+  }
+  std::printf("seed %llu: %d lines, %d corners, %d keep their stop: %.0f s; %.0f s at the lowest share all along, %.0f s unhindered\n",
+              static_cast<unsigned long long>(seed), kLines, smoothed + stops, stops, zoned, at_lowest, unhindered);
+  EXPECT_LT(zoned, 0.9 * at_lowest);
+  EXPECT_LT(stops, smoothed / 20);
+}
+
+TEST(Smooth, OneShareEverywhereIsThatLimit) {
+  const std::vector<VectorXd> nodes = {point({0, 0}), point({1, 0}), point({1, 1})};
+  KinematicLimits half = kFigure18;
+  half.velocity *= 0.5;
+  const SpeedZones zones = {{0.3, 0.5}, {0.6, 0.5}, {1, 0.5}};
+  EXPECT_NEAR(smooth(nodes, kFigure18, {}, {}, {zones, zones}).trajectory.duration(), smooth(nodes, half).trajectory.duration(), 1e-9);
+  EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones}).reason, "");
+  EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones, {{1, 0}}}).reason, "");
+}
+
 TEST(Smooth, AForbiddenCornerKeepsItsStopAndSaysWhy) {
   const std::vector<VectorXd> nodes{point({0, 0}), point({1, 0}), point({1, 1}), point({2, 1})};
   int asked = 0;

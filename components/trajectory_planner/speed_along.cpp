@@ -1,0 +1,88 @@
+#include "components/trajectory_planner/speed_along.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handsel::trajectory_planner {
+namespace {
+
+constexpr double kFades = 0.35;  // from looked at to not looked at [rad]
+
+}  // namespace
+
+SpeedAlong::SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around, const SpeedSettings& settings)
+    : robot_(robot),
+      cost_(cost),
+      settings_(settings),
+      T_world_base_(around.T_world_base),
+      tool_(robot.tool_link() >= 0 ? robot.tool_link() : static_cast<int>(robot.links().size()) - 1) {
+  for (const Person& person : around.people.people) {
+    Someone someone;
+    someone.body = simplified_body(person);
+    if (const BodyJoint* torso = find_joint(person, "torso")) {
+      someone.trunk = torso->position;
+      someone.velocity = torso->velocity;
+    }
+    someone.sight = sight_of(person);
+    someone_.push_back(someone);
+  }
+}
+
+double SpeedAlong::what_people_do(const Vector& q) const {
+  if (someone_.empty()) return 1;
+  const Vector3 tool = (T_world_base_ * robot_.link_pose(q, tool_)).translation();
+  double least = 1;
+  for (const Someone& someone : someone_) {
+    const double distance = simplified_distance(someone.body, tool, tool, 0);
+    const double near = std::clamp(2 * (1 - distance / settings_.concern_radius), 0.0, 1.0);
+    if (near == 0) continue;
+    const Vector3 to_tool = tool - someone.trunk;
+    const double closing = someone.velocity.dot(to_tool) / std::max(to_tool.norm(), 1e-9);
+    double unseen = 1;
+    if (someone.sight) {
+      const Vector3 sight = tool - someone.sight->eyes;
+      const double angle = std::acos(std::clamp(sight.dot(someone.sight->direction) / std::max(sight.norm(), 1e-9), -1.0, 1.0));
+      unseen = std::clamp(1 + (angle - settings_.unseen_angle) / kFades, 0.0, 1.0);
+    }
+    least = std::min(least, (1 - (1 - settings_.approach_factor) * near * std::clamp(closing / settings_.approach_speed, 0.0, 1.0)) *
+                                (1 - (1 - settings_.unseen_factor) * near * unseen));
+  }
+  return least;
+}
+
+double SpeedAlong::share(double cost, const Vector& q) const {
+  return (1 - (1 - settings_.least_speed_factor) * std::clamp(cost, 0.0, 1.0)) * what_people_do(q);
+}
+
+SpeedAlong::Look SpeedAlong::at(const Vector& q) const {
+  if (unconcerned()) return {};
+  const double cost = cost_(q);
+  return {0, cost, share(cost, q)};
+}
+
+std::vector<SpeedAlong::Look> SpeedAlong::along(const Vector& from, const Vector& to) const {
+  const int parts =
+      unconcerned() ? 1 : std::max(1, static_cast<int>(std::ceil((to - from).lpNorm<Eigen::Infinity>() / settings_.cost_step)));
+  std::vector<double> at, cost(static_cast<std::size_t>(parts) + 1);
+  for (int k = 0; k <= parts; ++k) at.push_back(static_cast<double>(k) / parts);
+  cost_.on_line(from, to, at.data(), parts + 1, cost.data());
+  std::vector<Look> looks;
+  for (std::size_t k = 0; k < at.size(); ++k)
+    looks.push_back({at[k], cost[k], unconcerned() ? 1.0 : share(cost[k], from + at[k] * (to - from))});
+  return looks;
+}
+
+SpeedZones SpeedAlong::zones(const std::vector<Look>& looks) {
+  SpeedZones zones;
+  for (std::size_t k = 0; k + 1 < looks.size(); ++k) {
+    const double lower = std::min(looks[k].share, looks[k + 1].share);
+    const double share = std::max(kStep, kStep * std::floor(lower / kStep + 1e-9));
+    if (!zones.empty() && zones.back().share == share)
+      zones.back().end = looks[k + 1].at;
+    else
+      zones.push_back({looks[k + 1].at, share});
+  }
+  return zones;
+}
+
+}  // namespace handsel::trajectory_planner

@@ -1,0 +1,66 @@
+// How fast the robot may be at each place of its way because of people (ours): what the place costs them (chapter section 4.1.2), and what
+// they do: come nearer, or look elsewhere. Pure.
+#pragma once
+
+#include <vector>
+
+#include "common/cost/human_cost.hpp"
+#include "common/model/robot_model.hpp"
+#include "common/trajectory/smooth.hpp"
+
+namespace handsel::trajectory_planner {
+
+/// Who is around the robot, and where it stands.
+struct Surroundings {
+  HumanState people;
+  Pose T_world_base{Pose::Identity()};
+};
+
+/// Shares of the velocity limits.
+struct SpeedSettings {
+  double cost_step{0.1};           ///< the way is looked at this often [rad, max norm]
+  double least_speed_factor{0.5};  ///< where the cost is 1; 1 where it is 0, linear between
+  double concern_radius{1.5};      ///< what people do counts in full up to half this distance from the tool, and fades to nothing here [m]
+  double approach_speed{0.8};      ///< a trunk that comes nearer to the tool this fast, or faster, counts in full [m/s]
+  double approach_factor{0.7};     ///< then it is this, (0, 1]
+  double unseen_angle{1.2};        ///< a tool this far from where someone looks, or farther, is not looked at [rad]
+  double unseen_factor{0.8};       ///< then it is this, (0, 1]
+};
+
+class SpeedAlong {
+ public:
+  /// `cost` knows the same people; it, and the robot, must live on.
+  SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around, const SpeedSettings& settings);
+
+  struct Look {
+    double at{};      ///< share of the way
+    double cost{};    ///< human-aware, [0, 1]
+    double share{1};  ///< of the velocity limits
+  };
+  /// Nobody is there and nothing costs anything: the share is 1 everywhere.
+  bool unconcerned() const { return !cost_.concerned(); }
+  Look at(const Vector& q) const;                                           ///< all axes [rad]
+  std::vector<Look> along(const Vector& from, const Vector& to) const;      ///< the straight way between two postures, ends included
+  double what_people_do(const Vector& q) const;                             ///< the share because of it
+
+  /// Between two looks the lower share of both counts, in steps of kStep downward; equal neighbours are one zone.
+  static SpeedZones zones(const std::vector<Look>& looks);
+  static constexpr double kStep = 0.05;
+
+ private:
+  struct Someone {
+    SimplifiedBody body;
+    Vector3 trunk{Vector3::Zero()}, velocity{Vector3::Zero()};
+    std::optional<Sight> sight;
+  };
+  double share(double cost, const Vector& q) const;
+
+  const RobotModel& robot_;
+  const HumanCost& cost_;
+  SpeedSettings settings_;
+  Pose T_world_base_;
+  int tool_;
+  std::vector<Someone> someone_;
+};
+
+}  // namespace handsel::trajectory_planner
