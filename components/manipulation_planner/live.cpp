@@ -19,6 +19,8 @@ constexpr double kReserve = 1.1;    // what a switch keeps of the limits it is g
 constexpr double kLook = 0.1;       // costs along a trajectory are looked at this often [s]
 constexpr double kEarly = 0.04;     // the command must be with the controller this long before it is due [s]
 
+constexpr double kRetimed = 0.3;  // the same path at another pace is joined at most this far from where it is, max norm [rad]
+
 constexpr double kStepAside = 0.1;     // a receiver who moved less is where they were [m]
 constexpr double kWorthMoving = 0.05;  // an exchange posture is kept until another costs less by this
 
@@ -47,19 +49,22 @@ bool slower_ahead(const Vector& before, const Vector& now, std::size_t legs, dou
 }  // namespace
 
 /// From a state in motion onto the trajectory.
-Switched ManipulationPlanner::join(const MotionState3& from, const Trajectory& to) const {
+Switched ManipulationPlanner::join(const MotionState3& from, const Trajectory& to, const Ways& ways) const {
   KinematicLimits limits = robot_->comfort_limits();
   for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = kReserve * RobotModel::part(*part, arm_);
+  if (ways.share < 1)
+    limits.velocity = (ways.share * limits.velocity).cwiseMax(limits.velocity.cwiseMin(kReserve * from.velocity.cwiseAbs()));
   SwitchSettings settings;
   settings.reserve = kReserve;
-  settings.last = within_reach(to, from.position, settings_.live_reach());
+  settings.last = within_reach(to, from.position, ways.reach);
   return switch_to(from, to, limits, settings);
 }
 
 /// The same, all of what leads over free; nullopt when that cannot be.
 std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, const Around& around, const MotionState3& from,
-                                                         const Trajectory& to) const {
-  const Switched over = join(from, to);
+                                                         const Ways& ways) const {
+  const Trajectory& to = *ways.over;
+  const Switched over = join(from, to, ways);
   if (!over.ok()) return std::nullopt;
   world.set_scene(around.scene);
   world.set_people(around.people);
@@ -102,9 +107,9 @@ double ManipulationPlanner::cost_along(const Trajectory& trajectory, const Vecto
 /// Both ways as the arm would really go: what leads over to a path may leave out what makes it cheaper.
 void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const {
   if (!standing) {
-    ways.over = lead_over(world, around, from, *ways.over);
+    ways.over = lead_over(world, around, from, ways);
     if (ways.along)
-      if (Switched along = join(from, *ways.along); along.ok()) ways.along = std::move(along.trajectory);
+      if (Switched along = join(from, *ways.along, ways); along.ok()) ways.along = std::move(along.trajectory);
   }
   if (!ways.over || !ways.along) return;
   cost_->set_people(around.people);
@@ -193,6 +198,7 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
     }
     auto ways = std::make_shared<Ways>();
     ways->over = trajectory_reply_->trajectory;
+    ways->reach = settings_.live_reach();
     if (only_cheaper && comparison_reply_->solved) ways->along = comparison_reply_->trajectory;
     const TrajectoryReply reply = *trajectory_reply_;
     Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
@@ -214,10 +220,15 @@ Routine<Outcome> ManipulationPlanner::retime(Running& running, const Motion& mot
   const TrajectoryReply reply = *comparison_reply_;
   auto ways = std::make_shared<Ways>();
   ways->over = reply.trajectory;
-  if (!slower_ahead(running.speeds, reply.speeds, nodes.size() - 1, 1 - settings_.live_pace())) {
+  ways->share = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
+  ways->reach = kRetimed;
+  const double share = 1 - settings_.live_pace();
+  if (!slower_ahead(running.speeds, reply.speeds, nodes.size() - 1, share)) {
+    if (!slower_ahead(reply.speeds, running.speeds, nodes.size() - 1, share)) co_return Outcome::failure("it would go as before");
     std::optional<double> lasts = leave.standing ? reply.trajectory.duration() : std::optional<double>();
-    if (const Switched along = join(leave.from, reply.trajectory); !leave.standing && along.ok()) lasts = along.trajectory.duration();
-    if (!lasts || *lasts > (1 - settings_.live_pace()) * leave.rest) co_return Outcome::failure("it would go as before");
+    if (const Switched along = join(leave.from, reply.trajectory, *ways); !leave.standing && along.ok())
+      lasts = along.trajectory.duration();
+    if (!lasts || *lasts > share * leave.rest) co_return Outcome::failure("it would go as before");
   }
   Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
   co_return over;

@@ -99,6 +99,8 @@ class ManipulationPlanner {
     std::optional<Trajectory> over;   // onto it; empty: nothing leads there
     std::optional<Trajectory> along;  // the old one, timed for the people as they are now; empty: it must be left
     bool worth{true};                 // going over to it
+    double share{1};                  // of the velocity limits, that what leads over keeps where it is not faster already
+    double reach{};                   // joined at most this far from where the old one is left, max norm [rad]
   };
   /// Where the path that runs would be left, and what runs from there on.
   struct Leave {
@@ -164,8 +166,8 @@ class ManipulationPlanner {
   void weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const;
   double cost_at(const Vector& q, const Vector& posture) const;
   double cost_along(const Trajectory& trajectory, const Vector& posture, double level) const;
-  Switched join(const MotionState3& from, const Trajectory& to) const;
-  std::optional<Trajectory> lead_over(CollisionWorld& world, const Around& around, const MotionState3& from, const Trajectory& to) const;
+  Switched join(const MotionState3& from, const Trajectory& to, const Ways& ways) const;
+  std::optional<Trajectory> lead_over(CollisionWorld& world, const Around& around, const MotionState3& from, const Ways& ways) const;
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr);
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);

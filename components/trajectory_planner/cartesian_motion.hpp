@@ -35,8 +35,8 @@ struct CartesianRequest {
                                          ///< on its platform (common/model/platform.hpp) x, y, heading too
   std::vector<CartesianWaypoint> nodes;  ///< after the start
   std::optional<HeldLevel> level{};
-  double speed_scale{1};             ///< (0, 1] on all velocity limits
-  const SpeedAlong* people{};        ///< lowers those of the active axes along the way; null: nobody is there
+  double speed_scale{1};       ///< (0, 1] on all velocity limits
+  const SpeedAlong* people{};  ///< lowers those of the active axes along the way; null: nobody is there
 };
 
 struct RateBounds {

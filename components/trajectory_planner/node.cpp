@@ -50,7 +50,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
   const config::TrajectoryPlannerSettings file = load(context);
   settings_.corner_step = file.corner_step();
-  settings_.speed = {file.cost_step(),      file.least_speed_factor(), file.concern_radius(), file.approach_speed(),
+  settings_.speed = {file.cost_step(),       file.least_speed_factor(), file.concern_radius(), file.approach_speed(),
                      file.approach_factor(), file.unseen_angle(),       file.unseen_factor()};
   settings_.tool.allowed_excess = file.allowed_excess();
   const auto sped = [](RateBounds& bounds, double velocity) {

@@ -39,9 +39,9 @@ class SpeedAlong {
   };
   /// Nobody is there and nothing costs anything: the share is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
-  Look at(const Vector& q) const;                                           ///< all axes [rad]
-  std::vector<Look> along(const Vector& from, const Vector& to) const;      ///< the straight way between two postures, ends included
-  double what_people_do(const Vector& q) const;                             ///< the share because of it
+  Look at(const Vector& q) const;                                       ///< all axes [rad]
+  std::vector<Look> along(const Vector& from, const Vector& to) const;  ///< the straight way between two postures, ends included
+  double what_people_do(const Vector& q) const;                         ///< the share because of it
 
   /// Between two looks the lower share of both counts, in steps of kStep downward; equal neighbours are one zone.
   static SpeedZones zones(const std::vector<Look>& looks);

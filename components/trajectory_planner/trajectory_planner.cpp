@@ -148,8 +148,7 @@ void plan_tool(const RobotModel& robot, const Group& group, CollisionWorld& worl
   result.speeds = std::move(motion.speeds);
   result.cost = motion.cost;
   tell_speeds(request, result);
-  for (CornerReport& corner : motion.corners)
-    corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
+  for (CornerReport& corner : motion.corners) corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
   tell_stops(motion.corners, reply);
 }
 

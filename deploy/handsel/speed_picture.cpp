@@ -56,8 +56,10 @@ std::string speed_picture(const std::vector<SpeedCurve>& curves) {
     const double top = kTop + static_cast<double>(k) * (kHigh + kGap);
     out += text("<text x=\"%.0f\" y=\"%.0f\" font-weight=\"bold\">%s</text>\n", kLeft, top - 8, curve.title.c_str());
     for (const double level : {0.0, 0.5, 1.0})
-      out += text("<line x1=\"%.0f\" x2=\"%.0f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/><text x=\"%.0f\" y=\"%.1f\" text-anchor=\"end\">%.1f</text>\n",
-                  kLeft, kLeft + kWide, top + (1 - level) * kHigh, top + (1 - level) * kHigh, kLeft - 6, top + (1 - level) * kHigh + 4, level);
+      out += text(
+          "<line x1=\"%.0f\" x2=\"%.0f\" y1=\"%.1f\" y2=\"%.1f\" stroke=\"#ddd\"/><text x=\"%.0f\" y=\"%.1f\" "
+          "text-anchor=\"end\">%.1f</text>\n",
+          kLeft, kLeft + kWide, top + (1 - level) * kHigh, top + (1 - level) * kHigh, kLeft - 6, top + (1 - level) * kHigh + 4, level);
     out += line_of(curve, curve.cost, top, "stroke=\"#b35a00\" stroke-width=\"1.6\"");
     out += line_of(curve, curve.allowed, top, "stroke=\"#777\" stroke-width=\"1.2\" stroke-dasharray=\"5 3\"");
     out += line_of(curve, curve.speed, top, "stroke=\"#1f5fa8\" stroke-width=\"2\"");

@@ -10,15 +10,15 @@
 #include "common/trajectory/limits_check.hpp"
 #include "common/trajectory/segment_table.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
+#include "tests/support/broken_lines.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
 
 constexpr unsigned kSeed = 44;
 constexpr int kAlone = 100;
-constexpr double kReach = 1.6;     // no point of arm and hand is farther from an axis [m]
-constexpr double kMost = 0.001;    // a point of the robot moves between two states [m]
-constexpr double kLegStep = 2e-4;  // of the path planner's last check [rad]
+constexpr double kReach = 1.6;   // no point of arm and hand is farther from an axis [m]
+constexpr double kMost = 0.001;  // a point of the robot moves between two states [m]
 
 TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_free) {
   const char* asked = std::getenv("HANDSEL_RUNS");
@@ -29,37 +29,13 @@ TEST(BrokenLines, are_smoothed_to_motion_that_is_faster_inside_the_limits_and_fr
   wide.set_moving_axes(arm.axes);
   const HumanCost nobody(robot, {});
   std::mt19937 random(kSeed);
-  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   int corners = 0, stops = 0, collided = 0;
   double time = 0, with_stops = 0;
   std::size_t states = 0;
-  for (int run = 0; run < runs;) {
-    Scene scene;
-    for (int i = 0; i < 6; ++i)
-      scene.boxes.push_back({"box " + std::to_string(i),
-                             make_pose({between(0.4, 1.1), between(-0.9, 0.6), between(0.4, 1.6)}),
-                             {between(0.03, 0.3), between(0.03, 0.3), between(0.03, 0.3)},
-                             false});
-    for (CollisionWorld* world : {&planning, &wide, &exact}) world->set_scene(scene);
-    TrajectoryRequest request;
-    request.id = {1, static_cast<std::uint64_t>(run)};
-    request.group = "arm";
-    request.start = robot.rest_posture();
-    if (!wide.is_free(request.start)) continue;
-    Vector at = request.start;
-    request.nodes = {RobotModel::part(at, arm)};
-    const int nodes = 3 + static_cast<int>(random() % 8);
-    for (int tries = 0; tries < 40 && static_cast<int>(request.nodes.size()) < nodes; ++tries) {
-      Vector next = at;
-      for (const int axis : arm.axes)
-        next[axis] = std::clamp(at[axis] + between(-0.7, 0.7), robot.axes()[static_cast<std::size_t>(axis)].lower,
-                                robot.axes()[static_cast<std::size_t>(axis)].upper);
-      if (!wide.check_motion(at, next, kLegStep).free) continue;
-      at = next;
-      request.nodes.push_back(RobotModel::part(at, arm));
-    }
-    if (request.nodes.size() < 3) continue;
-    ++run;
+  for (int run = 1; run <= runs; ++run) {
+    const test::BrokenLine line = test::broken_line(robot, wide, 3, 10, random);
+    for (CollisionWorld* world : {&planning, &exact}) world->set_scene(line.scene);
+    const TrajectoryRequest& request = line.request;
     const Result result = plan(robot, planning, nobody, {}, request, {});
     ASSERT_TRUE(result.reply.solved) << "line " << run << ": " << result.reply.reason;
     const Trajectory& found = result.reply.trajectory;

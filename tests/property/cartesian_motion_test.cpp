@@ -12,6 +12,7 @@
 #include "components/trajectory_planner/cartesian_motion.hpp"
 #include "tests/support/panda_problems.hpp"
 #include "tests/support/thread_time.hpp"
+#include "tests/support/tool_motions.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
@@ -26,37 +27,10 @@ struct Tally {
 
 void follow(const RobotModel& robot, const Group& arm, const std::vector<int>& also, const Vector& home, int runs, Tally& tally) {
   std::mt19937 random(kSeed);
-  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   CollisionWorld world(robot, nullptr);
   const ik::Chain chain(robot, arm, home);
-  const ik::SrsArm srs = *ik::SrsArm::recognise(chain);
   for (tally = {}; tally.solved < runs && tally.wanted < 4 * runs;) {
-    CartesianRequest request;
-    request.start = home;
-    request.also = also;
-    const int nodes = 2 + static_cast<int>(random() % 4);
-    Vector q = home;
-    for (int k = 0; k < nodes; ++k) {
-      Vector next = q;
-      for (std::size_t i = 0; i < arm.axes.size(); ++i) {
-        const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[i])];
-        double& value = next[arm.axes[i]];
-        const double moved = std::clamp(value + between(-0.6, 0.6), axis.lower + 0.2, axis.upper - 0.2);
-        const bool bends = i == 1 || i == 3 || i == 5;
-        value = bends && (moved * home[arm.axes[i]] < 0 || std::abs(moved) < 0.15) ? value : moved;
-      }
-      if (!world.is_free(next)) continue;
-      q = next;
-      CartesianWaypoint node;
-      node.T_root_tool = chain.forward(RobotModel::part(q, arm), nullptr);
-      if (k % 2 == 0) node.elbow = srs.elbow_angle(RobotModel::part(q, arm));
-      node.also = Vector(static_cast<Eigen::Index>(also.size()));
-      for (std::size_t i = 0; i < also.size(); ++i) {
-        const Axis& axis = robot.axes()[static_cast<std::size_t>(also[i])];
-        node.also[static_cast<Eigen::Index>(i)] = std::clamp(home[also[i]] + between(-0.1, 0.1), axis.lower, axis.upper);
-      }
-      request.nodes.push_back(node);
-    }
+    const CartesianRequest request = test::tool_motion(robot, arm, also, home, world, random);
     if (request.nodes.empty()) continue;
     ++tally.wanted;
     const double begin = test::thread_time();
@@ -124,8 +98,7 @@ int runs() {
 TEST(CartesianMotion, of_jido_is_that_of_the_tool_with_22_active_axes) {
   const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
-  std::vector<int> also = robot.require_group("hand").axes;
-  also.insert(also.end(), robot.require_group("head").axes.begin(), robot.require_group("head").axes.end());
+  const std::vector<int> also = test::hand_and_head(robot);
   Tally tally;
   follow(robot, arm, also, robot.rest_posture(), runs(), tally);
   report("Jido", tally);
@@ -141,10 +114,8 @@ TEST(CartesianMotion, of_the_iiwa_is_that_of_the_tool) {
   const RobotModel robot = RobotModel::load_urdf(*file);
   Group arm = robot.require_group("all");
   arm.tip = robot.link_index("lbr_iiwa_link_7");
-  Vector home(7);
-  home << 0.2, 0.6, -0.3, -1.4, 0.3, 0.9, 0.1;
   Tally tally;
-  follow(robot, arm, {}, home, runs(), tally);
+  follow(robot, arm, {}, test::iiwa_home(), runs(), tally);
   report("iiwa", tally);
   EXPECT_EQ(tally.solved, runs());
   EXPECT_LT(tally.off, 1e-3);

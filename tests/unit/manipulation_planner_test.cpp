@@ -205,9 +205,9 @@ class Rig {
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
-  bool moves{};        // trajectories take their time, paths are kept
-  double share{1};     // of the velocity limits, because of people
-  Trajectory way;      // that runs
+  bool moves{};     // trajectories take their time, paths are kept
+  double share{1};  // of the velocity limits, because of people
+  Trajectory way;   // that runs
   double along{}, latest{};
   std::vector<TrajectoryCommand> commands;
   std::vector<double> jumps;  // where one command took over from another
@@ -300,7 +300,7 @@ TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave
   rig.scene.boxes.clear();
   rig.scene.objects.clear();
   rig.moves = true;
-  rig.q[rig.robot->require_group("arm").axes[0]] += 1.5;
+  rig.q[rig.robot->require_group("arm").axes[0]] += 2.2;
   rig.start(ActionKind::go_to);
   const auto left = [&] { return rig.way.duration() - rig.along; };
   const auto runs = [&](double duration) {
@@ -313,13 +313,15 @@ TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave
   const double before = left();
   rig.share = 0.5;  // somebody has come near
   runs(0.6);
-  ASSERT_EQ(rig.commands.size(), 2u);
-  EXPECT_GT(left(), before + 0.2);
+  const auto& counts = rig.planner.live_counts();
+  ASSERT_EQ(rig.commands.size(), 2u) << counts.looks << " looks, " << counts.refused << " refused";
+  EXPECT_GT(left() + 0.6, before + 0.4);
   rig.share = 0.97;  // and has gone
   const double slow = left();
+  EXPECT_GT(slow, 2) << "the test needs a longer way";
   runs(0.6);
-  ASSERT_EQ(rig.commands.size(), 3u);
-  EXPECT_LT(left(), slow - 0.6);
+  ASSERT_EQ(rig.commands.size(), 3u) << counts.looks << " looks, " << counts.refused << " refused";
+  EXPECT_LT(left() + 0.6, slow - 0.2);
   EXPECT_EQ(rig.planner.live_counts().retimed, 2u);
   for (const double jump : rig.jumps) EXPECT_LT(jump, 1e-9);
   runs(20);

@@ -172,7 +172,8 @@ TEST(Smooth, SpeedFollowsTheZonesOfTheLegsExactly) {
           double least = 1e-7;
           const VectorXd left = corner.at(0).position, joined = corner.at(corner.duration()).position;
           for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
-            if (const double d = place_on(nodes[k - 1], nodes[k], left).second + place_on(nodes[k], nodes[k + 1], joined).second; d < least) {
+            if (const double d = place_on(nodes[k - 1], nodes[k], left).second + place_on(nodes[k], nodes[k + 1], joined).second;
+                d < least) {
               node = k;
               least = d;
             }

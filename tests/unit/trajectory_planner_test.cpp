@@ -111,9 +111,10 @@ TEST_F(Planning, along_one_leg_it_is_slow_where_it_costs_people_and_fast_elsewhe
       least = std::min(least, share), most = std::max(most, share);
       sum_c += cost, sum_v += share, sum_cc += cost * cost, sum_vv += share * share, sum_cv += cost * share, ++count;
     }
-    const double correlation = (count * sum_cv - sum_c * sum_v) / std::sqrt((count * sum_cc - sum_c * sum_c) * (count * sum_vv - sum_v * sum_v));
-    std::printf("person at (%.1f, %.1f): speed %.2f to %.2f of the limits, correlation with the cost %.3f\n", place.x(), place.y(), least, most,
-                correlation);
+    const double correlation =
+        (count * sum_cv - sum_c * sum_v) / std::sqrt((count * sum_cc - sum_c * sum_c) * (count * sum_vv - sum_v * sum_v));
+    std::printf("person at (%.1f, %.1f): speed %.2f to %.2f of the limits, correlation with the cost %.3f\n", place.x(), place.y(), least,
+                most, correlation);
     EXPECT_LT(correlation, -0.9);
     EXPECT_GT(most, least + 0.05);
   }
@@ -334,7 +335,7 @@ TEST_F(ToolMotions, that_cannot_be_say_why_and_go_as_far_as_they_can) {
   request_.also.clear();
   request_.poses[0].also.resize(0);
   request_.group = "head";
-  expect(0, "tip");
+  expect(0, "shoulder, elbow and wrist");
   request_.group = "arm";
   request_.upright = true;
   request_.upright_axis = home_.linear().transpose() * Vector3::UnitZ();

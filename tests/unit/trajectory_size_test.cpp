@@ -6,11 +6,12 @@
 #include <gtest/gtest.h>
 
 #include "common/messages/execution.hpp"
-#include "common/model/srs_arm.hpp"
+#include "common/model/ik_chain.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
 #include "tests/support/cdr_size.hpp"
 #include "tests/support/panda_problems.hpp"
 #include "tests/support/standing_person.hpp"
+#include "tests/support/tool_motions.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
@@ -60,9 +61,8 @@ TEST(TrajectorySize, OfJidoIsBelow64kB) {
   const Group& arm = robot.require_group("arm");
   CollisionWorld world(robot, nullptr);
   HumanCost cost(robot, {});
-  std::vector<int> also = robot.require_group("hand").axes;
-  also.insert(also.end(), robot.require_group("head").axes.begin(), robot.require_group("head").axes.end());
-  for (const int nodes : {3, 6}) {
+  const std::vector<int> also = test::hand_and_head(robot);
+  for (const int nodes : {4, 7}) {
     const Result result = plan(robot, world, cost, {}, tool_motion(robot, arm, also, robot.rest_posture(), nodes), {});
     EXPECT_GT(result.reply.trajectory.duration(), 5);
     measure("Jido, tool", robot, result.reply);
@@ -92,8 +92,7 @@ TEST(TrajectorySize, OfTheIiwaIsBelow64kB) {
   Group arm = robot.require_group("all");
   arm.tip = robot.link_index("lbr_iiwa_link_7");
   CollisionWorld world(robot, nullptr);
-  Vector home(7);
-  home << 0.2, 0.6, -0.3, -1.4, 0.3, 0.9, 0.1;
+  const Vector home = test::iiwa_home();
   const TrajectoryRequest asked = tool_motion(robot, arm, {}, home, 6);
   CartesianRequest request;
   request.start = home;

@@ -1,8 +1,5 @@
 // The customs office: every message there and back, every field damaged, every IDL field documented.
-#include <dds/dds.h>
-#include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cfloat>
 #include <cstring>
