@@ -363,15 +363,54 @@ class CartesianPlanning {
     return true;
   }
 
-  /// From the posture of a node to one nearby, and whether the way there is continuous and free.
-  bool advance(const Pose& T, double elbow, const Vector& also, ik::Axes& q, Vector& last_judged) const {
+  /// From a posture to one nearby, where the way there is continuous.
+  bool advance(const Pose& T, double elbow, const Vector& also, ik::Axes& q) const {
     const auto next = arm_->nearest(for_arm(T, also), elbow, q);
     if (!next || (*next - q).lpNorm<Eigen::Infinity>() > settings_.largest_step) return false;
     q = *next;
-    const Vector all = whole(q, also);
-    if ((all - last_judged).lpNorm<Eigen::Infinity>() < settings_.collision_step) return true;
-    last_judged = all;
-    return world_.is_free(all);
+    return true;
+  }
+
+  /// The first of these postures, one near the next, that touches something; their number where none does. Boxes of configurations around
+  /// some of them, and what lies between, are looked at side by side; those that are not clear posture by posture.
+  std::size_t first_touching(const std::vector<Vector>& postures) const {
+    struct Run {
+      std::size_t begin, end;
+    };
+    std::vector<Run> runs;
+    std::vector<Vector> low, high;
+    const auto judge = [&]() -> std::optional<std::size_t> {
+      const int count = static_cast<int>(runs.size());
+      const std::uint32_t unclear = count > 0 ? world_.unclear_boxes(low.data(), high.data(), count) : 0;
+      for (int i = 0; i < count; ++i) {
+        const Run& run = runs[static_cast<std::size_t>(i)];
+        if ((unclear >> i & 1) == 0) continue;
+        for (const std::size_t k : {run.begin, run.end})
+          if (!world_.is_free(postures[k])) return k;
+      }
+      runs.clear();
+      low.clear();
+      high.clear();
+      return std::nullopt;
+    };
+    for (std::size_t begin = 0; begin < postures.size();) {
+      Vector least = postures[begin], most = least;
+      std::size_t end = begin;
+      while (end + 1 < postures.size()) {
+        const Vector lower = least.cwiseMin(postures[end + 1]), upper = most.cwiseMax(postures[end + 1]);
+        if (end > begin && (upper - lower).maxCoeff() > settings_.collision_step) break;
+        least = lower;
+        most = upper;
+        ++end;
+      }
+      runs.push_back({begin, end});
+      low.push_back(least);
+      high.push_back(most);
+      begin = end > begin && end + 1 < postures.size() ? end : postures.size();
+      if (runs.size() < CollisionWorld::kMostBoxes && begin < postures.size()) continue;
+      if (const auto touching = judge()) return *touching;
+    }
+    return postures.size();
   }
 
   Vector whole(const ik::Axes& q, const Vector& also) const {
@@ -400,13 +439,16 @@ class CartesianPlanning {
       }
     for (const double end : {0.0, lasts}) {
       ik::Axes q = postures_[node];
-      Vector judged = Vector::Constant(robot_.dof(), kInfinite);
+      std::vector<Vector> way;
       const int steps = std::max(1, static_cast<int>(std::ceil(std::abs(end - middle) / (4 * settings_.period))));
       for (int k = 0; k <= steps; ++k) {
         const Vector active = corner.at(middle + (end - middle) * k / steps).position;
         const Pose T = motion_.path.pose_at(active, node);
-        if (!upright(T) || !advance(T, active[kTool], active.tail(active.size() - kElbow), q, judged)) return false;
+        const Vector also = active.tail(active.size() - kElbow);
+        if (!upright(T) || !advance(T, active[kTool], also, q)) return false;
+        way.push_back(whole(q, also));
       }
+      if (first_touching(way) < way.size()) return false;
     }
     return true;
   }
@@ -443,31 +485,41 @@ class CartesianPlanning {
     }
     const int steps = std::max(4, static_cast<int>(std::ceil(lasts / settings_.period - 1e-9)));
     ik::Axes q = RobotModel::part(request_.start, group_);
-    Vector judged = request_.start;
     const SegmentTable table(path.active_);
     MotionState3 state = path.active_.at(0);
     int cursor = 0;
-    for (int k = 0; k <= steps; ++k) {
-      const double t = k == steps ? lasts : std::min(lasts, k * settings_.period);
+    std::vector<Vector> postures;
+    const auto ahead = [&](double t) {
       const std::size_t node = path.node_at(t);
+      return given_[std::min(path.nodes_.size() - 1, path.middles_.empty() || node == 0 ? 1 : ahead_of(t, node))];
+    };
+    std::string why;
+    for (int k = 0; k <= steps && why.empty(); ++k) {
+      const double t = k == steps ? lasts : std::min(lasts, k * settings_.period);
       table.evaluate(t, cursor, state);
-      const Pose T = path.pose_at(state.position, node);
+      const Pose T = path.pose_at(state.position, path.node_at(t));
       const Vector also = state.position.tail(state.position.size() - kElbow);
-      const std::size_t ahead = std::min(path.nodes_.size() - 1, path.middles_.empty() || node == 0 ? 1 : ahead_of(t, node));
-      if (!upright(T)) {
-        end_before(given_[ahead], "on the way to " + of_node(given_[ahead]) + " what is held leans over too far");
-        return false;
-      }
-      if (!advance(T, state.position[kTool], also, q, judged)) {
-        end_before(given_[ahead], why_stopped(given_[ahead], T, state.position[kTool], also, q));
-        return false;
-      }
       times_.push_back(t);
-      Vector sample(static_cast<Eigen::Index>(motion_.axes.size()));
-      sample << q, also;
-      motion_.samples.push_back(std::move(sample));
+      if (!upright(T)) {
+        why = "on the way to " + of_node(ahead(t)) + " what is held leans over too far";
+      } else if (!advance(T, state.position[kTool], also, q)) {
+        why = why_stopped(ahead(t), T, state.position[kTool], also, q);
+      } else {
+        Vector sample(static_cast<Eigen::Index>(motion_.axes.size()));
+        sample << q, also;
+        motion_.samples.push_back(std::move(sample));
+        postures.push_back(whole(q, also));
+      }
     }
-    return true;
+    std::size_t last = times_.size() - 1;
+    if (const std::size_t touching = first_touching(postures); touching < postures.size()) {
+      last = touching;
+      const CollisionVerdict verdict = world_.check(postures[touching]);
+      why = "on the way to " + of_node(ahead(times_[last])) + " " + verdict.first + " touches " + verdict.second;
+    }
+    if (why.empty()) return true;
+    end_before(ahead(times_[last]), why);
+    return false;
   }
 
   std::size_t ahead_of(double t, std::size_t node) const {
@@ -480,11 +532,9 @@ class CartesianPlanning {
     const auto next = arm_->nearest(for_arm(T, also), elbow, q);
     if (!next) return way + (arm_->branches(for_arm(T, also), elbow).empty() ? " the arm does not reach" : " a joint meets its limit");
     Eigen::Index joint = 0;
-    if ((*next - q).cwiseAbs().maxCoeff(&joint) > settings_.largest_step)
-      return way + " joint " + robot_.axes()[static_cast<std::size_t>(group_.axes[static_cast<std::size_t>(joint)])].name +
-             " would jump: shoulder, elbow or wrist is stretched there";
-    const CollisionVerdict verdict = world_.check(whole(*next, also));
-    return way + " " + verdict.first + " touches " + verdict.second;
+    (*next - q).cwiseAbs().maxCoeff(&joint);
+    return way + " joint " + robot_.axes()[static_cast<std::size_t>(group_.axes[static_cast<std::size_t>(joint)])].name +
+           " would jump: shoulder, elbow or wrist is stretched there";
   }
 
   void approximated() {

@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 #include "tests/support/shell.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace handsel::test {
 namespace {
@@ -159,6 +163,104 @@ TEST(TrajectoryCommand, BadUsageIsOneSentence) {
   refused("trajectory sample --period 0", "--period");
   refused("trajectory sample --period soon", "--period");
   refused("trajectory", "subcommand");
+}
+
+/// Answers to a file of the examples, each line changed before.
+Answers ask_example(const std::string& arguments, const std::string& file, const std::function<void(json&)>& change = {}) {
+  std::ifstream in(std::string(HANDSEL_SOURCE_DIR) + "/examples/" + file);
+  std::string input;
+  for (std::string text; std::getline(in, text);) {
+    json line = json::parse(text);
+    if (change) change(line);
+    input += line.dump() + "\n";
+  }
+  return ask(arguments, input);
+}
+
+TEST(TrajectoryCommand, OnTheWayToTheCassetteTheCornerOverTheLidKeepsItsStop) {
+  const Answers with = ask_example("cartesian --robot jido", "cassette/cassette.jsonl");
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  ASSERT_EQ(with.lines.size(), 1u);
+  const json& way = with.lines[0];
+  ASSERT_TRUE(way.at("solved").get<bool>()) << way;
+  ASSERT_EQ(way.at("corners").size(), 2u);
+  EXPECT_EQ(way.at("corners")[0].at("method"), "stop");
+  EXPECT_NE(way.at("corners")[0].at("reason").get<std::string>().find("collides"), std::string::npos);
+  EXPECT_NE(way.at("corners")[1].at("method"), "stop");
+  const double saved = way.at("saved_s").get<double>();
+  EXPECT_GT(saved, 0.3);
+  EXPECT_NEAR(way.at("duration").get<double>(), way.at("duration_ptp").get<double>() - saved, 1e-9);
+  const Answers without = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
+    auto& things = line.at("obstacles");
+    things.erase(std::find_if(things.begin(), things.end(), [](const json& thing) { return thing.at("id") == "lid"; }));
+  });
+  ASSERT_EQ(without.lines.size(), 1u);
+  EXPECT_NE(without.lines[0].at("corners")[0].at("method"), "stop");
+  EXPECT_LT(without.lines[0].at("duration").get<double>(), way.at("duration").get<double>() - 0.3);
+}
+
+TEST(TrajectoryCommand, WhatTheToolCannotDoIsSaidAndTheWayBeforeItIsThere) {
+  const auto expect = [](const char* what, std::size_t reached, const std::function<void(json&)>& change) {
+    const Answers a = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [&](json& line) {
+      line.erase("obstacles");
+      line.at("nodes").erase(2);
+      change(line.at("nodes"));
+    });
+    ASSERT_EQ(a.lines.size(), 1u) << what;
+    const json& way = a.lines[0];
+    ASSERT_TRUE(way.contains("solved")) << way;
+    EXPECT_EQ(a.exit_code, 1) << what;
+    EXPECT_NE(way.at("reason").get<std::string>().find(what), std::string::npos) << way.at("reason");
+    EXPECT_EQ(way.at("reached"), reached) << what;
+    EXPECT_EQ(way.at("duration").get<double>() > 0.5, reached > 0) << what;
+  };
+  expect("out of reach", 1, [](json& nodes) { nodes[1]["p"][0] = 4; });
+  expect("half a turn", 1, [](json& nodes) {
+    const json q = nodes[0]["q"];  // turned by pi about its own z axis
+    nodes[1]["q"] = {q[1], -q[0].get<double>(), q[3], -q[2].get<double>()};
+  });
+  // Behind the shoulder: only through the stretched arm or on another branch.
+  expect("node 2", 1, [](json& nodes) {
+    nodes[1]["p"][0] = -nodes[0]["p"][0].get<double>();
+    nodes[1]["p"][1] = -0.6;
+  });
+  // Equal nodes, and one where the tool is, are no motion.
+  const Answers same = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [](json& line) {
+    line.erase("obstacles");
+    json& nodes = line.at("nodes");
+    nodes = {nodes[0], nodes[0], nodes[1], nodes[1]};
+  });
+  ASSERT_EQ(same.lines.size(), 1u);
+  EXPECT_TRUE(same.lines[0].at("solved").get<bool>());
+  EXPECT_EQ(same.lines[0].at("reached"), 4);
+  EXPECT_EQ(same.lines[0].at("corners").size(), 1u);
+}
+
+TEST(TrajectoryCommand, BesidePeopleTheSpeedFollowsTheCostOfTheWay) {
+  const TemporaryFolder folder;
+  const std::string svg = (folder.path() / "sweep.svg").string();
+  const Answers a = ask_example("timed --robot jido --svg " + svg, "beside_people/sweep.jsonl");
+  EXPECT_EQ(a.exit_code, 0) << a.err;
+  ASSERT_EQ(a.lines.size(), 3u);
+  std::vector<double> slowest;  // middle of the slowest zone
+  for (const json& way : a.lines) {
+    EXPECT_TRUE(way.at("solved").get<bool>());
+    double begin = 0, least = 2, middle = 0;
+    for (const json& zone : way.at("speeds")[0]) {
+      if (zone[1].get<double>() < least) {
+        least = zone[1].get<double>();
+        middle = 0.5 * (begin + zone[0].get<double>());
+      }
+      begin = zone[0].get<double>();
+    }
+    EXPECT_LT(least, 0.9);
+    slowest.push_back(middle);
+  }
+  EXPECT_LT(slowest[0], slowest[2] - 0.3);
+  std::ifstream drawn(svg), kept(HANDSEL_SOURCE_DIR "/docs/figures/speed_beside_people.svg");
+  const std::string text((std::istreambuf_iterator<char>(drawn)), {}), shipped((std::istreambuf_iterator<char>(kept)), {});
+  EXPECT_EQ(text, shipped) << "docs/figures/speed_beside_people.svg is not what examples/beside_people draws";
+  EXPECT_EQ(ask("timed --robot jido", R"({"nodes": [{"nose": 1}]})").exit_code, 2);
 }
 
 }  // namespace
