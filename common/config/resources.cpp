@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/config/described.hpp"
+#include "common/config/located.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;
@@ -89,12 +90,46 @@ fs::path resource(const std::string& relative) {
   return file;
 }
 
-void load_text_proto(const fs::path& file, google::protobuf::Message& out) {
-  const std::string text = read_file(file);
+namespace {
+
+void parse(const std::string& text, const std::string& name, google::protobuf::Message& out,
+           google::protobuf::TextFormat::ParseInfoTree* places) {
   FirstError error;
   google::protobuf::TextFormat::Parser parser;
   parser.RecordErrorsTo(&error);
-  if (!parser.ParseFromString(text, &out)) throw ConfigError(file.string() + ":" + error.text);
+  if (places != nullptr) parser.WriteLocationsTo(places);
+  if (!parser.ParseFromString(text, &out)) throw ConfigError(name + ":" + error.text);
+}
+
+}  // namespace
+
+void load_text_proto(const fs::path& file, google::protobuf::Message& out) { parse(read_file(file), file.string(), out, nullptr); }
+
+void load_text_proto(const fs::path& file, google::protobuf::Message& out, google::protobuf::TextFormat::ParseInfoTree& places) {
+  parse(read_file(file), file.string(), out, &places);
+}
+
+void parse_text_proto(const std::string& text, const std::string& name, google::protobuf::Message& out,
+                      google::protobuf::TextFormat::ParseInfoTree& places) {
+  parse(text, name, out, &places);
+}
+
+TextPlace TextPlace::inside(const std::string& field, int index) const {
+  const auto* descriptor = type_ != nullptr ? type_->FindFieldByName(field) : nullptr;
+  if (descriptor == nullptr) return {file_, nullptr, nullptr};
+  return {file_, tree_ != nullptr ? tree_->GetTreeForNested(descriptor, descriptor->is_repeated() ? index : -1) : nullptr,
+          descriptor->message_type()};
+}
+
+std::string TextPlace::of(const std::string& field, int index) const {
+  const auto* descriptor = type_ != nullptr ? type_->FindFieldByName(field) : nullptr;
+  int line = -1;
+  if (tree_ != nullptr && descriptor != nullptr) {
+    line = tree_->GetLocation(descriptor, descriptor->is_repeated() ? index : -1).line;
+    if (line < 0 && descriptor->is_repeated())
+      line = tree_->GetLocation(descriptor, 0).line;  // of a list in brackets only the first is known
+  }
+  return file_ + (line < 0 ? "" : ":" + std::to_string(line + 1)) + ":" + field;
 }
 
 std::string locate(const fs::path& file, const std::string& text) {

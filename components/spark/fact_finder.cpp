@@ -35,17 +35,10 @@ FactFinder::FactFinder(const config::SparkSettings& settings, std::shared_ptr<co
       robot_(std::move(robot)),
       library_(std::move(objects)),
       capsules_(robot_capsules(*robot_)),
+      reach_(arm_reach(*robot_)),
       exchange_(settings),
       lasting_(settings.fact_dwell()),
-      instant_(0) {
-  // The arm from the tool back to its first moving joint: the shoulder is where the chain begins.
-  for (int link = robot_->tool_link(); link > 0;) {
-    const Joint& joint = robot_->joints()[static_cast<std::size_t>(robot_->links()[static_cast<std::size_t>(link)].parent_joint)];
-    if (joint.kind != JointKind::fixed) shoulder_ = link;
-    reach_ += joint.T_parent_joint.translation().norm();
-    link = joint.parent;
-  }
-}
+      instant_(0) {}
 
 int FactFinder::zone_level(Zone& zone, double distance, TimePoint now) const {
   int level = 0;
@@ -160,10 +153,10 @@ void FactFinder::thing_facts(const Scene& scene, const HumanState& people, std::
                    evidence("at %.2f m/s", speed)});
     if (object.holder == Holder::surface)
       out.push_back({FactKind::on_surface, object.id, object.holder_id, 1, true, true, "its bottom on the top of " + object.holder_id});
-    if (scene.robot_known && shoulder_ >= 0) {
-      const double away = (where - scene.T_world_base * links_[static_cast<std::size_t>(shoulder_)].translation()).norm();
-      out.push_back({FactKind::reachable_by_robot, object.id, "", away, away < 0.95 * reach_, away < reach_,
-                     evidence("%.2f m from the shoulder of an arm of %.2f m", away, reach_)});
+    if (scene.robot_known && reach_.shoulder >= 0) {
+      const double away = (where - scene.T_world_base * links_[static_cast<std::size_t>(reach_.shoulder)].translation()).norm();
+      out.push_back({FactKind::reachable_by_robot, object.id, "", away, away < 0.95 * reach_.length, away < reach_.length,
+                     evidence("%.2f m from the shoulder of an arm of %.2f m", away, reach_.length)});
     }
     for (const Person& person : people.people) {
       const bool reach = within_reach(person, where);

@@ -12,6 +12,7 @@
 #include "common/config/spark.pb.h"
 #include "common/geometry/line_of_sight.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/arm_reach.hpp"
 #include "common/model/robot_capsules.hpp"
 #include "components/spark/exchange_facts.hpp"
 #include "components/spark/fact_memory.hpp"
@@ -50,8 +51,7 @@ class FactFinder {
   std::vector<LinkCapsule> capsules_;
   std::vector<Pose> links_;
   std::vector<Extent> extents_;  // of the scene's objects
-  double reach_{};               // shoulder to tool [m]
-  int shoulder_{-1};
+  ArmReach reach_;
   std::map<std::string, Zone> zones_;
   ExchangeFacts exchange_;
   FactMemory lasting_, instant_;  // what is judged here; what was judged with a memory of its own

@@ -1,6 +1,7 @@
 #include "components/supervisor/node.hpp"
 
 #include "common/config/resources.hpp"
+#include "common/config/robot.pb.h"
 
 namespace handsel::supervisor {
 namespace {
@@ -11,7 +12,24 @@ config::SupervisorSettings load_settings(const NodeContext& context) {
   if (s.period() <= 0 || s.go_period() <= 0 || s.health_timeout() <= 0)
     throw ConfigError("supervisor.txtpb: period, go_period and health_timeout must be > 0");
   if (s.speed_override() <= 0 || s.speed_override() > 1) throw ConfigError("supervisor.txtpb: speed_override must be in (0, 1]");
+  if (s.domain().empty()) throw ConfigError("supervisor.txtpb: domain must name the file of the task domain, e.g. \"tasks.txtpb\"");
+  if (s.plan_nodes() == 0 || s.plan_depth() == 0 || s.spot() <= 0)
+    throw ConfigError("supervisor.txtpb: plan_nodes, plan_depth and spot must be > 0");
   return s;
+}
+
+Ability ability_of(const config::SupervisorSettings& settings, const NodeContext& context) {
+  Ability ability;
+  ability.spot = settings.spot();
+  ability.objects = context.objects;
+  if (context.robot == nullptr) return ability;
+  if (const auto it = settings.payload().find(context.robot->name()); it != settings.payload().end()) ability.payload = it->second;
+  ability.reach = arm_reach(*context.robot).length;
+  if (context.description.empty()) return ability;
+  config::RobotDescription description;
+  load_text_proto(context.description, description);
+  ability.hands = 1 + description.other_arms_size();
+  return ability;
 }
 
 }  // namespace
@@ -19,13 +37,22 @@ config::SupervisorSettings load_settings(const NodeContext& context) {
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       settings_(load_settings(context)),
-      core_(settings_, static_cast<std::uint64_t>(bus.stamp_now())),
+      robot_(context.robot),
+      core_(settings_, load_domain(context.settings / settings_.domain()), ability_of(settings_, context),
+            static_cast<std::uint64_t>(bus.stamp_now())),
       action_out_(bus.advertise<ActionGoal>()),
       status_out_(bus.advertise<TaskStatus>()),
       go_out_(bus.advertise<Go>()) {
   feed<TaskGoal>();
   feed<Facts>();
+  bus.subscribe<Scene>([this](const Scene& scene, const Receipt& receipt) {
+    const int shoulder = robot_ != nullptr ? arm_reach(*robot_).shoulder : -1;
+    if (shoulder >= 0 && scene.robot_known)
+      core_.set_shoulder((scene.T_world_base * robot_->link_pose(scene.robot_position, shoulder)).translation());
+    core_.on(scene, receipt.arrival);
+  });
   feed<ActionStatus>();
+  feed<AttentionAdvice>();
   feed<ComponentHealth>();
   feed<ExecutionStatus>();
   bus.set_degraded("the state of the world is not known yet");

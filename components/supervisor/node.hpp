@@ -5,6 +5,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
+#include "common/model/arm_reach.hpp"
 #include "components/supervisor/supervisor.hpp"
 
 namespace handsel::supervisor {
@@ -20,6 +21,7 @@ class Node {
 
   Bus& bus_;
   config::SupervisorSettings settings_;
+  std::shared_ptr<const RobotModel> robot_;
   Supervisor core_;
   std::unique_ptr<Publisher<ActionGoal>> action_out_;
   std::unique_ptr<Publisher<TaskStatus>> status_out_;

@@ -6,14 +6,14 @@ namespace handsel::supervisor {
 namespace {
 
 constexpr std::size_t kRememberedGoals = 256;
-constexpr std::size_t kMostRefusals = 64;
+constexpr double kOrphanPatience = 5.0;  // [s]
 
 bool is_control(TaskKind kind) { return kind >= TaskKind::pause; }
 
 }  // namespace
 
-Supervisor::Supervisor(const config::SupervisorSettings& settings, std::uint64_t first_action)
-    : settings_(settings), permission_(settings), next_action_(first_action) {}
+Supervisor::Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action)
+    : settings_(settings), domain_(std::move(domain)), permission_(settings), situation_(std::move(ability)), next_action_(first_action) {}
 
 void Supervisor::on(const TaskGoal& goal, TimePoint) {
   if (std::find(known_goals_.begin(), known_goals_.end(), goal.id) != known_goals_.end()) return;
@@ -27,44 +27,39 @@ void Supervisor::refuse(const TaskGoal& goal, const std::string& reason, Outbox&
   status.id = goal.id;
   status.kind = goal.kind;
   status.state = TaskState::refused;
-  status.reason = reason;
+  status.reason = reason.substr(0, 256);
   out.task_statuses.push_back(status);
   if (!task_) last_ = status;
 }
 
-void Supervisor::begin(const TaskGoal& goal, TimePoint now, Outbox& out) {
-  if (task_) return refuse(goal, "busy with task " + std::to_string(task_->status.id) + "; cancel it first", out);
-  if (!facts_) return refuse(goal, "the state of the world is not known yet", out);
-  TaskPlan plan = plan_task(goal, *facts_);
-  if (!plan.reason.empty()) return refuse(goal, plan.reason, out);
-  Task task;
-  task.goal = goal;
-  task.accepted = now;
-  task.status.id = goal.id;
-  task.status.kind = goal.kind;
-  task.status.state = TaskState::running;
-  for (const auto& action : plan.actions) task.status.plan.push_back(action.text());
-  if (plan.needs_person)
-    task.status.phase = "looking for somebody";
-  else
-    task.actions = std::move(plan.actions);
-  for (const auto& fact : facts_->facts)
-    if (fact.kind == FactKind::on_surface && fact.subject == goal.object) task.home = fact.object;
+/// False: it cannot be said yet.
+bool Supervisor::begin(const TaskGoal& goal, TimePoint now, Outbox& out) {
+  if (task_) {
+    refuse(goal, "the robot is busy: " + text_of(task_->goal()) + "; wait for its end or cancel it first", out);
+    return true;
+  }
+  if (!situation_.known()) {
+    refuse(goal, "the state of the world is not known yet", out);
+    return true;
+  }
+  auto task = std::make_unique<TaskRun>(settings_, domain_, situation_, goal, now);
+  switch (task->start(now)) {
+    case TaskRun::Start::unsure:
+      return false;
+    case TaskRun::Start::refused:
+      refuse(goal, task->status().reason, out);
+      return true;
+    case TaskRun::Start::begun:
+      break;
+  }
   task_ = std::move(task);
   report(out);
+  return true;
 }
 
-void Supervisor::look_for_person(TimePoint now, Outbox& out) {
-  TaskPlan plan = plan_task(task_->goal, *facts_);
-  if (plan.needs_person) {
-    if (to_seconds(now - task_->accepted) >= settings_.person_timeout())
-      finish(TaskState::failed, "nobody is in sight to give " + task_->goal.object + " to", out);
-    return;
-  }
-  if (!plan.reason.empty()) return finish(TaskState::failed, plan.reason, out);
-  task_->status.plan.clear();
-  for (const auto& action : plan.actions) task_->status.plan.push_back(action.text());
-  task_->actions = std::move(plan.actions);
+void Supervisor::pause(bool paused) {
+  permission_.pause(paused);
+  if (task_) task_->pause(paused);
 }
 
 void Supervisor::control(const TaskGoal& goal, Outbox& out) {
@@ -72,24 +67,19 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
   done.id = goal.id;
   done.kind = goal.kind;
   done.state = TaskState::succeeded;
+  TaskWishes wishes;
   switch (goal.kind) {
     case TaskKind::pause:
     case TaskKind::resume:
-      permission_.pause(goal.kind == TaskKind::pause);
-      if (task_) {
-        task_->status.state = goal.kind == TaskKind::pause ? TaskState::paused : TaskState::running;
-        report(out);
-      }
+      pause(goal.kind == TaskKind::pause);
+      paused_by_attention_ = false;
+      report(out);
       break;
     case TaskKind::cancel:
       if (!task_) return refuse(goal, "there is no task to cancel", out);
-      if (task_->begun) {
-        ActionGoal stop;
-        stop.id = task_->action;
-        stop.cancel = true;
-        out.action_goals.push_back(stop);
-      }
-      finish(TaskState::cancelled, "cancelled on request", out);
+      task_->cancel(wishes);
+      out.action_goals.insert(out.action_goals.end(), wishes.action_goals.begin(), wishes.action_goals.end());
+      report(out);
       break;
     case TaskKind::acknowledge:
       permission_.acknowledge();
@@ -103,82 +93,79 @@ void Supervisor::control(const TaskGoal& goal, Outbox& out) {
   out.task_statuses.push_back(done);
 }
 
+/// What attention wants of the task, once each time it begins to want it.
+void Supervisor::heed(TimePoint now, TaskWishes& wishes) {
+  if (!task_ || advice_.change == heeded_) {
+    if (!task_) heeded_ = TaskChange::none;
+    return;
+  }
+  switch (advice_.change) {
+    case TaskChange::none:
+      break;
+    case TaskChange::suspend:
+      if (task_->status().state != TaskState::running) break;
+      pause(true);
+      paused_by_attention_ = wishes.changed = true;
+      break;
+    case TaskChange::resume:
+      if (!std::exchange(paused_by_attention_, false)) break;
+      pause(false);
+      wishes.changed = true;
+      break;
+    case TaskChange::abort:
+      task_->abort(advice_.person.empty() ? "given up for people's sake" : "given up because of " + advice_.person, now, wishes);
+      break;
+    case TaskChange::give:
+      if (!task_->give_instead(advice_.person, now, wishes)) return;  // perhaps soon
+      break;
+  }
+  heeded_ = advice_.change;
+}
+
+/// This process was started anew while an action ran, and nobody asks for its task again.
+void Supervisor::look_for_orphan(TimePoint now, Outbox& out) {
+  const auto& action = situation_.action();
+  const bool orphan = !task_ && inbox_.empty() && action && action->state == ActionState::running && action->task != 0 &&
+                      std::find(known_goals_.begin(), known_goals_.end(), action->task) == known_goals_.end() &&
+                      !orphans_.contains(action->task);
+  if (!orphan) return orphan_since_.reset();
+  if (!orphan_since_) orphan_since_ = now;
+  if (to_seconds(now - *orphan_since_) < kOrphanPatience) return;
+  orphans_.insert(action->task);
+  TaskStatus status;
+  status.id = action->task;
+  status.state = TaskState::failed;
+  status.reason = "the supervisor was started anew while this task ran, and nobody asked for it again; its last action runs to its end";
+  out.task_statuses.push_back(status);
+  last_ = status;
+}
+
 void Supervisor::report(Outbox& out) {
-  if (task_) out.task_statuses.push_back(task_->status);
-}
-
-void Supervisor::finish(TaskState state, const std::string& reason, Outbox& out) {
-  task_->status.state = state;
-  task_->status.reason = reason;
-  report(out);
-  last_ = task_->status;
+  if (!task_) return;
+  out.task_statuses.push_back(task_->status());
+  if (!task_->over()) return;
+  last_ = task_->status();
   task_.reset();
-}
-
-void Supervisor::action_ended(Outbox& out) {
-  Task& task = *task_;
-  for (const auto& refusal : action_->refusals)
-    if (task.status.refusals.size() < kMostRefusals) task.status.refusals.push_back(refusal);
-  task.begun = false;
-  const bool good = action_->state == ActionState::succeeded;
-  if (!good) {
-    const PlannedAction failed = task.actions[task.status.step];
-    const bool recovering = !task.failure.empty();
-    if (!recovering) task.failure = failed.text() + ": " + action_->reason;
-    task.actions.resize(task.status.step + 1);
-    task.status.plan.resize(task.status.step + 1);
-    if (!recovering) {
-      for (const auto& action : recover(failed, action_->holding, task.home)) {
-        task.actions.push_back(action);
-        task.status.plan.push_back(action.text());
-      }
-    }
-  }
-  if (task.status.step + 1 < task.actions.size()) {
-    ++task.status.step;
-    task.status.phase.clear();
-    report(out);
-    return;
-  }
-  finish(task.failure.empty() ? TaskState::succeeded : TaskState::failed, task.failure, out);
-}
-
-void Supervisor::advance(TimePoint now, Outbox& out) {
-  Task& task = *task_;
-  if (task.status.state == TaskState::paused) return;
-  if (task.actions.empty()) return look_for_person(now, out);
-  if (!task.begun) {
-    if (!permission_.missing().empty()) return;
-    task.begun = true;
-    task.action = ++next_action_;
-    task.sent = {};
-  }
-  if (action_ && action_->id == task.action) {
-    if (action_->state != ActionState::running) return action_ended(out);
-    if (task.status.phase != action_->phase) {
-      task.status.phase = action_->phase;
-      report(out);
-    }
-    return;
-  }
-  if (to_seconds(now - task.sent) < settings_.goal_retry()) return;
-  const PlannedAction& action = task.actions[task.status.step];
-  ActionGoal goal;
-  goal.id = task.action;
-  goal.task = task.status.id;
-  goal.epoch = sent_go_.epoch;
-  goal.kind = action.kind;
-  goal.object = action.object;
-  goal.human = action.human;
-  goal.surface = action.surface;
-  out.action_goals.push_back(goal);
-  task.sent = now;
 }
 
 void Supervisor::step(TimePoint now, Outbox& out) {
   const Go& go = permission_.step(now);
-  for (const auto& goal : std::exchange(inbox_, {})) is_control(goal.kind) ? control(goal, out) : begin(goal, now, out);
-  if (task_) advance(now, out);
+  std::vector<TaskGoal> later;
+  for (const auto& goal : std::exchange(inbox_, {})) {
+    if (is_control(goal.kind))
+      control(goal, out);
+    else if (!begin(goal, now, out))
+      later.push_back(goal);
+  }
+  inbox_ = std::move(later);
+  TaskWishes wishes;
+  heed(now, wishes);
+  if (task_) {
+    task_->step(now, permission_.missing().empty(), sent_go_.epoch, next_action_, wishes);
+    out.action_goals.insert(out.action_goals.end(), wishes.action_goals.begin(), wishes.action_goals.end());
+    if (wishes.changed || task_->over()) report(out);
+  }
+  look_for_orphan(now, out);
 
   const bool changed = go.epoch != sent_go_.epoch || go.allowed != sent_go_.allowed || go.override_factor != sent_go_.override_factor;
   if (changed || to_seconds(now - go_sent_) >= 0.99 * settings_.go_period()) {

@@ -2,16 +2,19 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "common/base/time.hpp"
 #include "common/config/supervisor.pb.h"
+#include "common/messages/attention.hpp"
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
 #include "components/supervisor/permission.hpp"
-#include "components/supervisor/task_planner.hpp"
+#include "components/supervisor/task_run.hpp"
 
 namespace handsel::supervisor {
 
@@ -24,51 +27,46 @@ struct Outbox {
 class Supervisor {
  public:
   /// `first_action`: ids of action goals grow from here; unique over restarts.
-  Supervisor(const config::SupervisorSettings& settings, std::uint64_t first_action);
+  Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action);
 
   void on(const TaskGoal& goal, TimePoint arrival);
-  void on(const Facts& facts, TimePoint) { facts_ = facts; }
-  void on(const ActionStatus& status, TimePoint) { action_ = status; }
+  void on(const Facts& facts, TimePoint arrival) { situation_.on(facts, arrival); }
+  void on(const Scene& scene, TimePoint arrival) { situation_.on(scene, arrival); }
+  void on(const ActionStatus& status, TimePoint) { situation_.on(status); }
   void on(const ComponentHealth& health, TimePoint arrival) { permission_.on(health, arrival); }
   void on(const ExecutionStatus& status, TimePoint arrival) { permission_.on(status, arrival); }
+  void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }
+  void set_shoulder(const Vector3& shoulder) { situation_.set_shoulder(shoulder); }
 
-  /// Facts have come: tasks can be judged.
-  bool knows_world() const { return facts_.has_value(); }
+  /// Scene and facts have come: tasks can be judged.
+  bool knows_world() const { return situation_.known(); }
   void step(TimePoint now, Outbox& out);
 
  private:
-  struct Task {
-    TaskGoal goal;
-    TimePoint accepted{};
-    TaskStatus status;
-    std::vector<PlannedAction> actions;  // none while somebody to give to is looked for
-    std::string home;                    // surface the object came from
-    std::string failure;                 // set once an action failed; what is left only recovers
-    bool begun{false};                   // the current action was sent
-    std::uint64_t action{};
-    TimePoint sent{};
-  };
-  void begin(const TaskGoal& goal, TimePoint now, Outbox& out);
-  void look_for_person(TimePoint now, Outbox& out);
+  bool begin(const TaskGoal& goal, TimePoint now, Outbox& out);
   void refuse(const TaskGoal& goal, const std::string& reason, Outbox& out);
   void control(const TaskGoal& goal, Outbox& out);
-  void advance(TimePoint now, Outbox& out);
-  void action_ended(Outbox& out);
+  void heed(TimePoint now, TaskWishes& wishes);
+  void look_for_orphan(TimePoint now, Outbox& out);
+  void pause(bool paused);
   void report(Outbox& out);
-  void finish(TaskState state, const std::string& reason, Outbox& out);
 
   config::SupervisorSettings settings_;
+  Domain domain_;
   Permission permission_;
+  Situation situation_;
   std::uint64_t next_action_;
   std::vector<TaskGoal> inbox_;
-  std::optional<Facts> facts_;
-  std::optional<ActionStatus> action_;
-  std::optional<Task> task_;
+  std::unique_ptr<TaskRun> task_;
   std::optional<TaskStatus> last_;
   std::vector<std::uint64_t> known_goals_;
+  AttentionAdvice advice_;
+  TaskChange heeded_{TaskChange::none};
+  bool paused_by_attention_{false};
+  std::set<std::uint64_t> orphans_;  // told of
+  std::optional<TimePoint> orphan_since_;
   TimePoint go_sent_{}, status_sent_{};
   Go sent_go_;
-  std::string phase_;
 };
 
 }  // namespace handsel::supervisor

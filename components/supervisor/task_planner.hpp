@@ -1,31 +1,29 @@
-// From a goal and the facts to actions. Pure.
+// From a goal of a person to a task of the domain, or to the reason why it is refused. Pure.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "common/messages/task.hpp"
-#include "common/messages/world.hpp"
+#include "components/supervisor/htn.hpp"
 
 namespace handsel::supervisor {
 
-struct PlannedAction {
-  ActionKind kind{};
-  std::string object, human, surface;
-  std::string text() const;  ///< "give mug to anna"
+/// A goal in terms of the domain.
+struct TaskQuery {
+  int task{-1};
+  std::vector<std::string> args;
+  std::string reason;        ///< why it is refused, and what would make it possible; empty: it is not
+  std::string unseen;        ///< a thing or a person that is named and not seen; empty: all are
+  bool needs_person{false};  ///< somebody is meant and nobody is there
 };
 
-struct TaskPlan {
-  std::vector<PlannedAction> actions;
-  std::string reason;        ///< why the goal cannot be pursued; empty when it can
-  bool needs_person{false};  ///< somebody is meant and nobody is there yet
-};
+/// "give mug to anna", "take what anna offers", ...
+std::string text_of(const TaskGoal& goal);
 
-/// Starts from what is already so: an object in the robot's hand is not picked again.
-TaskPlan plan_task(const TaskGoal& goal, const Facts& facts);
+TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world, const Scene& scene);
 
-/// What is left to do when `failed` failed: the robot does not stand there with an object in its hand. `home` is the surface the object
-/// came from.
-std::vector<PlannedAction> recover(const PlannedAction& failed, bool holding, const std::string& home);
+/// Before anything is done: it is so already; empty: it is not.
+std::string already(const TaskGoal& goal);
 
 }  // namespace handsel::supervisor

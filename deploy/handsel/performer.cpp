@@ -20,7 +20,8 @@ std::string describe(const TaskGoal& goal) {
   std::string text = name(goal.kind);
   if (!goal.object.empty()) text += " " + goal.object;
   if (!goal.surface.empty()) text += " " + goal.surface;
-  if (!goal.human.empty()) text += " to " + goal.human;
+  if (!goal.human.empty()) text += (goal.kind == TaskKind::receive ? " from " : " to ") + goal.human;
+  if (!goal.onto.empty()) text += " onto " + goal.onto;
   return text;
 }
 
@@ -101,13 +102,14 @@ void Performer::note_step(const TaskStatus& status, TimePoint now) {
 void Performer::follow(TimePoint now) {
   const auto& tasks = observer_.snapshot().tasks;
   const auto found = tasks.find(goals_[current_].id);
-  if (found == tasks.end()) {
-    if (now - last_sent_ >= kResend) {
-      publisher_->publish(goals_[current_]);
-      last_sent_ = now;
-    }
-    return;
+  // Until a supervisor answers; and one that was started anew knows nothing of the task, and takes it up where the world is.
+  const Seen<TaskStatus>& newest = observer_.snapshot().task;
+  const bool silent = found == tasks.end() || now - newest.arrival >= kTaskSilence;
+  if (silent && now - last_sent_ >= kResend) {
+    publisher_->publish(goals_[current_]);
+    last_sent_ = now;
   }
+  if (found == tasks.end()) return;
   const TaskStatus& status = found->second;
   note_step(status, now);
   TaskOutcome& outcome = outcomes_.back();

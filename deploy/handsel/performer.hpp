@@ -10,6 +10,9 @@
 
 namespace handsel {
 
+/// Without a word about a task for so long its goal is sent again: the supervisor tells it more often, one goal twice is one task.
+inline constexpr Duration kTaskSilence = std::chrono::seconds(2);
+
 /// "give mug to anna"
 std::string describe(const TaskGoal& goal);
 /// The scenario's task as a goal; throws ConfigError for a kind that is none.

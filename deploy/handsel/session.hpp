@@ -32,6 +32,8 @@ class Session {
   void require_system();
   /// Publishes a goal as soon as a supervisor listens; false when none did within 1 s.
   bool send(const TaskGoal& goal);
+  /// Publishes a goal to who listens now.
+  bool publish(const TaskGoal& goal) { return goals_->publish(goal); }
   std::uint64_t new_task_id();
 
  private:

@@ -134,14 +134,26 @@ void StoryRunner::send_task(const StoryStep& step) {
   config::TaskDescription task;
   task.set_kind(step.words[0] == "goto" ? "go_to" : step.words[0]);
   std::size_t i = 1;
-  if (i < step.words.size()) (task.kind() == "go_to" ? task.set_surface(step.words[i]) : task.set_object(step.words[i])), ++i;
+  const bool of_a_place = task.kind() == "go_to" || task.kind() == "clear";
+  if (i < step.words.size()) (of_a_place ? task.set_surface(step.words[i]) : task.set_object(step.words[i])), ++i;
   for (; i + 1 < step.words.size(); i += 2) {
     if (step.words[i] == "to" || step.words[i] == "from") task.set_human(step.words[i + 1]);
     if (step.words[i] == "on") task.set_surface(step.words[i + 1]);
   }
   task_id_ = system_->session().new_task_id();
-  if (!system_->session().send(make_goal(task, task_id_))) throw Unfulfilled{"the supervisor does not listen"};
-  task_time_ = origin_ = now();
+  goal_ = make_goal(task, task_id_);
+  if (!system_->session().send(goal_)) throw Unfulfilled{"the supervisor does not listen"};
+  task_time_ = origin_ = goal_sent_ = now();
+}
+
+/// A supervisor that was started anew is told the task again.
+void StoryRunner::remind() {
+  const Snapshot& snapshot = system_->session().snapshot();
+  const auto task = snapshot.tasks.find(task_id_);
+  if (task_id_ == 0 || task == snapshot.tasks.end() || is_over(task->second.state)) return;
+  if (now() - snapshot.task.arrival < kTaskSilence || now() - goal_sent_ < kTaskSilence) return;
+  system_->session().publish(goal_);
+  goal_sent_ = now();
 }
 
 void StoryRunner::send_control(const StoryStep& step) {
@@ -204,6 +216,7 @@ void StoryRunner::await(const StoryStep& step) {
     system_->wait(std::max(deadline - now(), Duration::zero()) + from_seconds(0.05), [&] {
       look(system_->session().snapshot(), now());
       wake_due();
+      remind();
       return watch->held || now() > deadline + from_seconds(0.03);
     });
     if (!watch->held) throw Unfulfilled{"it did not hold within " + seconds(step.limit)};
@@ -219,6 +232,7 @@ void StoryRunner::refute(const StoryStep& step) {
   system_->wait(std::max(deadline - now(), Duration::zero()), [&] {
     look(system_->session().snapshot(), now());
     wake_due();
+    remind();
     return watch->held || now() > deadline;
   });
   if (watch->held && watch->first <= deadline) throw Unfulfilled{"it happened after " + seconds(watch->first - origin_)};
@@ -328,6 +342,7 @@ void StoryRunner::listen_until(TimePoint until) {
   if (!system_) return;
   system_->wait(std::max(until - now(), Duration::zero()), [this] {
     wake_due();
+    remind();
     return false;
   });
 }

@@ -36,6 +36,7 @@ class StoryRunner {
   void perform(std::size_t index);  ///< throws Unfulfilled
   void start(const StoryStep& step);
   void send_task(const StoryStep& step);
+  void remind();
   void send_control(const StoryStep& step);
   void send_sim(const StoryStep& step);
   void signal_process(const std::string& process, int signal);
@@ -61,6 +62,8 @@ class StoryRunner {
   std::vector<Watch> watches_;
   TimePoint origin_{}, task_time_{}, story_begin_{};
   std::uint64_t task_id_{0};
+  TaskGoal goal_;  // of the last task
+  TimePoint goal_sent_{};
   std::map<std::string, std::uint64_t> killed_;    ///< incarnation a killed process had
   std::multimap<TimePoint, std::string> to_wake_;  ///< silenced processes by when they go on
 };

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <set>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -15,7 +17,62 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kAnswerPatience = std::chrono::seconds(3);
+constexpr Duration kAnswerPatience = std::chrono::seconds(4);  // the supervisor gives a thing that is named two seconds to be seen
+
+/// The plan as a tree, one line a task or an action.
+std::string tree_text(const std::vector<PlanStep>& tree) {
+  constexpr std::array kMarks = {"[ ] ", "[>] ", "[x] ", "[!] ", "[-] "};
+  std::string out;
+  for (const PlanStep& step : tree) {
+    out += std::string(2 * step.depth, ' ') + kMarks[static_cast<std::size_t>(step.state)] + step.text;
+    if (step.depth > 0 && !step.reason.empty()) out += " (" + step.reason + ")";
+    out += "\n";
+  }
+  return out;
+}
+
+/// Shows the tree on stderr whenever it changes, under what else happens: in place on a terminal, else only lines that are new.
+class TreeView {
+ public:
+  void show(const TaskStatus& status) {
+    const std::string text = tree_text(status.tree);
+    if (text == shown_) return;
+    erase();
+    shown_ = text;
+    draw();
+  }
+  void tell(const std::string& event) {
+    if (event.starts_with("task ")) return;  // the tree shows it
+    erase();
+    std::fprintf(stderr, "%s\n", event.c_str());
+    if (in_place_) draw();
+  }
+
+ private:
+  void erase() const {
+    const auto lines = std::count(shown_.begin(), shown_.end(), '\n');
+    if (in_place_ && lines > 0) std::fprintf(stderr, "\033[%dA\033[J", static_cast<int>(lines));
+  }
+  void draw() {
+    if (in_place_) {
+      std::fprintf(stderr, "%s", shown_.c_str());
+      return;
+    }
+    std::istringstream lines(shown_);
+    for (std::string line; std::getline(lines, line);)
+      if (told_.insert(line).second) std::fprintf(stderr, "%s\n", line.c_str());
+  }
+  const bool in_place_{progress_wanted()};
+  std::string shown_;
+  std::set<std::string> told_;
+};
+
+nlohmann::json tree_json(const std::vector<PlanStep>& tree) {
+  nlohmann::json out = nlohmann::json::array();
+  for (const PlanStep& step : tree)
+    out.push_back({{"text", step.text}, {"depth", step.depth}, {"state", name(step.state)}, {"reason", step.reason}});
+  return out;
+}
 
 struct TaskOptions {
   int domain{0};
@@ -30,14 +87,25 @@ int perform(const TaskOptions& options) {
   session.require_system();
   TaskGoal goal = options.goal;
   goal.id = session.new_task_id();
-  session.observer().on_event([](const TimelineEvent& event) { std::fprintf(stderr, "%s\n", event.text.c_str()); });
   if (!session.send(goal))
     throw MissingError("nobody on DDS domain " + std::to_string(options.domain) + " takes tasks: the supervisor is not there");
   const auto status = [&]() -> const TaskStatus* {
     const auto found = session.snapshot().tasks.find(goal.id);
     return found == session.snapshot().tasks.end() ? nullptr : &found->second;
   };
-  const auto over = [&] { return status() && is_over(status()->state); };
+  TreeView view;
+  session.observer().on_event([&view](const TimelineEvent& event) { view.tell(event.text); });
+  TimePoint sent = session.bus().now();
+  const auto over = [&] {
+    if (status()) view.show(*status());
+    // A supervisor that was started anew is told again; it takes the task up where the world is.
+    const TimePoint now = session.bus().now();
+    if (status() && !is_over(status()->state) && now - session.snapshot().task.arrival >= kTaskSilence && now - sent >= kTaskSilence) {
+      session.publish(goal);
+      sent = now;
+    }
+    return status() && is_over(status()->state);
+  };
   if (!session.wait(kAnswerPatience, [&] { return status() != nullptr; }) && !interrupted()) {
     throw MissingError("the supervisor did not answer the task within " + std::to_string(static_cast<int>(to_seconds(kAnswerPatience))) +
                        " s");
@@ -51,7 +119,12 @@ int perform(const TaskOptions& options) {
   const std::string state = status() ? name(status()->state) : "unanswered";
   const std::string reason = status() ? status()->reason : "";
   if (json_wanted(options.json)) {
-    std::printf("%s\n", nlohmann::json{{"task", describe(goal)}, {"state", state}, {"reason", reason}}.dump().c_str());
+    std::printf("%s\n", nlohmann::json{{"task", describe(goal)},
+                                       {"state", state},
+                                       {"reason", reason},
+                                       {"tree", tree_json(status() ? status()->tree : std::vector<PlanStep>{})}}
+                            .dump()
+                            .c_str());
   } else {
     std::printf("%s: %s%s%s\n", describe(goal).c_str(), state.c_str(), reason.empty() ? "" : ": ", reason.c_str());
   }
@@ -152,9 +225,11 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   auto give = goal("give", "hands an object to a person", TaskKind::give);
   object(give);
   give.first->add_option("--to", give.second->goal.human, "person (default: the nearest attentive one)");
-  auto receive = goal("receive", "takes an object from a person", TaskKind::receive);
-  object(receive);
-  receive.first->add_option("--from", receive.second->goal.human, "person (default: the nearest attentive one)");
+  const auto onto = [](auto& entry, const char* what) { entry.first->add_option("--onto", entry.second->goal.onto, what); };
+  auto receive = goal("receive", "takes an object from a person and puts it down", TaskKind::receive);
+  receive.first->add_option("object", receive.second->goal.object, "object (default: what is offered)");
+  receive.first->add_option("--from", receive.second->goal.human, "person (default: who offers, or the nearest attentive one)");
+  onto(receive, "surface it is put on (default: where there is room)");
   auto pick = goal("pick", "picks an object up", TaskKind::pick);
   object(pick);
   auto place = goal("place", "puts an object on a surface", TaskKind::place);
@@ -162,15 +237,16 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   surface(place);
   auto clear = goal("clear", "clears a surface", TaskKind::clear);
   surface(clear);
-  auto tidy = goal("tidy", "puts an object where it belongs", TaskKind::tidy);
-  object(tidy);
-  surface(tidy);
+  onto(clear, "surface the things are put on (default: where there is room)");
+  auto tidy = goal("tidy", "puts an object, or all objects of a model, on a surface", TaskKind::tidy);
+  tidy.first->add_option("object", tidy.second->goal.object, "object, or the name of a model")->required();
+  tidy.first->add_option("onto", tidy.second->goal.onto, "surface")->required();
   auto regrasp = goal("regrasp", "takes another grasp of an object", TaskKind::regrasp);
   object(regrasp);
   auto lift = goal("lift", "lifts an object", TaskKind::lift);
   object(lift);
   auto go_to = goal("goto", "moves the arm to a named posture", TaskKind::go_to);
-  go_to.first->add_option("place", go_to.second->goal.surface, "posture")->required();
+  go_to.first->add_option("place", go_to.second->goal.surface, "posture: rest")->required();
   add(*task, exit_code, "pause", "stops softly and waits", TaskKind::pause, tell);
   add(*task, exit_code, "resume", "goes on after pause", TaskKind::resume, tell);
   add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, tell);

@@ -1,0 +1,16 @@
+// How far a robot's arm reaches.
+#pragma once
+
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+/// Of the arm that carries the tool link.
+struct ArmReach {
+  int shoulder{-1};  ///< link where its chain of moving joints begins; -1: no arm
+  double length{};   ///< from there to the tool, stretched [m]
+};
+
+ArmReach arm_reach(const RobotModel& robot);
+
+}  // namespace handsel

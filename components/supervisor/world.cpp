@@ -1,0 +1,218 @@
+#include "components/supervisor/world.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "common/messages/names.hpp"
+
+namespace handsel::supervisor {
+namespace {
+
+constexpr double kEdge = 0.08;      // a thing stands this far inside the edge of a surface [m]
+constexpr double kStep = 0.05;      // [m]
+constexpr double kMostPlaces = 24;  // more are not counted
+
+std::vector<Type> types_of(FactKind kind) {
+  using T = Type;
+  switch (kind) {
+    case FactKind::in_contact_zone:
+    case FactKind::in_danger_zone:
+    case FactKind::in_interaction_zone:
+    case FactKind::in_social_zone:
+    case FactKind::approaching:
+    case FactKind::attentive:
+      return {T::human};
+    case FactKind::hand_near_object:
+    case FactKind::offering:
+    case FactKind::waiting_to_receive:
+    case FactKind::withdrawn:
+      return {T::human, T::object};
+    case FactKind::reaching:
+    case FactKind::looking_at:
+      return {T::human, T::name};
+    case FactKind::on_surface:
+      return {T::object, T::surface};
+    case FactKind::held_by_robot:
+    case FactKind::reachable_by_robot:
+      return {T::object};
+    case FactKind::held_by_human:
+    case FactKind::reachable_by_human:
+    case FactKind::visible_to:
+      return {T::object, T::human};
+    case FactKind::inside:
+    case FactKind::next_to:
+      return {T::object, T::object};
+    case FactKind::moving:
+      return {T::name};
+    case FactKind::released:
+      return {T::object, T::name};
+  }
+  return {};
+}
+
+double places_on(const SceneBox& box, const Scene& scene, const Ability& ability) {
+  const double top = box.size.z() / 2;
+  std::vector<Vector3> taken;  // box frame
+  for (const auto& object : scene.objects)
+    if (object.holder == Holder::surface && object.holder_id == box.id)
+      taken.push_back(box.T_world_box.inverse() * object.T_world_object.translation());
+  double found = 0;
+  const double x_end = std::max(0.0, box.size.x() / 2 - kEdge), y_end = std::max(0.0, box.size.y() / 2 - kEdge);
+  for (double x = -x_end; x <= x_end + 1e-9 && found < kMostPlaces; x += kStep)
+    for (double y = -y_end; y <= y_end + 1e-9 && found < kMostPlaces; y += kStep) {
+      const Vector3 p(x, y, top);
+      if (ability.reach_known && (box.T_world_box * p - ability.shoulder).norm() > ability.reach) continue;
+      const bool free = std::all_of(taken.begin(), taken.end(), [&](const Vector3& t) { return (t - p).head<2>().norm() >= ability.spot; });
+      if (!free) continue;
+      taken.push_back(p);
+      ++found;
+    }
+  return found;
+}
+
+bool in_someones_hands(const Facts& facts, const std::string& object, FactKind kind) {
+  return std::any_of(facts.facts.begin(), facts.facts.end(), [&](const Fact& f) { return f.kind == kind && f.subject == object; });
+}
+
+}  // namespace
+
+const char* name(Type type) {
+  constexpr const char* kNames[] = {"object", "surface", "human", "name"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+const std::vector<PredicateSign>& known_predicates() {
+  static const std::vector<PredicateSign> all = [] {
+    std::vector<PredicateSign> out;
+    for (std::size_t i = 0; i < std::size(kFactNames); ++i) out.push_back({kFactNames[i], types_of(static_cast<FactKind>(i))});
+    using T = Type;
+    out.insert(out.end(), {{"hand_empty", {}},
+                           {"room", {T::surface}},
+                           {"heavy", {T::object}},
+                           {"too_heavy", {T::object}},
+                           {"two_hands", {}},
+                           {"model", {T::object, T::name}},
+                           {"thing", {T::name}},
+                           {"given", {T::name}},
+                           {"same", {T::name, T::name}}});
+    return out;
+  }();
+  return all;
+}
+
+int predicate_of(FactKind kind) { return static_cast<int>(kind); }
+int predicate_of(Derived kind) { return static_cast<int>(std::size(kFactNames)) + static_cast<int>(kind); }
+
+void State::set(const Atom& atom, double value) {
+  const auto at = std::lower_bound(entries_.begin(), entries_.end(), atom, [](const Entry& e, const Atom& a) { return e.atom < a; });
+  if (at != entries_.end() && at->atom == atom)
+    at->value = value;
+  else
+    entries_.insert(at, {atom, value});
+}
+
+bool State::fits(const Atom& atom, const Atom& pattern) {
+  return atom.predicate == pattern.predicate && (pattern.args[0] == kAny || pattern.args[0] == atom.args[0]) &&
+         (pattern.args[1] == kAny || pattern.args[1] == atom.args[1]);
+}
+
+void State::remove(const Atom& pattern) {
+  std::erase_if(entries_, [&](const Entry& e) { return fits(e.atom, pattern); });
+}
+
+const double* State::find(const Atom& atom) const {
+  const auto at = std::lower_bound(entries_.begin(), entries_.end(), atom, [](const Entry& e, const Atom& a) { return e.atom < a; });
+  return at != entries_.end() && at->atom == atom ? &at->value : nullptr;
+}
+
+std::pair<std::size_t, std::size_t> State::range(int predicate) const {
+  const auto before = [](const Entry& e, int p) { return e.atom.predicate < p; };
+  const auto first = std::lower_bound(entries_.begin(), entries_.end(), predicate, before);
+  const auto last = std::lower_bound(first, entries_.end(), predicate + 1, before);
+  return {static_cast<std::size_t>(first - entries_.begin()), static_cast<std::size_t>(last - entries_.begin())};
+}
+
+bool State::holds(const Atom& pattern) const {
+  if (pattern.args[0] != kAny && pattern.args[1] != kAny) return find(pattern) != nullptr;
+  const auto [first, last] = range(pattern.predicate);
+  for (std::size_t i = first; i < last; ++i)
+    if (fits(entries_[i].atom, pattern)) return true;
+  return false;
+}
+
+std::uint64_t State::hash() const {
+  std::uint64_t h = 1469598103934665603ULL;
+  const auto mix = [&h](std::uint64_t v) { h = (h ^ v) * 1099511628211ULL, h ^= h >> 29; };
+  for (const Entry& e : entries_) {
+    mix(static_cast<std::uint64_t>(e.atom.predicate));
+    mix(static_cast<std::uint64_t>(e.atom.args[0]) << 32 ^ static_cast<std::uint64_t>(e.atom.args[1]));
+    mix(std::bit_cast<std::uint64_t>(e.value));
+  }
+  return h;
+}
+
+Symbol World::symbol(const std::string& text) {
+  const auto [at, fresh] = symbols_.try_emplace(text, static_cast<Symbol>(texts_.size()));
+  if (fresh) texts_.push_back(text);
+  return at->second;
+}
+
+void World::add(Type type, const std::string& text) {
+  auto& names = all_[static_cast<std::size_t>(type)];
+  const Symbol s = symbol(text);
+  if (std::find(names.begin(), names.end(), s) == names.end()) names.push_back(s);
+}
+
+bool World::is(Type type, const std::string& text) const {
+  const auto at = symbols_.find(text);
+  const auto& names = all(type);
+  return at != symbols_.end() && std::find(names.begin(), names.end(), at->second) != names.end();
+}
+
+World make_world(const Facts& facts, const Scene& scene, const Ability& ability) {
+  World world;
+  std::set<std::string> objects, surfaces, people;
+  for (const auto& object : scene.objects) objects.insert(object.id);
+  for (const auto& box : scene.boxes)
+    if (box.supports) surfaces.insert(box.id);
+  for (const Fact& fact : facts.facts) {
+    const auto& types = known_predicates()[static_cast<std::size_t>(fact.kind)].types;
+    if (types[0] == Type::human) people.insert(fact.subject);
+    if (types.size() > 1 && types[1] == Type::human) people.insert(fact.object);
+  }
+  for (const auto& text : objects) world.add(Type::object, text);
+  for (const auto& text : surfaces) world.add(Type::surface, text);
+  for (const auto& text : people) world.add(Type::human, text);
+
+  State& state = world.state;
+  bool holds = false;
+  for (const Fact& fact : facts.facts) {
+    const auto& types = known_predicates()[static_cast<std::size_t>(fact.kind)].types;
+    if (types[0] == Type::object && !objects.contains(fact.subject)) continue;
+    if (fact.kind == FactKind::on_surface && in_someones_hands(facts, fact.subject, FactKind::held_by_robot)) continue;
+    holds = holds || fact.kind == FactKind::held_by_robot;
+    state.set({static_cast<int>(fact.kind),
+               {world.symbol(fact.subject), types.size() > 1 && !fact.object.empty() ? world.symbol(fact.object) : kNothing}},
+              fact.value);
+  }
+  if (!holds) state.set({predicate_of(Derived::hand_empty)});
+  if (ability.hands > 1) state.set({predicate_of(Derived::two_hands)});
+  for (const auto& object : scene.objects) {
+    const Symbol o = world.symbol(object.id);
+    state.set({predicate_of(Derived::thing), {o, kNothing}});
+    if (!object.model.empty()) state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
+    const ObjectModel* model = ability.objects ? ability.objects(object.model) : nullptr;
+    if (model == nullptr || ability.payload <= 0) continue;
+    if (model->mass > ability.payload) state.set({predicate_of(Derived::heavy), {o, kNothing}}, model->mass);
+    if (model->mass > ability.payload * ability.hands) state.set({predicate_of(Derived::too_heavy), {o, kNothing}}, model->mass);
+  }
+  for (const auto& box : scene.boxes) {
+    if (!box.supports) continue;
+    const double places = places_on(box, scene, ability);
+    if (places > 0) state.set({predicate_of(Derived::room), {world.symbol(box.id), kNothing}}, places);
+  }
+  return world;
+}
+
+}  // namespace handsel::supervisor
