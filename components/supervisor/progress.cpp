@@ -5,11 +5,7 @@
 namespace handsel::supervisor {
 namespace {
 
-// What one TaskStatus has room for (idl/task.idl).
-constexpr std::size_t kMostSteps = 64, kMostLines = 128, kMostText = 128, kMostReason = 256;
-constexpr std::uint32_t kMostDepth = 16;
-
-std::string cut(const std::string& text, std::size_t most) { return text.size() <= most ? text : text.substr(0, most - 3) + "..."; }
+constexpr std::uint32_t kMostDepth = 16;  // idl/task.idl
 
 bool over(StepState state) { return state == StepState::done || state == StepState::failed || state == StepState::dropped; }
 
@@ -35,6 +31,8 @@ std::size_t end_of(const std::vector<PlanStep>& tree, std::size_t line) {
 }
 
 }  // namespace
+
+std::string cut(const std::string& text, std::size_t most) { return text.size() <= most ? text : text.substr(0, most - 3) + "..."; }
 
 void Progress::mark(StepState state, const std::string& reason) {
   if (next_ >= marks_.size()) return;

@@ -10,6 +10,10 @@
 
 namespace handsel::supervisor {
 
+/// What one TaskStatus has room for (idl/task.idl).
+inline constexpr std::size_t kMostSteps = 64, kMostLines = 128, kMostText = 128, kMostReason = 256, kMostPhase = 64;
+std::string cut(const std::string& text, std::size_t most);
+
 class Progress {
  public:
   /// Goes on with another plan. What is left of the old one and not in the new one was dropped, `why` says for what reason.

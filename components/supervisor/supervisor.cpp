@@ -27,7 +27,7 @@ void Supervisor::refuse(const TaskGoal& goal, const std::string& reason, Outbox&
   status.id = goal.id;
   status.kind = goal.kind;
   status.state = TaskState::refused;
-  status.reason = reason.substr(0, 256);
+  status.reason = cut(reason, kMostReason);
   out.task_statuses.push_back(status);
   if (!task_) last_ = status;
 }

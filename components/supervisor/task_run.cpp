@@ -5,7 +5,7 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::size_t kMostRefusals = 64, kMostReason = 256;
+constexpr std::size_t kMostRefusals = 64;
 
 bool only_rests(const Plan& plan) {
   return std::all_of(plan.actions.begin(), plan.actions.end(), [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
@@ -29,6 +29,8 @@ TaskRun::TaskRun(const config::SupervisorSettings& settings, const Domain& domai
 
 const TaskStatus& TaskRun::status() {
   progress_.write(text_, status_);
+  status_.phase = cut(status_.phase, kMostPhase);
+  status_.reason = cut(status_.reason, kMostReason);
   PlanStep& root = status_.tree.front();
   root.reason = status_.reason;
   switch (status_.state) {
@@ -151,7 +153,7 @@ void TaskRun::say(const std::string& phase, TaskWishes& wishes) {
 
 void TaskRun::finish(TaskState state, const std::string& reason) {
   status_.state = state;
-  status_.reason = reason.size() > kMostReason ? reason.substr(0, kMostReason - 3) + "..." : reason;
+  status_.reason = reason;
   over_ = true;
 }
 
@@ -330,7 +332,7 @@ void TaskRun::answer_failure(const std::string& reason, TimePoint now) {
     ++tries_[text];
     progress_.again(reason);
     not_before_ = now + from_seconds(rule->pause());
-    status_.phase = "again: " + reason.substr(0, 50);
+    status_.phase = "again: " + reason;
     return;
   }
   progress_.failed(reason);
