@@ -9,11 +9,12 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr std::size_t kTransferTries = 12;  // grasps looked at for a place to hand over, for each that is wanted
-constexpr double kSameDistance = 0.02;      // [m] grasps nearer than this ...
-constexpr double kSameAngle = 0.35;         // [rad] ... and less turned count as one variant
-constexpr std::size_t kShortList = 40;      // grasps, clearly different ones, tried at each place of the platform
-constexpr std::size_t kPlacesServed = 3;    // places of the platform with grasps, then the search ends
+constexpr std::uint64_t kTransferBudget = 600;  // inverse kinematics tried for places to hand over, for each tilt
+constexpr std::size_t kTransferTries = 12;      // grasps looked at for a place to hand over, for each that is wanted
+constexpr double kSameDistance = 0.02;          // [m] grasps nearer than this ...
+constexpr double kSameAngle = 0.35;             // [rad] ... and less turned count as one variant
+constexpr std::size_t kShortList = 40;          // grasps, clearly different ones, tried at each place of the platform
+constexpr std::size_t kPlacesServed = 3;        // places of the platform with grasps, then the search ends
 
 bool alike(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() < kSameDistance &&
@@ -130,26 +131,28 @@ Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, 
     ++search.out.reasons[static_cast<std::size_t>(reason)];
     if (reason == ChoiceReason::chosen) found.push_back(std::move(one));
   };
-  // For a person, those that can be handed over come first; the others only when too few of them can be picked up.
-  std::vector<std::pair<double, std::size_t>> others;
-  std::size_t tries = 0;
-  for (const auto& [rank, index] : order) {
-    if (!search.places) {
-      consider(rank, index, {});
-      continue;
+  // For a person, those that can be handed over come first, upright before tilted; the others only when too few of them can be picked up.
+  std::vector<std::pair<double, std::size_t>> others = order;
+  const auto levels = search.places ? tilt_levels(pairs->settings()) : std::vector<double>{};
+  for (const double tilt : levels) {
+    search.transfer_budget = search.out.transfer_reaches + kTransferBudget;
+    std::size_t tries = 0;
+    std::vector<std::pair<double, std::size_t>> left;
+    for (const auto& [rank, index] : others) {
+      const Grasp& g = list.grasps[index].grasp;
+      std::optional<TransferPose> transfer;
+      const bool try_it = found.size() < enough && tries < kTransferTries * enough && !pairs->partners(index).empty();
+      if (try_it && !search.below_support(g)) {
+        ++tries;
+        transfer = search.transfer(index, g, tilt);
+      }
+      if (transfer) {
+        consider(rank, index, std::move(transfer));
+      } else {
+        left.emplace_back(rank, index);
+      }
     }
-    const Grasp& g = list.grasps[index].grasp;
-    std::optional<TransferPose> transfer;
-    const bool try_it = found.size() < enough && tries < kTransferTries * enough && !pairs->partners(index).empty();
-    if (try_it && !search.below_support(g)) {
-      ++tries;
-      transfer = search.transfer(index, g);
-    }
-    if (transfer) {
-      consider(rank, index, std::move(transfer));
-    } else {
-      others.emplace_back(rank, index);
-    }
+    others = std::move(left);
   }
   for (const auto& [rank, index] : others) consider(rank, index, {});
   if (found.empty() && request.move_platform) search_places(search, list, order, cancelled, found);

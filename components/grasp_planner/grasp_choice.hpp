@@ -26,6 +26,7 @@ struct ChoiceSettings {
   double rank_partner{0.3};             ///< the person's best grasp beside it; then too, as the next two
   double rank_exchange{0.3};            ///< the arm can hold the object out upright, the hand behind it, the person's wrist at ease
   double rank_transfer{0.3};            ///< a place was found where the person can take it so
+  double rank_tilt{1.0};                ///< taken off for each radian the object must be tilted there
   double rank_sturdy{1.0};              ///< the squeeze's margin / `sturdy_margin`, -2 to 1: what only just holds comes last
   double sturdy_margin{2.0};            ///< [N]
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object

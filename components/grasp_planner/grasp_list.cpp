@@ -1,6 +1,7 @@
 #include "components/grasp_planner/grasp_list.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -60,8 +61,25 @@ Refusals GraspList::refusals() const {
 
 std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count) {
   const Vector3 size = box.sizes().cwiseMax(1e-6);
-  const double step = std::cbrt(size.prod() / std::max(1U, count));
-  const Eigen::Vector3i n = (size / step).array().round().max(1.0).cast<int>();
+  Eigen::Array3i n(1, 1, 1);
+  // A side much shorter than a step has one position; the others share the rest.
+  std::array<bool, 3> thin{};
+  for (bool again = true; again;) {
+    double product = 1.0 / std::max(1U, count);
+    int sides = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (thin[static_cast<std::size_t>(i)]) continue;
+      product *= size[i];
+      ++sides;
+    }
+    again = false;
+    const double step = std::pow(product, 1.0 / std::max(1, sides));
+    for (int i = 0; i < 3; ++i) {
+      if (thin[static_cast<std::size_t>(i)]) continue;
+      n[i] = std::max(1, static_cast<int>(std::lround(size[i] / step)));
+      if (size[i] < 0.75 * step) again = thin[static_cast<std::size_t>(i)] = true;
+    }
+  }
   std::vector<Vector3> out;
   for (int z = 0; z < n.z(); ++z) {
     for (int y = 0; y < n.y(); ++y) {

@@ -20,8 +20,7 @@ constexpr double kMotionStep = 0.04;      // [rad] between two states judged on 
 constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
 constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
 constexpr int kExchangeHeadings = 8;
-constexpr int kTransferReaches = 16;            // inverse kinematics tried for the places of one grasp ...
-constexpr std::uint64_t kTransferBudget = 600;  // ... and of all
+constexpr int kTransferReaches = 16;  // inverse kinematics tried for the places of one grasp
 
 std::size_t touching(const Grasp& g) {
   std::set<std::uint32_t> fingers;
@@ -111,8 +110,8 @@ double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) 
   return places ? sum + settings().rank_partner * pairs->promise(index) : sum;
 }
 
-std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, const Grasp& g) {
-  if (out.transfer_reaches >= kTransferBudget) return std::nullopt;
+std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, const Grasp& g, double tilt) {
+  if (out.transfer_reaches >= transfer_budget) return std::nullopt;
   if (!held) {
     held.emplace(robot(), self.library_);
     held->set_scene(scene);
@@ -126,7 +125,7 @@ std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, co
     if (q && !free(*held, *q, g.hand_joints)) q.reset();
     return q;
   };
-  return places->best(*pairs, index, g.T_object_hand, try_reach, kTransferReaches);
+  return places->best(*pairs, index, g.T_object_hand, tilt, try_reach, kTransferReaches);
 }
 
 GraspChooser::Search::Exchange GraspChooser::Search::exchange(const Grasp& g, const Vector& arm_q) {
@@ -306,7 +305,7 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   found.rank += settings().rank_posture * posture_score(robot(), *self.arm_, g.arm_joints);
   Pose T_world_seen = start.T_world_object;
   if (found.transfer) {
-    found.rank += settings().rank_exchange * found.transfer->score + settings().rank_transfer;
+    found.rank += settings().rank_exchange * found.transfer->score + settings().rank_transfer - settings().rank_tilt * found.transfer->tilt;
     T_world_seen = found.transfer->T_world_object;
   } else if (exchange_known) {
     const Exchange at = exchange(g, g.arm_joints);

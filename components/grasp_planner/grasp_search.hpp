@@ -25,8 +25,8 @@ struct GraspChooser::Search {
   /// What can be said of a grasp before the arm is looked at.
   double rank(const ListedGrasp& listed, std::size_t index) const;
   bool below_support(const Grasp& g);
-  /// Where and how the object can be handed over in this grasp, the robot free of everything but the person's arms.
-  std::optional<TransferPose> transfer(std::size_t index, const Grasp& g);
+  /// Where and how the object, tilted by that much, can be handed over in this grasp, the robot free of everything but the person's arms.
+  std::optional<TransferPose> transfer(std::size_t index, const Grasp& g, double tilt);
   /// Whether the grasp serves; writes the rest of `out`, whose rank and transfer are set.
   ChoiceReason consider(const Grasp& listed, Found& out);
 
@@ -74,6 +74,7 @@ struct GraspChooser::Search {
   Vector3 to_person{Vector3::Zero()}, exchange_place{Vector3::Zero()};
   bool exchange_known{};
   std::optional<TransferPlaces> places;
+  std::uint64_t transfer_budget{};  // of transfer_reaches
   std::vector<std::vector<Pose>> T_closed, T_open;
   Choice out;
 };

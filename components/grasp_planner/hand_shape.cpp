@@ -73,10 +73,8 @@ HandShape::HandShape(const HandModel& hand, const std::vector<FingerChain>& chai
       palm_.push_back(make_solid(l, -1, T_hand_link[static_cast<std::size_t>(l)], p));
     }
   }
-  disabled_.assign(static_cast<std::size_t>(links_ * links_), false);
-  const auto disable = [this](int a, int b) {
-    disabled_[static_cast<std::size_t>(a * links_ + b)] = disabled_[static_cast<std::size_t>(b * links_ + a)] = true;
-  };
+  disabled_.assign(pair(links_, 0), false);
+  const auto disable = [this](int a, int b) { disabled_[pair(a, b)] = disabled_[pair(b, a)] = true; };
   for (int a = 0; a < links_; ++a) {
     for (int b = 0; b < links_; ++b) {
       if (a == b || model.pair_disabled(a, b)) disable(a, b);

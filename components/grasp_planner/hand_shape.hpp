@@ -72,7 +72,10 @@ class HandShape {
   static bool solids_touch(const Solid& s, const Pose& T_hand_s, const Solid& t, const Pose& T_hand_t);
   bool groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a, const std::vector<Solid>& b,
                     const std::vector<Pose>& T_b) const;
-  bool disabled(int link_a, int link_b) const { return disabled_[static_cast<std::size_t>(link_a * links_ + link_b)]; }
+  std::size_t pair(int link_a, int link_b) const {
+    return static_cast<std::size_t>(link_a) * static_cast<std::size_t>(links_) + static_cast<std::size_t>(link_b);
+  }
+  bool disabled(int link_a, int link_b) const { return disabled_[pair(link_a, link_b)]; }
 
   std::vector<Solid> palm_;
   std::vector<std::vector<Solid>> fingers_;

@@ -9,20 +9,20 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kTiltStep = std::numbers::pi / 6;
+constexpr double kTiltStep = std::numbers::pi / 12;
+constexpr int kTiltWays = 4;
 constexpr double kDifferent = 0.5;    // [rad] between two partners' hands
 constexpr std::size_t kPlaced = 120;  // best double grasps of one robot grasp that partners are picked from
 
 double promise_of(const TransferPartner& p) { return 0.6 * p.opposition / std::numbers::pi + 0.4 * p.quality; }
 
-// Tilts of the object about level axes, with that angle: upright, then in steps of 30 degrees four ways.
-std::vector<std::pair<Eigen::Matrix3d, double>> tilts(const TransferSettings& s) {
-  std::vector<std::pair<Eigen::Matrix3d, double>> out{{Eigen::Matrix3d::Identity(), 0.0}};
-  for (double tilt = kTiltStep; tilt < s.most_tilt + 1e-3; tilt += kTiltStep) {
-    for (int k = 0; k < 4; ++k) {
-      const double way = 0.5 * std::numbers::pi * k;
-      out.emplace_back(Eigen::AngleAxisd(tilt, Vector3(std::cos(way), std::sin(way), 0)).toRotationMatrix(), tilt);
-    }
+// Ways to tilt the object about level axes; one when it stays upright.
+std::vector<Eigen::Matrix3d> tilted(double tilt) {
+  if (tilt <= 0) return {Eigen::Matrix3d::Identity()};
+  std::vector<Eigen::Matrix3d> out;
+  for (int k = 0; k < kTiltWays; ++k) {
+    const double way = 2 * std::numbers::pi * k / kTiltWays;
+    out.push_back(Eigen::AngleAxisd(tilt, Vector3(std::cos(way), std::sin(way), 0)).toRotationMatrix());
   }
   return out;
 }
@@ -85,14 +85,19 @@ TransferPlaces::TransferPlaces(const Person& person, const HumanArm& arm, const 
   }
 }
 
+std::vector<double> tilt_levels(const TransferSettings& s) {
+  std::vector<double> out{0.0};
+  while (out.back() + kTiltStep < s.most_tilt + 1e-3) out.push_back(out.back() + kTiltStep);
+  return out;
+}
+
 std::optional<TransferPose> TransferPlaces::best(
-    const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand,
+    const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
     const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach, int most_reaches) const {
   const TransferSettings& s = table.settings();
   const double least_cosine = std::cos(s.most_aim);
   struct Held {
     Eigen::Matrix3d R;
-    double tilt;
     const TransferPartner* partner;
   };
   // Whether the hand of a partner at a place would do; the pose without the arm's joints.
@@ -109,22 +114,21 @@ std::optional<TransferPose> TransferPlaces::best(
     pose.partner = *held.partner;
     pose.wrist = *wrist;
     pose.aim = std::acos(std::min(1.0, cosine));
+    pose.tilt = tilt;
     pose.score = 0.4 * (held.partner->opposition - s.least_opposition) / (std::numbers::pi - s.least_opposition) +
-                 0.4 * (1 - wrist->strain / s.most_strain) + 0.2 * (1 - pose.aim / s.most_aim) - 0.3 * held.tilt;
+                 0.4 * (1 - wrist->strain / s.most_strain) + 0.2 * (1 - pose.aim / s.most_aim) - 0.3 * tilt;
     return pose;
   };
   std::vector<TransferPose> found;
-  std::vector<std::pair<Eigen::Matrix3d, double>> turns;
-  for (const auto& [R_tilt, tilt] : tilts(s)) {
-    for (int k = 0; k < s.headings; ++k) {
-      const Eigen::Matrix3d R_turn = Eigen::AngleAxisd(2 * std::numbers::pi * k / s.headings, Vector3::UnitZ()).toRotationMatrix();
-      turns.emplace_back(R_turn * R_tilt * R_world_object_, tilt);
-    }
+  std::vector<Eigen::Matrix3d> turns;
+  for (const Eigen::Matrix3d& R_tilt : tilted(tilt)) {
+    for (int k = 0; k < s.headings; ++k)
+      turns.push_back(Eigen::AngleAxisd(2 * std::numbers::pi * k / s.headings, Vector3::UnitZ()) * R_tilt * R_world_object_);
   }
-  for (const auto& [R, tilt] : turns) {
+  for (const Eigen::Matrix3d& R : turns) {
     std::vector<Held> likely;  // what is hopeless in the middle is so everywhere
     for (const TransferPartner& partner : table.partners(robot_grasp)) {
-      if (judge({R, tilt, &partner}, places_.front(), 1.3 * s.most_strain)) likely.push_back({R, tilt, &partner});
+      if (judge({R, &partner}, places_.front(), 1.3 * s.most_strain)) likely.push_back({R, &partner});
     }
     for (const Vector3& place : places_) {
       std::optional<TransferPose> at_place;

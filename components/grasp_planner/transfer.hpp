@@ -56,8 +56,12 @@ struct TransferPose {
   TransferPartner partner;
   WristPosture wrist;  ///< of the person
   double aim{};        ///< angle between the person's hand and the way from their body to the object [rad]
+  double tilt{};       ///< of the object, against how it is held now [rad]
   double score{};      ///< [0, 1]: legibility (opposition), comfort (strain), aim, little tilt
 };
+
+/// How far the object may be tilted, in steps, upright first [rad].
+std::vector<double> tilt_levels(const TransferSettings& settings);
 
 /// Exchange poses for one person: places before their chest and headings of the object.
 class TransferPlaces {
@@ -66,9 +70,9 @@ class TransferPlaces {
   TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot, const Eigen::Matrix3d& R_world_object,
                  const Vector3& p_object_middle);
 
-  /// The best place for a grasp of the robot at which `reach` finds an arm posture for the robot's hand. `reach` is asked `most_reaches`
-  /// times at most, best score first.
-  std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand,
+  /// The best place for a grasp of the robot, the object tilted by `tilt` [rad] some way, at which `reach` finds an arm posture for the
+  /// robot's hand. `reach` is asked `most_reaches` times at most, best score first.
+  std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
                                    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach,
                                    int most_reaches) const;
 

@@ -79,7 +79,7 @@ double distance(const Solids& a, const Solids& b) {
 double angle_between(const Vector3& a, const Vector3& b) { return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)); }
 
 // The ball has no up; two hands on the mug leave little choice.
-double most_tilt(const std::string& object) { return (object == "ball" ? 90 : object == "mug" ? 60 : 0) * kDegree; }
+double most_tilt(const std::string& object) { return (object == "ball" ? 90 : object == "mug" ? 30 : 0) * kDegree; }
 
 // The hand's orientation put together from the joints of the arm, each turned by what is said of it; and each within comfort.
 void expect_comfort(const Person& person, const TransferPose& t, const Pose& T_world_wrist) {
@@ -161,9 +161,9 @@ void expect_transfer(const std::string& object, int place) {
   way.z() = 0;
   EXPECT_LT(angle_between(T_world_wrist.linear().col(2), way), 60.5 * kDegree);
   EXPECT_GT(t.T_world_object.linear()(2, 2), std::cos(most_tilt(object)) - 1e-6) << "the object is tilted";
-  std::printf("%-7s place %d: wrists %3.0f deg, palm %4.1f cm off, wrist strain %.2f, aim %2.0f deg\n", object.c_str(), place,
-              angle_between(T_world_robot_hand.linear().col(2), T_world_wrist.linear().col(2)) / kDegree,
-              100 * distance(palm, robot_hand_solids), t.wrist.strain, t.aim / kDegree);
+  std::printf("%-7s place %d: wrists %3.0f deg, palm %4.1f cm off, wrist strain %.2f, aim %2.0f deg, tilt %2.0f deg\n", object.c_str(),
+              place, angle_between(T_world_robot_hand.linear().col(2), T_world_wrist.linear().col(2)) / kDegree,
+              100 * distance(palm, robot_hand_solids), t.wrist.strain, t.aim / kDegree, t.tilt / kDegree);
 }
 
 bool whole() {

@@ -156,6 +156,15 @@ TEST(GraspList, says_why_a_frame_gives_none) {
   EXPECT_EQ(refused + list.grasps.size(), list.frames);
 }
 
+TEST(GraspList, sheets_and_needles_get_no_more_positions_than_other_things) {
+  for (const Vector3& size : {Vector3(0.1, 0.1, 0.1), Vector3(0.2, 0.3, 1e-4), Vector3(0.3, 0.001, 0.001), Vector3(0.05, 0.08, 0.0),
+                              Vector3(0.2, 0.0, 0.0), Vector3(0.04, 0.2, 0.011)}) {
+    const auto positions = uniform_positions({Vector3::Zero(), size}, 60);
+    EXPECT_GE(positions.size(), 40U) << size.transpose();
+    EXPECT_LE(positions.size(), 90U) << size.transpose();
+  }
+}
+
 TEST(GraspList, an_object_of_the_wrong_size_is_refused_with_a_sentence) {
   ObjectModel o = object("box");
   for (Vector3& v : o.mesh.vertices) v *= 1000;
