@@ -122,10 +122,21 @@ class CartesianPlanning {
     if (!arm_) return refuse("the arm is not one of shoulder, elbow and wrist: its joints do not follow from tool pose and elbow angle");
     motion_.axes = group_.axes;
     motion_.axes.insert(motion_.axes.end(), request_.also.begin(), request_.also.end());
-    world_.set_moving_axes(motion_.axes);
+    world_.set_moving_axes(axes_that_move());
     if (const CollisionVerdict verdict = world_.check(request_.start); !verdict.free)
       return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
     return true;
+  }
+
+  /// Those of the arm, and further ones that some node has elsewhere.
+  std::vector<int> axes_that_move() const {
+    std::vector<int> axes = group_.axes;
+    for (std::size_t i = 0; i < request_.also.size(); ++i)
+      if (std::any_of(request_.nodes.begin(), request_.nodes.end(), [&](const CartesianWaypoint& node) {
+            return node.also[static_cast<Eigen::Index>(i)] != request_.start[request_.also[i]];
+          }))
+        axes.push_back(request_.also[i]);
+    return axes;
   }
 
   /// Its place among the further active axes; -1: it is none.

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "common/config/resources.hpp"
+#include "common/model/platform.hpp"
 #include "components/trajectory_planner/cartesian_motion.hpp"
 #include "deploy/handsel/canvas.hpp"
 #include "deploy/handsel/commands.hpp"
@@ -23,7 +24,20 @@ struct Options {
   std::string robot, group{"arm"}, tip, png;
   double period{CartesianSettings().period};
   int size{800};
+  bool platform{};
 };
+
+RobotModel load_robot(const Options& options) {
+  if (options.robot.ends_with(".urdf")) {
+    if (options.platform) throw ConfigError("--platform needs a robot description; a .urdf tells of no platform");
+    return RobotModel::load_urdf(options.robot);
+  }
+  const std::filesystem::path description = robot_description(options.robot);
+  RobotModel robot = RobotModel::load(description);
+  if (!options.platform) return robot;
+  if (auto mobile = on_platform(robot, description)) return *std::move(mobile);
+  throw ConfigError("--platform: " + description.string() + " tells of no platform");
+}
 
 CartesianRequest request_of(const json& line, const RobotModel& robot) {
   CartesianRequest request;
@@ -94,8 +108,7 @@ void draw(const std::string& file, int size, const RobotModel& robot, const json
 }
 
 int run(const Options& options) {
-  const RobotModel robot =
-      options.robot.ends_with(".urdf") ? RobotModel::load_urdf(options.robot) : RobotModel::load(robot_description(options.robot));
+  const RobotModel robot = load_robot(options);
   Group arm = robot.require_group(options.group);
   if (!options.tip.empty() && (arm.tip = robot.link_index(options.tip)) < 0)
     throw ConfigError("--tip: the robot has no link \"" + options.tip + "\"");
@@ -157,6 +170,8 @@ Where a node cannot be reached the motion ends at the one before, "reached" coun
   command->add_option("--period", options->period, "the joints are computed this often [s]")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  command->add_flag("--platform", options->platform,
+                    "\"also\" may name platform_x, platform_y and platform_heading; poses are in the world");
   command->add_option("--png", options->png, "file to draw the first motion to");
   command->add_option("--size", options->size, "of the picture's sides")->check(CLI::Range(100, 4000))->capture_default_str();
   command->add_flag("--json")->description("JSON Lines (always so)");

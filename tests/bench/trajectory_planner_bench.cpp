@@ -51,12 +51,16 @@ void lines(int count) {
               1e3 * kTotg / test::quantile_ms(with, 0.5));
 }
 
-void motions(const char* name, const RobotModel& robot, const Group& arm, const std::vector<int>& also, const Vector& home, int count) {
+/// `still`: hand and head are active, but stay where they are.
+void motions(const char* name, const RobotModel& robot, const Group& arm, const std::vector<int>& also, const Vector& home, int count,
+             bool still = false) {
   CollisionWorld world(robot, nullptr);
   std::mt19937 random(5);
   std::vector<double> share;
   for (int tries = 0; tries < 4 * count && static_cast<int>(share.size()) < count; ++tries) {
-    const auto request = test::tool_motion(robot, arm, also, home, world, random);
+    auto request = test::tool_motion(robot, arm, also, home, world, random);
+    if (still)
+      for (auto& node : request.nodes) node.also = home(also);
     if (request.nodes.empty()) continue;
     trajectory_planner::CartesianMotion motion;
     const double lasted = least_time([&] { motion = trajectory_planner::plan_cartesian(robot, arm, world, request); });
@@ -75,6 +79,7 @@ int main(int argc, char** argv) {
   lines(count);
   const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   motions("Jido, 22 axes", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_posture(), count);
+  motions("Jido, hand and head still", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_posture(), count, true);
   if (const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf")) {
     const RobotModel iiwa = RobotModel::load_urdf(*file);
     Group arm = iiwa.require_group("all");

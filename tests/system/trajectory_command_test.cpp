@@ -236,6 +236,21 @@ TEST(TrajectoryCommand, WhatTheToolCannotDoIsSaidAndTheWayBeforeItIsThere) {
   EXPECT_EQ(same.lines[0].at("corners").size(), 1u);
 }
 
+TEST(TrajectoryCommand, ThePlatformDrivesBeneathTheTool) {
+  const auto drive = [](json& line) {
+    line.erase("obstacles");
+    json& nodes = line.at("nodes");
+    nodes.erase(nodes.begin() + 1, nodes.end());
+    nodes[0]["p"][0] = nodes[0]["p"][0].get<double>() + 0.8;  // out of reach from where it stands
+    nodes[0]["also"] = {{"platform_x", 0.8}, {"platform_y", 0.05}, {"platform_heading", 0.1}};
+  };
+  const Answers a = ask_example("cartesian --robot jido --platform", "cassette/cassette.jsonl", drive);
+  ASSERT_EQ(a.lines.size(), 1u);
+  EXPECT_EQ(a.exit_code, 0) << a.lines[0];
+  EXPECT_EQ(a.lines[0].at("joint_names").size(), 10u);
+  EXPECT_EQ(ask_example("cartesian --robot jido", "cassette/cassette.jsonl", drive).exit_code, 2);
+}
+
 TEST(TrajectoryCommand, BesidePeopleTheSpeedFollowsTheCostOfTheWay) {
   const TemporaryFolder folder;
   const std::string svg = (folder.path() / "sweep.svg").string();
