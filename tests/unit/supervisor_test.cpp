@@ -192,6 +192,18 @@ TEST(Supervisor, WhatCannotBeGraspedIsLeftAndTold) {
   EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no grasp for box: too wide");
 }
 
+TEST(Supervisor, WhatCannotBePutAwayGoesBackAndTheRestIsCleared) {
+  TaskRig rig;
+  rig.world.on["box"] = "table";
+  rig.fails = [](const ActionGoal& goal) { return goal.object == "box" && goal.surface == "shelf" ? "no free place on shelf" : ""; };
+  rig.run(2.5);
+  rig.ask(TaskKind::clear, "", "", "table");
+  ASSERT_TRUE(rig.finish());
+  EXPECT_EQ(rig.done(), "pick box, place box on shelf, place box on table, pick mug, place mug on shelf, go to rest");
+  EXPECT_EQ(rig.last().state, TaskState::failed);
+  EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no free place on shelf");
+}
+
 TEST(Supervisor, ReceivesAndPutsDownWhateverItIs) {
   TaskRig rig;
   rig.world.on.clear();
