@@ -18,6 +18,7 @@ void gather(btDispatcher& dispatcher, double dt, double reach, std::vector<Touch
       t.index_b = manifold.getBody1()->getUserIndex2();
       t.point = from_bt(point.getPositionWorldOnB());
       t.normal = from_bt(point.m_normalWorldOnB);
+      t.distance = point.getDistance();
       t.friction = point.m_combinedFriction;
       t.torsion = point.m_combinedSpinningFriction;
       t.normal_force = point.m_appliedImpulse / dt;

@@ -24,6 +24,7 @@ struct Touch {
   int index_a{}, index_b{};
   Vector3 point{Vector3::Zero()};       ///< world [m]
   Vector3 normal{Vector3::UnitZ()};     ///< from b to a
+  double distance{};                    ///< negative: they overlap [m]
   double normal_force{};                ///< [N]
   Vector3 force_on_a{Vector3::Zero()};  ///< friction included [N]
   double friction{};                    ///< Coulomb coefficient of the pair

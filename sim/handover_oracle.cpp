@@ -4,6 +4,12 @@
 
 namespace handsel::sim {
 
+namespace {
+constexpr double kLifted = 0.10;  // by the robot that gives [m]
+constexpr double kShared = 0.2;   // both have hold of it [s]
+constexpr double kAlone = 1.0;    // then who takes it has it alone [s]
+}  // namespace
+
 void HandoverOracle::observe(const ObjectSituation& now, double dt) {
   height_ = now.height;
   if (now.robot_grips) {
@@ -13,8 +19,15 @@ void HandoverOracle::observe(const ObjectSituation& now, double dt) {
   }
   const bool alone = now.human_grips && !now.robot_grips && !now.robot_touches && !now.on_surface && !now.on_floor;
   alone_ = alone ? alone_ + dt : 0;
+  const bool robot_alone = now.robot_grips && !now.human_grips && !now.human_touches && !now.on_surface && !now.on_floor;
+  robot_alone_ = robot_alone ? robot_alone_ + dt : 0;
+  const bool both = from_person_ ? now.human_grips && now.robot_touches : now.robot_grips && now.human_touches;
+  shared_ += both ? dt : 0;
+  held_by_both_ += now.robot_grips && now.human_grips ? dt : 0;
   dropped_ = dropped_ || now.on_floor;
-  done_ = done_ || (!dropped_ && max_lifted_ >= 0.10 && contact_before_release_ >= 0.2 && alone_ >= 1.0 - 1e-9);
+  const bool given = max_lifted_ >= kLifted && contact_before_release_ >= kShared && alone_ >= kAlone - 1e-9;
+  const bool taken = held_by_both_ >= kShared - 1e-9 && robot_alone_ >= kAlone - 1e-9;
+  done_ = done_ || (!dropped_ && (from_person_ ? taken : given));
   last_ = now;
 }
 

@@ -10,11 +10,13 @@ namespace handsel::sim {
 namespace {
 
 constexpr double kStill = 0.05;      // an object slower than this is offered [m/s]
+constexpr double kEarly = 0.35;      // for who does not wait, slower than this [m/s] ...
+constexpr double kGone = 0.2;        // who reaches for an object follows it up to this speed, who is early ...
+constexpr double kGoneEarly = 0.5;   // ... up to this [m/s]
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
 constexpr double kStepBack = 0.2;    // with what it took [m]
 constexpr double kStep = 0.3;        // a recorded body is moved on the floor by no more than this before contact [m]
-constexpr double kWalkSpeed = 0.6;   // mean [m/s]
 
 }  // namespace
 
@@ -26,8 +28,9 @@ const char* name(PersonPhase phase) {
 
 PersonModel::PersonModel(const PersonSettings& settings)
     : settings_(settings), feet_(settings.feet), home_(settings.feet), yaw_(settings.yaw) {
-  const std::vector<BodyJoint> standing = standing_body(Vector3::Zero(), 0, settings_.stature);
-  for (std::size_t i = 0; i < template_.size(); ++i) template_[i] = standing[i].position;
+  const std::vector<BodyJoint> rest =
+      settings_.manner.seated ? sitting_body(Vector3::Zero(), 0, settings_.stature) : standing_body(Vector3::Zero(), 0, settings_.stature);
+  for (std::size_t i = 0; i < template_.size(); ++i) template_[i] = rest[i].position;
   side_ = settings_.left_handed ? Side::left : Side::right;
   if (settings_.recording) {
     side_ = settings_.recording->taking;
@@ -47,11 +50,11 @@ PersonModel::PersonModel(const PersonSettings& settings)
     phase_ = PersonPhase::arriving;
   }
   if (settings_.kind == PersonKind::giver) {
-    phase_ = PersonPhase::offering;
+    phase_ = PersonPhase::keeping;
     hand_active_ = wants_grip_ = true;
     place_base();
-    for (std::size_t i = 0; i < points_.size(); ++i) body_.joints[i].position = points_[i];
-    hand_target_ = comfortable_reach(body_, side_);
+    hand_target_ = from_ = keep_point();
+    duration_ = settings_.reaction;
   }
   if (settings_.kind == PersonKind::external) {
     place_base();
@@ -100,9 +103,8 @@ void PersonModel::step(double dt, const PersonView& view) {
     } else if (settings_.kind != PersonKind::still) {
       act(dt, view);
     }
-    const bool away = refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker;
-    const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_);
-    if (!followed_) look_at(away ? Vector3(points_[kHead] + forward()) : interesting ? object_centre(view) : view.robot_hand, dt);
+    step_aside(dt);
+    if (!followed_) look_at(looked_at(view), dt);
   }
   placed_ = false;
   place_base();
@@ -174,14 +176,17 @@ void PersonModel::act(double dt, const PersonView& view) {
       withdraw(dt, view);
       break;
     case PersonPhase::keeping:
-      hand_target_ = keep_point();
+      if (settings_.kind == PersonKind::giver) {
+        hold_back(view);
+      } else {
+        hand_target_ = keep_point();
+      }
       break;
     case PersonPhase::retracting:
       retract(dt);
       break;
     case PersonPhase::offering:
-      lost_time_ = view.held_by_robot ? lost_time_ + dt : 0;
-      if (lost_time_ > 0.5) give_up();
+      offer(dt, view);
       break;
     case PersonPhase::darting:
       dart_on(dt, view);
@@ -193,7 +198,8 @@ void PersonModel::act(double dt, const PersonView& view) {
 }
 
 bool PersonModel::offered(const PersonView& view, int side) const {
-  if (refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > kStill) return false;
+  const double fastest = settings_.manner.early ? kEarly : kStill;
+  if (refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > fastest) return false;
   return (object_centre(view) - shoulder(side)).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
 }
 
@@ -220,7 +226,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
   side_of_object_ = (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero()))).normalized();
   from_ = hand_point();
   const Vector3 goal = grasp_point(view);
-  duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2);
+  duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.manner.pace;
   lean_from_ = lean_;
   const double excess = (goal - shoulder(index())).norm() - 0.95 * reach_;
   lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[index()]].z() - template_[kWaist].z()), 0.0, 0.35);
@@ -259,17 +265,19 @@ Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) c
 }
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
-  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > 0.2;
+  const double fastest = settings_.manner.early ? kGoneEarly : kGone;
+  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > fastest;
   lost_time_ = lost ? lost_time_ + dt : 0;
   if (lost_time_ > 0.3) return give_up();
   if (view.object == nullptr) return;
-  const double s = min_jerk(since() / duration_);
+  const double s = reach_share();
   lean_ = lean_from_ + s * (lean_to_ - lean_from_);
   hand_target_ = from_ + s * (grasp_point(view) - from_);
-  if (since() < duration_) return;
+  if (s >= kMidway && settings_.manner.withdraws && !came_once_) return give_up();
+  if (s < 1) return;
   if (gap(view) < kPalm + 0.012) {
     enter(PersonPhase::closing);
-  } else if (since() > duration_ + 1.0) {
+  } else if (since() > reach_time() + 1.0) {
     give_up();
   }
 }
@@ -322,13 +330,14 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
-  feet_ = home_ - s * kStepBack * forward();
+  if (!settings_.manner.seated) feet_ = home_ - s * kStepBack * forward();
   hand_target_ = from_ + s * (keep_point() - from_);
   if (progress_ >= 1) enter(PersonPhase::keeping);
 }
 
 void PersonModel::give_up() {
   wants_grip_ = false;
+  came_once_ = true;
   cooldown_ = 2.0;
   from_ = hand_active_ ? hand_target_ : hand_point();
   hand_active_ = true;
@@ -402,7 +411,7 @@ void PersonModel::place_base() {
       for (int i : {kShoulder[s], kElbow[s], kWrist[s], kHand[s]}) lean(i);
     }
   }
-  for (std::size_t i = 0; i < own.size(); ++i) points_[i] = feet_ + R * own[i];
+  for (std::size_t i = 0; i < own.size(); ++i) points_[i] = feet_ + aside_ + R * own[i];
 }
 
 // Moves the hand to `target`. Near the base posture the arm keeps its shape, farther away hand and forearm line up, elbow down and out:

@@ -19,6 +19,19 @@ namespace handsel::sim {
 
 enum class PersonKind { taker, still, walker, recording, giver, external };
 
+/// What makes a person different from the next.
+struct Manner {
+  double pace{1};                     ///< of the hand, times the usual
+  double hesitation{};                ///< stops midway on the first reach or offer [s]
+  bool withdraws{};                   ///< draws the hand back once from its first reach or offer, and comes again
+  double look_away{};                 ///< looks elsewhere once, so long [s] ...
+  double look_away_at{};              ///< ... from this time on [s]
+  Vector3 sidestep{Vector3::Zero()};  ///< walks so far [m] ...
+  double sidestep_at{};               ///< ... from this time on [s]
+  bool seated{};
+  bool early{};  ///< takes what comes within reach while it still moves
+};
+
 struct PersonSettings {
   std::string id;
   Vector3 feet{Vector3::Zero()};  ///< world [m]
@@ -34,6 +47,7 @@ struct PersonSettings {
   double correction{0.15};  ///< an external person's hand is led to what is offered from this near [m]
   double max_warp{0.10};    ///< a recorded hand is moved by no more than this [m]
   double warp_time{0.5};    ///< over the last part before contact [s]
+  Manner manner{};
 };
 
 /// What the person sees and feels.
@@ -92,6 +106,13 @@ class PersonModel {
   void retract(double dt);
   void dart_on(double dt, const PersonView&);
   void give_up();
+  void hold_back(const PersonView&);
+  Vector3 offer_from_shoulder(const PersonView&) const;
+  void offer(double dt, const PersonView&);
+  void step_aside(double dt);
+  double reach_share() const;
+  double reach_time() const;
+  Vector3 looked_at(const PersonView&) const;
   void accompany(double dt, const PersonView&);
   void pull_after(const Vector3& would_be, double dt, const PersonView&);
   void let_go();
@@ -116,7 +137,12 @@ class PersonModel {
   PersonPhase phase_{PersonPhase::watching};
   Side side_{Side::right};
   bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true}, placed_{false};
-  Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()};
+  bool came_once_{false};  // the first reach or offer is over
+  double step_clock_{0};   // of the sidestep
+  double ignored_{0};      // the offer, so long [s]
+  int steps_nearer_{0};
+  Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
+  Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};
   double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, walk_direction_{1};
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
       warp_{Vector3::Zero()}, step_{Vector3::Zero()};

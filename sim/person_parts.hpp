@@ -8,6 +8,8 @@
 namespace handsel::sim {
 
 inline constexpr double kSoreForce = 30.0;  ///< beyond this the person lets go [N]
+inline constexpr double kWalkSpeed = 0.6;   ///< mean [m/s]
+inline constexpr double kMidway = 0.55;     ///< of a reach: who hesitates or changes their mind does so there
 
 inline double min_jerk(double s) {
   s = std::clamp(s, 0.0, 1.0);

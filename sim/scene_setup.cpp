@@ -137,7 +137,47 @@ class Reader {
         fail("person " + s.id + " holds " + p.holds + ", which is no object of the scenario");
       }
     }
+    if (person.has_varies() && !vary(s, person.varies())) return;
     out_.people.push_back(std::move(p));
+  }
+
+  /// False: nobody this time.
+  bool vary(PersonSettings& s, const config::PersonVariation& v) {
+    for (const double share :
+         {v.absent(), v.left_handed(), v.hesitates(), v.withdraws(), v.looks_away(), v.sidesteps(), v.seated(), v.early()})
+      if (share < 0 || share > 1) fail("varies of " + s.id + ": a share is " + std::to_string(share) + ", must be between 0 and 1");
+    for (const double size : {v.place(), v.turn(), v.stature(), v.hesitation(), v.away(), v.sidestep(), v.slowest(), v.begins_after()})
+      if (size < 0) fail("varies of " + s.id + ": " + std::to_string(size) + " must not be negative");
+    if (v.fastest() < v.slowest()) fail("varies of " + s.id + ": fastest must not be below slowest");
+    if (v.begins_before() < v.begins_after()) fail("varies of " + s.id + ": begins_before must not be below begins_after");
+    // Every number is drawn, needed or not: one share changed leaves the others' draws as they were.
+    const auto within = [this](double low, double high) {
+      return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random_);
+    };
+    const auto chance = [&](double share) { return within(0, 1) < share; };
+    const bool absent = chance(v.absent());
+    s.feet += Vector3(jitter(v.place()), jitter(v.place()), 0);
+    s.yaw += jitter(v.turn());
+    s.stature = std::clamp(s.stature + jitter(v.stature()), 1.2, 2.2);
+    s.left_handed = chance(v.left_handed());
+    const double pace = within(v.slowest(), v.fastest());
+    if (v.fastest() > 0) s.manner.pace = pace;
+    const auto some = [&](double share, double most) {
+      const bool does = chance(share);
+      const double size = within(0.3, 1) * most;
+      return does ? size : 0.0;
+    };
+    s.manner.hesitation = some(v.hesitates(), v.hesitation());
+    s.manner.withdraws = chance(v.withdraws());
+    s.manner.look_away = some(v.looks_away(), v.away());
+    s.manner.look_away_at = within(v.begins_after(), v.begins_before());
+    const double step = some(v.sidesteps(), v.sidestep()), way = within(M_PI_2, 3 * M_PI_2);
+    s.manner.sidestep_at = within(v.begins_after(), v.begins_before());
+    s.manner.seated = chance(v.seated());
+    const Vector3 to_robot = (out_.T_world_base.translation() - s.feet).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+    if (!s.manner.seated) s.manner.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
+    s.manner.early = chance(v.early());
+    return !absent;
   }
 
   SensorSettings sensor_of(const config::SensorDescription& sensor, double coverage, bool of_people) const {

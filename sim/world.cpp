@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kReach = 0.001;         // contacts closer than this touch [m]
 constexpr double kCollisionForce = 0.5;  // [N]
+constexpr double kFingersMeet = 0.002;   // the person's hand and the robot's overlap by more, before both have the object [m]
 constexpr double kPush = 0.2;            // so long after the last touch a push still moves the arm [s]
 constexpr double kFloorHeight = 0.02;    // an object's origin lower than this lies on the floor [m]
 
@@ -75,7 +76,11 @@ struct SimWorld::Impl {
     for (const SensorSettings& sensor : setup.human_sensors) human_sensors.emplace_back(sensor, salt += 0x1000193);
     for (const SensorSettings& sensor : setup.object_sensors) object_sensors.emplace_back(sensor, salt += 0x1000193);
     watched = object_index(objects, setup.watched);
-    if (watched >= 0) handover = std::make_unique<HandoverOracle>(objects[watched].state().T_world_body.translation().z());
+    if (watched >= 0) {
+      const bool from_person =
+          std::any_of(setup.people.begin(), setup.people.end(), [&](const StartPerson& p) { return p.holds == setup.watched; });
+      handover = std::make_unique<HandoverOracle>(objects[watched].state().T_world_body.translation().z(), from_person);
+    }
     ssm_every = std::max(1, static_cast<int>(std::lround(0.01 / settings.step)));
   }
 
@@ -176,10 +181,12 @@ struct SimWorld::Impl {
   void judge() {
     bool collided = false;
     for (const Touch& t : touches) {
-      if (t.a != Owner::robot || t.normal_force < kCollisionForce) continue;
+      if (t.a != Owner::robot) continue;
       const bool by_hand = grasp->chain_of(t.index_a) >= 0;
       if (t.b == Owner::object && by_hand) continue;
-      if (t.b == Owner::person && people->yields(t.index_b)) continue;
+      const bool yields = t.b == Owner::person && people->yields(t.index_b);
+      const bool fingers_meet = yields && by_hand && t.distance < -kFingersMeet && handover && !handover->shared();
+      if (!fingers_meet && (yields || t.normal_force < kCollisionForce)) continue;
       if (!collided) {
         last_collision = robot->name_of(t.index_a) + " hits " +
                          (t.b == Owner::fixed    ? setup.boxes[t.index_b].id

@@ -29,6 +29,8 @@ struct ChoiceSettings {
   double rank_tilt{1.0};                ///< taken off for each radian the object must be tilted there
   double rank_sturdy{1.0};              ///< the squeeze's margin / `sturdy_margin`, -2 to 1: what only just holds comes last
   double sturdy_margin{2.0};            ///< [N]
+  double rank_away{0.6};                ///< the hand stays on the robot's side of what a person holds
+  double off_fingers{0.01};             ///< kept between the robot and the hands of who holds it [m]
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object
   double rank_drive{0.2};               ///< taken off for each metre the platform has to drive
   double platform_room{0.5};            ///< kept between robot and people where the platform drives to [m]

@@ -40,7 +40,9 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
       scene(s),
       start{Pose::Identity(), CollisionWorld(*chooser.robot_, chooser.library_)} {
   for (const SceneObject& o : scene.objects) {
-    if (o.id == request.object) start.T_world_object = o.T_world_object;
+    if (o.id != request.object) continue;
+    start.T_world_object = o.T_world_object;
+    if (o.holder == Holder::human) holder = o.holder_id;
   }
   const auto prepare = [&](CollisionWorld& world, const Scene& with) {
     world.set_scene(with);
@@ -48,6 +50,13 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
     world.set_attachment({}, {request.object});
   };
   prepare(start.world, scene);
+  if (!holder.empty()) {
+    HumanState around = people;
+    for (Person& p : around.people) {
+      if (p.id == holder) p.inflation += settings().off_fingers;
+    }
+    start.world.set_people(around);
+  }
   if (request.has_goal) {
     Scene then = scene;
     for (SceneObject& o : then.objects) {
@@ -105,6 +114,7 @@ double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) 
   double sum =
       settings().rank_quality * listed.grasp.quality + settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
   sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
+  if (!holder.empty()) sum += settings().rank_away * on_our_side(listed.grasp);
   if (request.for_human.empty()) return sum;
   sum += settings().rank_room * listed.room;
   return places ? sum + settings().rank_partner * pairs->promise(index) : sum;
@@ -246,16 +256,26 @@ std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& g
   return std::nullopt;
 }
 
+bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g) {
+  Pose T_lifted = T_world_hand;
+  T_lifted.translation().z() += settings().lift;
+  const auto lifted = reach(T_lifted, RobotModel::with(request.start, *self.arm_, grasp_q), 0);
+  return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift && free(start.world, *lifted, g.hand_joints);
+}
+
+double GraspChooser::Search::on_our_side(const Grasp& g) const {
+  const Vector3 to_robot =
+      (scene.T_world_base.translation() - start.T_world_object.translation()).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+  const Vector3 to_hand = start.T_world_object.linear() * (g.T_object_hand.translation() - object.box().center());
+  return 0.5 * (1 + to_hand.stableNormalized().dot(to_robot));
+}
+
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
   const Pose T_world_hand = start.T_world_object * g.T_object_hand;
   const auto grasp_q = reach(T_world_hand, request.start, 2);
   if (!grasp_q) return ChoiceReason::out_of_reach;
   if (!free(start.world, *grasp_q, g.hand_joints) || !free(start.world, *grasp_q, g.pregrasp_joints)) return ChoiceReason::collision;
-  Pose T_lifted = T_world_hand;
-  T_lifted.translation().z() += settings().lift;
-  const auto lifted = reach(T_lifted, RobotModel::with(request.start, *self.arm_, *grasp_q), 0);
-  if (!lifted || (*lifted - *grasp_q).cwiseAbs().maxCoeff() > kLargestLift) return ChoiceReason::cannot_lift;
-  if (!free(start.world, *lifted, g.hand_joints)) return ChoiceReason::cannot_lift;
+  if (holder.empty() && !can_lift(T_world_hand, *grasp_q, g)) return ChoiceReason::cannot_lift;
   const auto approach_q = approach(start, *grasp_q, g);
   if (!approach_q) return ChoiceReason::no_approach;
   g.arm_joints = *grasp_q;

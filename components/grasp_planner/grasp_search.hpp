@@ -55,6 +55,9 @@ struct GraspChooser::Search {
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   bool something_at_goal() const;
   ChoiceReason pick_up(Grasp& g);
+  bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
+  /// How far on the robot's side of the object the hand is, [0, 1]: the person who holds it is on the other.
+  double on_our_side(const Grasp& g) const;
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 
   const GraspChooser& self;
@@ -63,6 +66,7 @@ struct GraspChooser::Search {
   const HumanState& people;
   const TransferTable* pairs;
   const Person* person{};
+  std::string holder;  // person in whose hand it is; empty: nobody
   Scene scene;
   Site start;
   std::optional<Site> goal;

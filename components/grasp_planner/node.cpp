@@ -105,6 +105,8 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.sturdy_margin = positive("sturdy_margin", t.sturdy_margin());
   s.rank_visible = t.rank_visible();
   s.rank_tilt = t.rank_tilt();
+  s.rank_away = t.rank_away();
+  s.off_fingers = positive("off_fingers", t.off_fingers());
   s.rank_drive = t.rank_drive();
   s.platform_room = t.platform_room();
   s.platform_reaches = static_cast<std::uint32_t>(positive("platform_reaches", t.platform_reaches()));

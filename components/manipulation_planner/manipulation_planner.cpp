@@ -285,7 +285,8 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     return execution_->trajectory != now->command ||
            (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
   };
-  const auto over = [this, ended] { return ended() || blocked_for_ > settings_.blocked_timeout(); };
+  const Motion* moving = &motion;
+  const auto over = [this, ended, moving] { return ended() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving); };
   const bool live = settings_.live_period() > 0 && !motion.straight;
   for (bool done = false; !done;) {
     done = co_await waiting_.until(over, live ? settings_.live_period() : kForever);
@@ -294,8 +295,9 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     Outcome gone_on = co_await go_on(running, motion);
   }
   if (!ended()) {
-    Outcome blocked = Outcome::failure("the way is blocked: " + execution_->reason);
+    Outcome blocked = Outcome::failure(strayed(motion) ? motion.aims_at + " was moved away" : "the way is blocked: " + execution_->reason);
     blocked.too_near = too_near_;
+    blocked.strayed = strayed(motion);
     TrajectoryCommand stop;
     stop.id = ++commands_;
     stop.epoch = execution_->epoch;
@@ -324,7 +326,7 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
     PlannedPath planned = co_await plan_path(start, motion);
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
-      if (last.good) co_return last;
+      if (last.good || last.strayed) co_return last;
       const Person* in_the_way = last.too_near ? person("") : nullptr;
       if (in_the_way != nullptr) {
         refuse(motion.phase, last.reason);
@@ -518,7 +520,7 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       outcome = co_await go_to_rest();
       break;
     case ActionKind::receive:
-      outcome = Outcome::failure("receive needs a person who offers; this version does not take objects");
+      outcome = co_await receive(goal.object, goal.human);
       break;
     case ActionKind::regrasp:
     case ActionKind::carry:

@@ -39,7 +39,8 @@ struct Outcome {
   bool good{true};
   std::string reason;    ///< why not, one sentence
   bool too_near{false};  ///< because a person is so near that the controller lets it go no further
-  static Outcome failure(std::string why) { return {false, std::move(why), false}; }
+  bool strayed{false};   ///< because what it aimed at was moved
+  static Outcome failure(std::string why) { return {false, std::move(why), false, false}; }
 };
 
 class ManipulationPlanner {
@@ -51,6 +52,7 @@ class ManipulationPlanner {
   void on(const ActionGoal& goal);
   void on(const Scene& scene) { scene_ = scene; }
   void on(const HumanState& people) { people_ = people; }
+  void on(const Facts& facts) { facts_ = facts; }
   /// `sent`: when its writer sent the layer.
   void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
   void on(const ExecutionStatus& status);
@@ -81,6 +83,9 @@ class ManipulationPlanner {
     double speed{1.0};
     std::string receiver;                  // the goals are exchange postures for this person, chosen anew as they move; empty: they stay
     Vector3 receiver_at{Vector3::Zero()};  // their torso when the goals were chosen, world [m]
+    std::string aims_at;                   // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
+    Vector3 p_world_aim{Vector3::Zero()};
+    double aim_slack{};
   };
   struct PlannedPath {
     Outcome outcome;
@@ -127,6 +132,19 @@ class ManipulationPlanner {
   Routine<Outcome> lift(const std::string& object);
   Routine<Outcome> give(const std::string& object, const std::string& human);
   Routine<Outcome> place(const std::string& object, const std::string& surface);
+  /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
+  Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
+  Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp);
+  /// From the offered object with the hand opened, the way it came.
+  Routine<Outcome> back_off(const std::string& object, const std::string& giver, const Grasp& grasp);
+  /// Who holds out what.
+  struct Offer {
+    std::string object, giver;
+  };
+  std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
+  /// The grasp for where the object is now; nullopt: the arm does not reach it there.
+  std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
+  bool strayed(const Motion& motion) const;
   Routine<Outcome> go_to_rest();
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
@@ -205,6 +223,7 @@ class ManipulationPlanner {
 
   Scene scene_;
   HumanState people_;
+  Facts facts_;
   CostLayers layers_;
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;

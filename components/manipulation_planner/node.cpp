@@ -52,6 +52,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   feed<ActionGoal>();
   feed<Scene>();
   feed<HumanState>();
+  feed<Facts>();
   bus.subscribe<Costmap>(
       [this](const Costmap& layer, const Receipt& receipt) { core_.on(layer, receipt.arrival - receipt.age, receipt.arrival); });
   feed<ExecutionStatus>();

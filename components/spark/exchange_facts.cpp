@@ -10,7 +10,20 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kReachBeyond = 0.5;  // [m] a hand reaches for what is no farther than this beyond the arm
+constexpr double kTowardPartner = 0.0;  // cosine: what is held out is not held away from somebody
+constexpr double kReachBeyond = 0.5;    // [m] a hand reaches for what is no farther than this beyond the arm
+
+/// How far the hand is before its shoulder, as a share of the arm's length.
+double stretch(const Person& person, Side side) {
+  const bool left = side == Side::left;
+  const Vector3 from_shoulder =
+      joint_of(person, left ? "l_hand" : "r_hand").position - joint_of(person, left ? "l_shoulder" : "r_shoulder").position;
+  return from_shoulder.dot(torso_axes(person).col(0)) / std::max(0.1, arm_length(person));
+}
+
+Side nearer_hand(const Person& person, const Vector3& p) {
+  return (joint_of(person, "l_hand").position - p).norm() < (joint_of(person, "r_hand").position - p).norm() ? Side::left : Side::right;
+}
 
 }  // namespace
 
@@ -46,22 +59,32 @@ void ExchangeFacts::offered(const SceneObject& object, const HumanState& people,
   for (const Person& giver : people.people) {
     if (!holders_[object.id].count(giver.id)) continue;
     const BodyJoint& torso = joint_of(giver, "torso");
+    const auto level = [](const Vector3& v) { return Vector3(v.x(), v.y(), 0).stableNormalized(); };
+    const Vector3 held = level(object.T_world_object.translation() - torso.position);
     Vector3 partner = robot.body;
     std::string whom = kRobotName;
+    double aim = held.dot(level(robot.body - torso.position));  // cosine: it is held toward them
     for (const Person& other : people.people) {
       const Vector3& there = joint_of(other, "torso").position;
-      if (other.id == giver.id || (there - torso.position).norm() > (partner - torso.position).norm()) continue;
+      const double to_them = held.dot(level(there - torso.position));
+      if (other.id == giver.id || to_them < aim || (there - torso.position).norm() > settings_.offer_range()) continue;
       partner = there;
       whom = other.id;
+      aim = to_them;
     }
     const double away = (partner - object.T_world_object.translation()).norm();
     const double toward = speed_toward(object.T_world_object.translation(), object.velocity - torso.velocity, partner);
     const bool near = away < settings_.offer_range();
+    const bool goes_over = holders_[object.id].size() > 1 ||
+                           std::any_of(released_.begin(), released_.end(), [&](const auto& r) { return r.first.first == object.id; });
+    const bool held_out = !goes_over && std::abs(toward) < settings_.offer_speed() && aim > kTowardPartner &&
+                          stretch(giver, nearer_hand(giver, object.T_world_object.translation())) > settings_.stretched();
+    const bool begins = near && (toward > settings_.offer_speed() || held_out);
     const bool back = toward < -settings_.offer_speed();
     const Pair pair{giver.id, object.id};
     const std::string seen = evidence("toward %.40s at %.2f m/s, %.2f m away", whom.c_str(), toward, away);
-    out.push_back({FactKind::offering, giver.id, object.id, toward, near && toward > settings_.offer_speed(), near && !back, seen});
-    if (near && toward > settings_.offer_speed())
+    out.push_back({FactKind::offering, giver.id, object.id, toward, begins, near && !back, seen});
+    if (begins)
       offering_[pair] = now;
     else if (offering_.count(pair) && back) {
       withdrawn_[pair] = {now, seen};
@@ -98,15 +121,13 @@ void ExchangeFacts::reached_for(const Person& person, const std::string& target,
 }
 
 void ExchangeFacts::waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out) {
-  const Eigen::Matrix3d axes = torso_axes(person);
-  double stretch = 0, speed = 0;
+  double most = 0, speed = 0;
   Vector3 hand = Vector3::Zero();
   for (const Side side : {Side::left, Side::right}) {
     const BodyJoint& h = joint_of(person, side == Side::left ? "l_hand" : "r_hand");
-    const Vector3 from_shoulder = h.position - joint_of(person, side == Side::left ? "l_shoulder" : "r_shoulder").position;
-    const double forward = from_shoulder.dot(axes.col(0)) / std::max(0.1, arm_length(person));
-    if (forward <= stretch) continue;
-    stretch = forward;
+    const double forward = stretch(person, side);
+    if (forward <= most) continue;
+    most = forward;
     hand = h.position;
     speed = (h.velocity - joint_of(person, "torso").velocity).norm();
   }
@@ -114,10 +135,10 @@ void ExchangeFacts::waited_for(const Person& person, const Scene& scene, std::ve
     const std::set<std::string>& hold = holders_[object.id];
     const double distance = (object.T_world_object.translation() - hand).norm();
     if (hold.empty() || hold.count(person.id) || distance > arm_length(person)) continue;
-    out.push_back({FactKind::waiting_to_receive, person.id, object.id, distance,
-                   stretch > settings_.stretched() && speed<settings_.reach_speed(), stretch> 0.9 * settings_.stretched() &&
-                       speed < 3 * settings_.reach_speed(),
-                   evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s", 100 * stretch, distance, speed)});
+    const bool waits = most > settings_.stretched() && speed < settings_.reach_speed();
+    const bool still = most > 0.9 * settings_.stretched() && speed < 3 * settings_.reach_speed();
+    out.push_back({FactKind::waiting_to_receive, person.id, object.id, distance, waits, still,
+                   evidence("hand stretched out %.0f %%, %.2f m from it, at %.2f m/s", 100 * most, distance, speed)});
   }
 }
 

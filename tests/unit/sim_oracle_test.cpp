@@ -194,7 +194,7 @@ TEST(SeparationOracleTest, ApproachingFastIsAViolationStandingIsNot) {
 
 TEST(HandoverOracleTest, DemandsLiftContactAndASecondAlone) {
   const auto run = [](double lift, double contact, double alone, bool floor) {
-    HandoverOracle oracle(0.8);
+    HandoverOracle oracle(0.8, false);
     const auto pass = [&](const ObjectSituation& s, double seconds) {
       for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i) oracle.observe(s, 0.001);
     };
