@@ -60,6 +60,7 @@ class Rig {
       if (object.holder == Holder::robot) object.T_world_object = tool() * T_tool_mug;
     planner.on(scene);
     planner.on(people);
+    planner.on(facts);
     planner.on(execution);
     ActiveTrajectory active;
     active.position = q;
@@ -100,6 +101,8 @@ class Rig {
     grasp.approach_joints = grasp.arm_joints;
     grasp.approach_joints[1] += 0.1;
     grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(q, robot->require_group("hand"));
+    grasp.T_object_hand = scene.objects[0].T_world_object.inverse() * scene.T_world_base *
+                          robot->link_pose(RobotModel::with(q, robot->require_group("arm"), grasp.arm_joints), robot->tool_link());
     if (grasps_exist)
       reply.grasps.push_back(grasp);
     else
@@ -180,6 +183,12 @@ class Rig {
       T_tool_mug = make_pose({0.08, 0.02, 0.23});
     }
   }
+  void hold_out() {
+    scene.objects[0].holder = Holder::human;
+    scene.objects[0].holder_id = "anna";
+    scene.objects[0].T_world_object = make_pose({0.95, 0.1, 1.1});
+    facts.facts = {{FactKind::offering, "anna", "mug", 0.0, 1.0}};
+  }
   void fails_to_pick(const std::string& reason) {
     start(ActionKind::pick);
     run(90);
@@ -193,6 +202,7 @@ class Rig {
   ManipulationPlanner planner;
   Scene scene;
   HumanState people;
+  Facts facts;
   ExecutionStatus execution;
   Vector q, target;
   std::string touched;  // by the robot as long as it is in touching_posture
@@ -415,6 +425,67 @@ TEST(ManipulationPlanner, WithTheActionGoesWhatItHasAskedThePathPlannerFor) {
   rig.execution.mode = Mode::hold;
   rig.cycle();
   EXPECT_FALSE(rig.last_path.cancel) << "all was answered";
+}
+
+TEST(ManipulationPlanner, TakesWhatAPersonHoldsOutAndEngagesThemOnlyWhileTheyOffer) {
+  Rig rig;
+  rig.start(ActionKind::receive);
+  rig.run(1);
+  EXPECT_EQ(rig.planner.status().phase, "watching for an offer");
+  EXPECT_FALSE(rig.planner.status().exchange_engaged);
+  rig.hold_out();
+  bool engaged = false;
+  for (int i = 0; i < 1000 && rig.planner.status().state == ActionState::running; ++i) {
+    rig.cycle();
+    if (rig.planner.status().phase == "reaching the object") engaged = rig.planner.status().exchange_engaged;
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_TRUE(engaged);
+  EXPECT_FALSE(rig.planner.status().exchange_engaged);
+  EXPECT_TRUE(rig.planner.status().holding);
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "retreat"}));
+}
+
+TEST(ManipulationPlanner, WhatNobodyOffersIsNotTaken) {
+  Rig rig;
+  rig.scene.objects[0].holder = Holder::human;
+  rig.scene.objects[0].holder_id = "anna";
+  rig.start(ActionKind::receive);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_EQ(rig.planner.status().reason, "anna does not offer mug within 30 s");
+  EXPECT_TRUE(rig.phases.empty()) << "it moved";
+}
+
+TEST(ManipulationPlanner, FromAnOfferThatIsMovedAwayItBacksOffWithTheHandOpened) {
+  Rig rig;
+  rig.moves = true;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  for (int i = 0; i < 1500 && rig.planner.status().phase != "reaching the object"; ++i) rig.cycle();
+  ASSERT_EQ(rig.planner.status().phase, "reaching the object");
+  for (int i = 0; i < 10; ++i) rig.cycle();
+  rig.scene.objects[0].T_world_object.translation().x() += 0.1;
+  rig.facts.facts.clear();
+  for (int i = 0; i < 1000 && rig.planner.status().phase != "watching for an offer"; ++i) rig.cycle();
+  EXPECT_EQ(rig.planner.status().phase, "watching for an offer");
+  EXPECT_EQ(rig.phases.back(), "backing off");
+  EXPECT_FALSE(rig.planner.status().exchange_engaged);
+  EXPECT_FALSE(rig.planner.status().holding);
+  ASSERT_FALSE(rig.planner.status().refusals.empty());
+  EXPECT_EQ(rig.planner.status().refusals.back().reason, "mug was moved away");
+}
+
+TEST(ManipulationPlanner, WhoDoesNotLetGoKeepsIt) {
+  Rig rig;
+  rig.object_comes = false;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run(200);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_EQ(rig.planner.status().reason, "anna does not let go of mug");
+  EXPECT_EQ(rig.phases.back(), "backing off");
+  EXPECT_FALSE(rig.planner.status().holding);
 }
 
 TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {

@@ -218,5 +218,30 @@ TEST(HandoverOracleTest, DemandsLiftContactAndASecondAlone) {
   EXPECT_FALSE(run(0.12, 0.3, 1.0, true));
 }
 
+TEST(HandoverOracleTest, WhatAPersonGivesMustBeInBothHandsThenInTheRobotsAlone) {
+  const auto run = [](double both, double alone, bool floor) {
+    HandoverOracle oracle(1.0, true);
+    const auto pass = [&](const ObjectSituation& s, double seconds) {
+      for (int i = 0; i < static_cast<int>(std::lround(seconds * 1000)); ++i) oracle.observe(s, 0.001);
+    };
+    ObjectSituation s;
+    s.height = 1.0, s.human_grips = s.human_touches = true;
+    pass(s, 1.0);
+    EXPECT_FALSE(oracle.shared());
+    s.robot_grips = s.robot_touches = true;
+    pass(s, both);
+    EXPECT_TRUE(oracle.shared());
+    s.human_grips = s.human_touches = false, s.on_floor = floor;
+    pass(s, alone);
+    GroundTruth truth;
+    oracle.write(truth);
+    return truth.handover_done;
+  };
+  EXPECT_TRUE(run(0.3, 1.0, false));
+  EXPECT_FALSE(run(0.1, 1.0, false)) << "hardly shared";
+  EXPECT_FALSE(run(0.3, 0.9, false));
+  EXPECT_FALSE(run(0.3, 1.0, true)) << "dropped";
+}
+
 }  // namespace
 }  // namespace handsel::sim

@@ -94,6 +94,94 @@ TEST(SimPerson, DoesNotReachForWhatMovesOrIsOutOfReach) {
   EXPECT_EQ(person.phase(), PersonPhase::watching);
 }
 
+PersonSettings giver() {
+  PersonSettings settings;
+  settings.id = "anna";
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.kind = PersonKind::giver;
+  return settings;
+}
+
+/// What a giver sees while it holds the mug: it goes with the hand.
+PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool robot_holds_it) {
+  PersonView view = offer(person.hand().T_world_body * Vector3(0.08, 0, 0));
+  view.robot_hand = robot_hand;
+  view.held_by_robot = robot_holds_it;
+  return view;
+}
+
+void live(PersonModel& person, double seconds, const Vector3& robot_hand, bool robot_holds_it = false) {
+  for (int i = 0; i < static_cast<int>(seconds * 1000); ++i) person.step(0.001, holding(person, robot_hand, robot_holds_it));
+}
+
+TEST(SimPerson, WhoGivesHoldsItOutTowardTheRobotAndLetsGoOnceTheRobotHasIt) {
+  PersonModel person(giver());
+  const Vector3 robot_hand(0.4, 0.3, 1.0);
+  const double before = (person.hand().T_world_body.translation() - robot_hand).norm();
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 3, robot_hand);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+  EXPECT_LT((person.hand().T_world_body.translation() - robot_hand).norm(), before - 0.15);
+  live(person, 0.4, robot_hand, true);
+  EXPECT_TRUE(person.wants_grip()) << "not at the first touch";
+  live(person, 0.3, robot_hand, true);
+  EXPECT_FALSE(person.wants_grip());
+  live(person, 2, robot_hand, true);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, WhoGivesNeverHoldsItIntoTheRobotsHand) {
+  PersonModel person(giver());
+  live(person, 3, {1.0, -0.2, 1.2});
+  EXPECT_GT((person.hand().T_world_body.translation() - Vector3(1.0, -0.2, 1.2)).norm(), 0.3);
+}
+
+TEST(SimPerson, WhoIsIgnoredComesNearerAndHoldsItOutAnewTwice) {
+  PersonModel person(giver());
+  const double before = person.body().joints[joint("torso")].position.x();
+  live(person, 40, {0.3, 0, 1.0});
+  EXPECT_NEAR(before - person.body().joints[joint("torso")].position.x(), 0.24, 0.03);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+}
+
+TEST(SimPerson, WhoChangesTheirMindDrawsItBackOnceAndOffersAgain) {
+  PersonSettings settings = giver();
+  settings.manner.withdraws = true;
+  PersonModel person(settings);
+  live(person, 4, {0.4, 0, 1.0});
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  const Vector3 near = person.hand().T_world_body.translation() + Vector3(-0.25, 0, 0);
+  live(person, 0.5, near);
+  EXPECT_EQ(person.phase(), PersonPhase::keeping);
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 6, near);
+  EXPECT_EQ(person.phase(), PersonPhase::offering) << "and now stays";
+}
+
+TEST(SimPerson, WhoHesitatesTakesItLaterAndWhoIsEarlyTakesItWhileItMoves) {
+  const auto taken_after = [](const Manner& manner, double speed) {
+    PersonSettings settings;
+    settings.feet = Vector3(1.5, 0, 0);
+    settings.yaw = M_PI;
+    settings.manner = manner;
+    PersonModel person(settings);
+    PersonView view = offer({0.95, 0.05, 1.05});
+    view.object_velocity = Vector3(speed, 0, 0);
+    double clock = 0;
+    for (; person.phase() != PersonPhase::pulling && clock < 8; clock += 0.001) person.step(0.001, view);
+    return clock;
+  };
+  Manner hesitant, early;
+  hesitant.hesitation = 1.0;
+  early.early = true;
+  const double usual = taken_after({}, 0);
+  EXPECT_LT(usual, 2.5);
+  EXPECT_GT(taken_after(hesitant, 0), usual + 0.9);
+  EXPECT_GE(taken_after({}, 0.2), 8) << "who is not early waits for it to stand still";
+  EXPECT_LT(taken_after(early, 0.2), 2.5);
+}
+
 TEST(SimPerson, LooksAtWhatTheRobotHolds) {
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);

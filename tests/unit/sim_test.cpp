@@ -307,6 +307,45 @@ TEST(SimScenario, WhatIsWrongIsNamed) {
   EXPECT_NE(sentence(s).find("disturbance earthquake is unknown; there are pause, resume"), std::string::npos);
 }
 
+TEST(SimScenario, PeopleDifferFromTrialToTrialAndTheSameSeedGivesTheSame) {
+  config::Scenario s = mug_in_hand();
+  s.set_name("s");
+  s.clear_people();
+  auto& person = *s.add_people();
+  person.set_id("anna");
+  person.set_x(1.5);
+  auto& varies = *person.mutable_varies();
+  varies.set_absent(0.25);
+  varies.set_place(0.1);
+  varies.set_left_handed(0.5);
+  varies.set_slowest(0.5);
+  varies.set_fastest(2);
+  varies.set_seated(0.5);
+  varies.set_sidesteps(1);
+  varies.set_sidestep(0.3);
+  int there = 0, left = 0, seated = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const SceneSetup setup = set_up(s, jido(), library(), 4, {}, seed), again = set_up(s, jido(), library(), 4, {}, seed);
+    ASSERT_EQ(setup.people.size(), again.people.size());
+    if (setup.people.empty()) continue;
+    ++there;
+    const PersonSettings &one = setup.people[0].settings, &two = again.people[0].settings;
+    EXPECT_EQ(one.feet, two.feet);
+    EXPECT_LE((one.feet - Vector3(1.5, 0, 0)).cwiseAbs().maxCoeff(), 0.1);
+    EXPECT_GE(one.manner.pace, 0.5);
+    EXPECT_LE(one.manner.pace, 2.0);
+    left += one.left_handed;
+    seated += one.manner.seated;
+    if (one.manner.seated) EXPECT_EQ(one.manner.sidestep.norm(), 0);
+    if (!one.manner.seated) EXPECT_LT(one.manner.sidestep.dot(-one.feet), 1e-9) << "toward the robot";
+  }
+  EXPECT_NEAR(there, 150, 30);
+  EXPECT_NEAR(left, there / 2, 30);
+  EXPECT_NEAR(seated, there / 2, 30);
+  varies.set_seated(1.5);
+  EXPECT_THROW(set_up(s, jido(), library(), 4, {}, 1), ConfigError);
+}
+
 TEST(SimRobotBody, ABareUrdfHoldsItsPostureToo) {
   const char* data = std::getenv("HANDSEL_DATA");
   if (data == nullptr) GTEST_SKIP() << "HANDSEL_DATA is not set";
