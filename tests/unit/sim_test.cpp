@@ -336,8 +336,8 @@ TEST(SimScenario, PeopleDifferFromTrialToTrialAndTheSameSeedGivesTheSame) {
     EXPECT_LE(one.manner.pace, 2.0);
     left += one.left_handed;
     seated += one.manner.seated;
-    if (one.manner.seated) EXPECT_EQ(one.manner.sidestep.norm(), 0);
-    if (!one.manner.seated) EXPECT_LT(one.manner.sidestep.dot(-one.feet), 1e-9) << "toward the robot";
+    EXPECT_TRUE(!one.manner.seated || one.manner.sidestep.norm() == 0);
+    EXPECT_LT(one.manner.sidestep.dot(-one.feet), 1e-9) << "toward the robot";
   }
   EXPECT_NEAR(there, 150, 30);
   EXPECT_NEAR(left, there / 2, 30);
