@@ -64,7 +64,7 @@ struct TopicRow {
     "collision_checker attention manipulation_planner ros2_lane") \
   X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.06, 512, "collision_checker", "trajectory_controller attention") \
   X(AttentionState, "attention_state", state, 10, 0.3, 3584, "attention", "bridge") \
-  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 640, "attention", "spark trajectory_controller supervisor manipulation_planner") \
+  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 640, "attention", "spark trajectory_controller supervisor") \
   X(PathRequest, "path_request", request, 0, 0, 1343488, "manipulation_planner", "path_planner") \
   X(PathReply, "path_reply", reply, 0, 0, 1310720, "path_planner", "manipulation_planner") \
   X(TrajectoryRequest, "trajectory_request", request, 0, 0, 1310720, "manipulation_planner ros2_lane", "trajectory_planner") \

@@ -2,13 +2,67 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/trajectory/limits_check.hpp"
 
 namespace handsel::trajectory_planner {
 
-MotionJudge::MotionJudge(CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest)
-    : world_(world),
+namespace {
+
+constexpr double kCuts = 16;   // of the finest box, for the scene's sake
+constexpr double kHeld = 0.5;  // what the hand holds ends no farther from the tool [m]
+
+/// No point of the link is farther from its frame's origin [m].
+double extent_of(const Link& link) {
+  struct Radius {
+    double operator()(const Sphere& s) const { return s.radius; }
+    double operator()(const Box& s) const { return 0.5 * s.size.norm(); }
+    double operator()(const Cylinder& s) const { return std::hypot(s.radius, 0.5 * s.length); }
+    double operator()(const Capsule& s) const { return s.radius + 0.5 * s.length; }
+    double operator()(const MeshPtr& s) const {
+      double most = 0;
+      for (const Vector3& v : s->vertices) most = std::max(most, v.squaredNorm());
+      return std::sqrt(most);
+    }
+  };
+  double most = 0;
+  for (const PlacedShape& placed : link.collision)
+    most = std::max(most, placed.T_parent_shape.translation().norm() + std::visit(Radius{}, placed.shape));
+  return most;
+}
+
+/// How far from its axis the farthest point is that each axis moves, whatever the posture [m]; 1 for one that slides.
+Vector longest_levers(const RobotModel& robot) {
+  std::vector<double> extent;
+  for (const Link& link : robot.links()) extent.push_back(extent_of(link));
+  if (robot.tool_link() >= 0) extent[static_cast<std::size_t>(robot.tool_link())] += kHeld;
+  Vector levers = Vector::Zero(robot.dof());
+  std::vector<double> from_joint(robot.links().size());
+  for (const Joint& joint : robot.joints()) {
+    if (joint.dof < 0) continue;
+    double lever = 0;
+    std::fill(from_joint.begin(), from_joint.end(), -1.0);
+    from_joint[static_cast<std::size_t>(joint.child)] = 0;
+    for (std::size_t i = 0; i < robot.links().size(); ++i) {
+      const int up = robot.links()[i].parent_joint;
+      if (up < 0) continue;
+      const Joint& above = robot.joints()[static_cast<std::size_t>(up)];
+      const double parent = from_joint[static_cast<std::size_t>(above.parent)];
+      const double slides = above.kind == JointKind::prismatic ? std::max(std::abs(above.lower), std::abs(above.upper)) : 0;
+      if (parent >= 0) from_joint[i] = parent + above.T_parent_joint.translation().norm() + slides;
+      if (from_joint[i] >= 0) lever = std::max(lever, from_joint[i] + extent[i]);
+    }
+    levers[joint.dof] += std::abs(joint.mimic_factor) * (joint.kind == JointKind::prismatic ? 1.0 : lever);
+  }
+  return levers;
+}
+
+}  // namespace
+
+MotionJudge::MotionJudge(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest)
+    : robot_(robot),
+      world_(world),
       axes_(axes),
       rest_(rest),
       finest_(finest),
@@ -29,6 +83,21 @@ void MotionJudge::enclose(const SegmentTable& table, const Piece& piece, Vector&
     low[axes_[i]] = std::min(at_begin_.position[k], at_end_.position[k]) - off;
     high[axes_[i]] = std::max(at_begin_.position[k], at_end_.position[k]) + off;
   }
+}
+
+MotionJudge::Leaf MotionJudge::judge(const Vector& low, const Vector& high) {
+  const Vector middle = 0.5 * (low + high);
+  if (!world_.is_free(middle)) return Leaf::contact;
+  if (levers_.size() == 0) levers_ = longest_levers(robot_);
+  const double moves = 0.5 * (high - low).dot(levers_);
+  if (world_.distance_to_scene(middle, moves) >= moves) return Leaf::free;
+  return (high - low).maxCoeff() > finest_ / kCuts ? Leaf::unclear : Leaf::contact;
+}
+
+void MotionJudge::cut_in_two(const Piece& piece) {
+  const double middle = 0.5 * (piece.begin + piece.end);
+  open_.push_back({middle, piece.end});
+  open_.push_back({piece.begin, middle});
 }
 
 bool MotionJudge::free(const Trajectory& trajectory, const SegmentTable& table) {
@@ -53,13 +122,13 @@ bool MotionJudge::free(const Trajectory& trajectory, const SegmentTable& table) 
     for (int i = count - 1; i >= 0; --i) {
       if ((unclear >> i & 1) == 0) continue;
       const auto at = static_cast<std::size_t>(i);
-      const double middle = 0.5 * (judged[at].begin + judged[at].end);
       if ((high_[at] - low_[at]).maxCoeff() > finest_) {
-        open_.push_back({middle, judged[at].end});
-        open_.push_back({judged[at].begin, middle});
-      } else if (!world_.is_free(0.5 * (low_[at] + high_[at]))) {
-        return false;
+        cut_in_two(judged[at]);
+        continue;
       }
+      const Leaf leaf = judge(low_[at], high_[at]);
+      if (leaf == Leaf::contact) return false;
+      if (leaf == Leaf::unclear) cut_in_two(judged[at]);
     }
   }
   return true;

@@ -5,16 +5,19 @@
 #include <vector>
 
 #include "common/collision/collision_world.hpp"
+#include "common/model/robot_model.hpp"
 #include "common/trajectory/segment_table.hpp"
 
 namespace handsel::trajectory_planner {
 
 /// Every piece of the trajectory stays inside a box of configurations; a box that the wide check clears is free whatever happens in it.
-/// Others are cut in two, down to boxes in which no axis moves by more than `finest`: there FCL judges the middle.
+/// Others are cut in two, down to boxes in which no axis moves by more than `finest`: there FCL judges the middle, and the scene must be
+/// farther from it than anything moves in the box. Boxes are cut further for that, down to `finest` / 16; what comes nearer then counts as
+/// contact.
 class MotionJudge {
  public:
   /// `rest`: all axes [rad]; those that the trajectory does not move are there. Sets the moving axes of the world.
-  MotionJudge(CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest = 0.0004);
+  MotionJudge(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest = 0.0004);
 
   /// `table`: of the same trajectory, in the order of the axes given.
   bool free(const Trajectory& trajectory, const SegmentTable& table);
@@ -24,11 +27,16 @@ class MotionJudge {
     double begin{}, end{};
   };
   void enclose(const SegmentTable& table, const Piece& piece, Vector& low, Vector& high);
+  void cut_in_two(const Piece& piece);
+  enum class Leaf { free, contact, unclear };
+  Leaf judge(const Vector& low, const Vector& high);
 
+  const RobotModel& robot_;
   CollisionWorld& world_;
   const std::vector<int>& axes_;
   Vector rest_;
   double finest_;
+  Vector levers_;  // what an axis carries is nowhere farther from it [m]; 1 for one that slides; found when first needed
   MotionState3 at_begin_, at_end_;
   Vector acceleration_;  // largest of each axis
   int cursor_{};

@@ -46,7 +46,7 @@ class CornerJudge {
         start_(start),
         step_(step),
         bound_(cost.forbids() && cost.forbidden(start).layer == nullptr),
-        motion_(world, group.axes, start) {}
+        motion_(robot, world, group.axes, start) {}
 
   bool operator()(const Trajectory& corner) {
     double rate = 0;
