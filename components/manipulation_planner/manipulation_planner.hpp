@@ -135,8 +135,8 @@ class ManipulationPlanner {
   /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
   Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp);
-  /// From the offered object with the hand opened, the way it came.
-  Routine<Outcome> back_off(const std::string& object, const std::string& giver, const Grasp& grasp);
+  /// From the offered object with the hand opened, the way it came; the result is `why`.
+  Routine<Outcome> back_off(const std::string& object, const std::string& giver, const Grasp& grasp, const Outcome& why);
   /// Who holds out what.
   struct Offer {
     std::string object, giver;

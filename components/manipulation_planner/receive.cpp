@@ -54,12 +54,8 @@ std::optional<Grasp> ManipulationPlanner::aimed(const std::string& object_id, co
 
 Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const std::string& giver) {
   if (status_.holding && (wanted.empty() || attachment_.object == wanted)) co_return Outcome{};
-  const std::string who = giver.empty() ? "nobody" : giver;
-  Outcome last = Outcome::failure(who + " offers " + (wanted.empty() ? "anything" : wanted) + " within " +
-                                  std::to_string(static_cast<int>(settings_.receive_timeout())) + " s");
-  if (!giver.empty())
-    last.reason = giver + " does not offer " + (wanted.empty() ? "anything" : wanted) + " within " +
-                  std::to_string(static_cast<int>(settings_.receive_timeout())) + " s";
+  Outcome last = Outcome::failure((giver.empty() ? "nobody offers " : giver + " does not offer ") + (wanted.empty() ? "anything" : wanted) +
+                                  " within " + std::to_string(static_cast<int>(settings_.receive_timeout())) + " s");
   std::set<std::uint64_t> did_not_hold;
   for (std::uint32_t attempt = 0; attempt < settings_.receive_attempts(); ++attempt) {
     status_.phase = "watching for an offer";
@@ -142,17 +138,16 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   status_.exchange_point = reach_object.p_world_aim;
   moved = co_await move(reach_object);
   if (!moved.good) {
-    Outcome backed = co_await back_off(object_id, giver, *grasp);
-    if (!backed.good) refuse("backing off", backed.reason);
+    moved = co_await back_off(object_id, giver, *grasp, moved);
     co_return moved;
   }
 
   status_.phase = "grasp";
   HandResult closed = co_await hand(HandAction::grasp, grasp->hand_joints, settings_.hand_timeout(), &grasp->hand_effort);
   if (!closed.outcome.good || closed.state != HandState::grasped) {
-    Outcome backed = co_await back_off(object_id, giver, *grasp);
-    if (!backed.good) refuse("backing off", backed.reason);
-    co_return Outcome::failure(closed.outcome.good ? "the hand closed on nothing" : closed.outcome.reason);
+    const Outcome why = closed.outcome.good ? Outcome::failure("the hand closed on nothing") : closed.outcome;
+    moved = co_await back_off(object_id, giver, *grasp, why);
+    co_return moved;
   }
   status_.phase = "waiting for " + giver + " to let go";
   const auto mine = [this, &object_id] {
@@ -161,9 +156,9 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   };
   const bool let_go = co_await waiting_.until(mine, settings_.let_go_timeout());
   if (!let_go) {
-    Outcome backed = co_await back_off(object_id, giver, *grasp);
-    if (!backed.good) refuse("backing off", backed.reason);
-    co_return Outcome::failure(giver + " does not let go of " + object_id);
+    const Outcome why = Outcome::failure(giver + " does not let go of " + object_id);
+    moved = co_await back_off(object_id, giver, *grasp, why);
+    co_return moved;
   }
   grasp_ = *grasp;
   hold(*object(object_id));
@@ -179,18 +174,21 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   co_return Outcome{};
 }
 
-Routine<Outcome> ManipulationPlanner::back_off(const std::string& object_id, const std::string& giver, const Grasp& grasp) {
+Routine<Outcome> ManipulationPlanner::back_off(const std::string& object_id, const std::string& giver, const Grasp& grasp,
+                                               const Outcome& why) {
   status_.phase = "backing off";
   HandResult opened = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
+  if (!opened.outcome.good) refuse("backing off", opened.outcome.reason);
   Motion back;
   back.phase = "backing off";
   back.straight = true;
   back.goals = {grasp.approach_joints};
   back.allowed = {object_id, giver};
   back.speed = settings_.approach_speed();
-  Outcome outcome = co_await move(back);
+  Outcome backed = co_await move(back);
+  if (!backed.good) refuse("backing off", backed.reason);
   status_.exchange_engaged = false;
-  co_return opened.outcome.good ? outcome : opened.outcome;
+  co_return why;
 }
 
 }  // namespace handsel::manipulation_planner

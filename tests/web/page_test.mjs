@@ -93,13 +93,15 @@ test("while it hands over, the angles drawn are those on DDS at the same stamp, 
 test("at rest the angles drawn and written are those on DDS", async () => {
   await until(page, () => document.querySelector("#task-state").textContent === "succeeded" && document.querySelector("#speed").textContent === "at rest");
   assert.deepEqual(await page.$$eval("#plan td:last-child", (cells) => cells.map((cell) => cell.textContent)), ["pick mug for anna", "give mug to anna", "go to rest"]);
+  // The picture is drawn a little after what is written: it comes to rest after the words.
+  await until(page, (most) => {
+    const drawn = Object.values(window.handsel.angles), written = [...document.querySelectorAll("#joints tr")].map((row) => Number(row.lastElementChild.textContent));
+    return written.length === 7 && written.every((angle, i) => Math.abs(angle - drawn[i]) <= most);
+  }, kAngle);
   let sample;
   for (const end = Date.now() + kPatience; !sample && Date.now() < end; ) sample = await compare();
   assert.ok(sample, "no stamp of the page was heard on DDS");
   assert.ok(sample.worst <= kAngle, `${sample.worst} rad`);
-  const arm = await page.$$eval("#joints tr", (rows) => rows.map((row) => row.lastElementChild.textContent));
-  assert.equal(arm.length, 7);
-  arm.forEach((text, i) => assert.ok(Math.abs(Number(text) - sample.shown[i]) <= kAngle, `${text} beside ${sample.shown[i]}`));
   console.log(`at rest: largest difference ${sample.worst.toExponential(1)} rad`);
 });
 
