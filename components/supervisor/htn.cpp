@@ -443,14 +443,21 @@ Plan make_plan(const Domain& domain, const World& world, int task, const std::ve
   return Search(domain, world, forbidden, limits).run(task, args);
 }
 
-std::string why_not(const Domain& domain, World& world, const PlannedAction& planned, const State& state) {
+namespace {
+/// What its first condition among `conditions` that does not hold says; empty: all hold.
+std::string objection(const Domain& domain, World& world, const PlannedAction& planned, const State& state,
+                      std::vector<Test> CompiledAction::*conditions, const char* otherwise) {
   const CompiledAction& action = domain.actions[static_cast<std::size_t>(planned.action)];
   const Frame frame = frame_of(world, planned.args);
   const Ground ground{world};
-  const Test* test = failing(ground, action.when, frame, state);
+  const Test* test = failing(ground, action.*conditions, frame, state);
   if (test == nullptr) return "";
-  return test->otherwise.empty() ? planned.text() + " is not possible any more"
-                                 : ground.fill(test->otherwise, action.parameters, action.types, frame);
+  return test->otherwise.empty() ? planned.text() + otherwise : ground.fill(test->otherwise, action.parameters, action.types, frame);
+}
+}  // namespace
+
+std::string why_not(const Domain& domain, World& world, const PlannedAction& planned, const State& state) {
+  return objection(domain, world, planned, state, &CompiledAction::when, " is not possible any more");
 }
 
 void apply(const Domain& domain, World& world, const PlannedAction& planned, State& state) {
@@ -465,13 +472,7 @@ bool shows(const Domain& domain, World& world, const PlannedAction& planned, con
 }
 
 std::string broken(const Domain& domain, World& world, const PlannedAction& planned, const State& state) {
-  const CompiledAction& action = domain.actions[static_cast<std::size_t>(planned.action)];
-  const Frame frame = frame_of(world, planned.args);
-  const Ground ground{world};
-  const Test* test = failing(ground, action.keep, frame, state);
-  if (test == nullptr) return "";
-  return test->otherwise.empty() ? planned.text() + " makes no sense any more"
-                                 : ground.fill(test->otherwise, action.parameters, action.types, frame);
+  return objection(domain, world, planned, state, &CompiledAction::keep, " makes no sense any more");
 }
 
 std::string unachieved(const Domain& domain, World& world, int task, const std::vector<std::string>& args, const State& state) {

@@ -117,6 +117,7 @@ void Launcher::start(Child& child) {
   }
   if (pid < 0) {
     failure_ = LaunchFailure{child.spec.name, "cannot start " + child.spec.name + ": " + std::strerror(errno), 3};
+    failed_.notify_all();
     return;
   }
   child.pid = pid;
@@ -135,8 +136,10 @@ void Launcher::handle_exit(Child& child, int status) {
   if (code == 2 || code == 3) {
     const std::string said = last_line(log);
     failure_ = LaunchFailure{child.spec.name, child.spec.name + ": " + (said.empty() ? describe_exit(status) : said), code};
+    failed_.notify_all();
   } else if (child.quick_deaths >= kMaxQuickDeaths) {
     failure_ = LaunchFailure{child.spec.name, child.spec.name + " keeps dying: it " + describe_exit(status) + "; see " + log.string(), 3};
+    failed_.notify_all();
   } else {
     start(child);
     say(child.spec.name + " " + describe_exit(status) + "; started again");
@@ -183,8 +186,9 @@ pid_t Launcher::pid(const std::string& name) const {
   return child == children_.end() ? -1 : child->pid;
 }
 
-std::optional<LaunchFailure> Launcher::failure() const {
-  std::lock_guard lock(mutex_);
+std::optional<LaunchFailure> Launcher::failure(Duration patience) const {
+  std::unique_lock lock(mutex_);
+  failed_.wait_for(lock, patience, [this] { return failure_.has_value(); });
   return failure_;
 }
 

@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <atomic>
+#include <condition_variable>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -52,7 +53,8 @@ class Launcher {
   void stop();
   std::vector<ProcessStatus> processes() const;
   pid_t pid(const std::string& name) const;  ///< -1 if it does not run or is unknown
-  std::optional<LaunchFailure> failure() const;
+  /// Waits so long for one if there is none.
+  std::optional<LaunchFailure> failure(Duration patience = {}) const;
 
  private:
   struct Child;
@@ -66,6 +68,7 @@ class Launcher {
   mutable std::mutex mutex_;
   std::vector<Child> children_;
   std::optional<LaunchFailure> failure_;
+  mutable std::condition_variable failed_;
   int wake_fd_{-1};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
