@@ -39,6 +39,14 @@ struct SrsArm::Problem {
   Vector3 circle_axis;
 };
 
+std::string SrsArm::why_none(const Group& group) {
+  const std::size_t axes = group.axes.size();
+  return axes == 7 ? "the axes of the group \"" + group.name +
+                         "\" do not meet in shoulder, elbow and wrist: they do not follow from tool pose and elbow angle"
+                   : "the group \"" + group.name + "\" has " + std::to_string(axes) +
+                         " axes; the seven of an arm with shoulder, elbow and wrist are needed";
+}
+
 std::optional<SrsArm> SrsArm::recognise(const Chain& chain) {
   const auto& elements = chain.elements();
   if (chain.size() != 7 || elements.size() != 7) return std::nullopt;

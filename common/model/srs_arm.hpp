@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 
 #include "common/model/ik_chain.hpp"
 
@@ -13,6 +14,8 @@ class SrsArm {
   /// The arm, if the chain is one: axes 1 to 3 meet in the shoulder, 5 to 7 in the wrist, neighbours are perpendicular and the elbow is
   /// on axes 3 and 5, which are parallel when all joints are 0.
   static std::optional<SrsArm> recognise(const Chain& chain);
+  /// What to tell people when the axes of a group are none: how many there are, and what is needed.
+  static std::string why_none(const Group& group);
 
   /// The solution inside the limits nearest `seed`, found over the whole circle of elbow positions; a little weight goes to the rest
   /// posture and to staying off the limits. When there is none: the one least outside, put on the limits, with `outside` > 0; nullopt when

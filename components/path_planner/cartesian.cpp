@@ -353,7 +353,7 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
   }
   const ik::Chain chain(robot, *group, problem.start);
   const auto arm = ik::SrsArm::recognise(chain);
-  if (!arm) return refuse("the arm is not one of shoulder, elbow and wrist: its joints do not follow from tool pose and elbow angle");
+  if (!arm) return refuse(ik::SrsArm::why_none(*group));
   std::vector<int> moving = group->axes;
   moving.insert(moving.end(), problem.also.begin(), problem.also.end());
   world.set_moving_axes(moving);

@@ -119,7 +119,7 @@ class CartesianPlanning {
     T_root_base_ = base_at(request_.start(request_.also));
     chain_.emplace(robot_, group_, request_.start);
     arm_ = ik::SrsArm::recognise(*chain_);
-    if (!arm_) return refuse("the arm is not one of shoulder, elbow and wrist: its joints do not follow from tool pose and elbow angle");
+    if (!arm_) return refuse(ik::SrsArm::why_none(group_));
     motion_.axes = group_.axes;
     motion_.axes.insert(motion_.axes.end(), request_.also.begin(), request_.also.end());
     world_.set_moving_axes(axes_that_move());

@@ -124,7 +124,8 @@ void add_grasp_choose(CLI::App& grasp, int& exit_code) {
   auto o = std::make_shared<ChooseOptions>();
   add_stage_options(*choosing, *o);
   choosing->add_option("--at", o->at, "where the object stands on the table, x,y [m]")->delimiter(',')->expected(2)->capture_default_str();
-  choosing->add_option("--goal", o->goal, "where it will be put on the table, x,y [m] and heading [deg]: the grasp must serve there too")
+  choosing
+      ->add_option("--goal", o->goal, "where it will be put on the table, x,y [m], perhaps a heading [deg]: the grasp must serve there too")
       ->delimiter(',')
       ->expected(2, 3);
   choosing->add_option("--person", o->person, "it is for a person who stands at x,y [m], facing the robot")->delimiter(',')->expected(2);
