@@ -89,6 +89,12 @@ const char* name(Mode);
 enum class MotionState : std::uint8_t { idle, running, finished, refused, stopped };
 enum class HandState : std::uint8_t { idle, moving, grasped, empty, released, refused };
 
+/// A hand other than the first one.
+struct OtherHandState {
+  std::string group;
+  HandState hand{HandState::idle};  ///< of the last command to it
+};
+
 /// 50 Hz and on every change. Topic ExecutionStatus, profile state.
 struct ExecutionStatus {
   Stamp stamp{};
@@ -101,6 +107,7 @@ struct ExecutionStatus {
   double progress{};             ///< time along the trajectory / its duration
   std::uint64_t hand_command{};  ///< last hand command id received
   HandState hand{HandState::idle};
+  std::vector<OtherHandState> other_hands;                                        ///< none: there is one hand
   double pull{};                                                                  ///< force beyond the load's weight, toward the person [N]
   std::string reason;                                                             ///< of the last refusal, or of slowing, one sentence
   std::uint64_t cycles{}, late_cycles{};                                          ///< control cycles; later than one period

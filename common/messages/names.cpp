@@ -19,6 +19,7 @@ static_assert(ends_with(kModeNames, Mode::fault));
 static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
 static_assert(ends_with(kActionKindNames, ActionKind::carry));
+static_assert(ends_with(kRegraspKindNames, RegraspKind::join));
 static_assert(ends_with(kStepStateNames, StepState::dropped));
 static_assert(ends_with(kTaskChangeNames, TaskChange::give));
 static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));

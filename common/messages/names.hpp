@@ -7,6 +7,7 @@
 
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
+#include "common/messages/planning.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/task.hpp"
@@ -38,6 +39,7 @@ inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "
 inline constexpr const char* kTaskKindNames[] = {"give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
                                                  "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
 inline constexpr const char* kTaskStateNames[] = {"accepted", "running", "paused", "succeeded", "failed", "cancelled", "refused"};
+inline constexpr const char* kRegraspKindNames[] = {"pick", "pass", "place", "join"};
 inline constexpr const char* kActionKindNames[] = {"pick", "place", "give", "receive", "go_to", "regrasp", "carry"};
 inline constexpr const char* kStepStateNames[] = {"waiting", "running", "done", "failed", "dropped"};
 inline constexpr const char* kTaskChangeNames[] = {"none", "suspend", "resume", "abort", "give"};

@@ -20,10 +20,11 @@ struct RequestId {
   bool operator==(const RequestId&) const = default;
 };
 
-/// An object rigidly held by the hand while the robot moves.
+/// An object rigidly held by a hand while the robot moves.
 struct Attachment {
-  std::string object;  ///< scene object id; empty = nothing held
-  Pose T_tool_object{Pose::Identity()};
+  std::string object;                    ///< scene object id; empty = nothing held
+  Pose T_tool_object{Pose::Identity()};  ///< in the palm of that hand
+  std::string hand;                      ///< group of the hand that holds it; empty: "hand"
 };
 
 enum class PlannerKind : std::uint8_t { automatic, rrt, rrt_connect, trrt, bitrrt };
@@ -115,6 +116,8 @@ struct TrajectoryRequest {
   bool upright{};                   ///< as in PathRequest
   Vector3 upright_axis{Vector3::UnitZ()};
   double most_tilt{};
+  std::string follower;  ///< arm whose tip is rigidly joined to the group's (two hands on one object); empty: none
+  Pose T_tip_follower{Pose::Identity()};
 };
 
 /// Topic TrajectoryReply, profile reply.
@@ -182,6 +185,45 @@ struct GraspReply {
   std::string reason;  ///< set when the list is empty
   std::vector<Grasp> grasps;
   Refusals rejected;  ///< counts per reason, e.g. {"113 frames", "thumb finds no contact"}
+};
+
+enum class RegraspKind : std::uint8_t {
+  pick,   ///< from where it stands, by `to`
+  pass,   ///< from `from` to `to`
+  place,  ///< by `from`
+  join,   ///< `to` takes hold besides `from`
+};
+
+/// Topic RegraspRequest, profile request: hands to take an object with, one after the other or two at once.
+struct RegraspRequest {
+  Stamp stamp{};
+  RequestId id;
+  std::string object;  ///< scene object id
+  Vector start;        ///< all axes of the robot
+  Pose T_world_goal{Pose::Identity()};
+  bool both{};  ///< two hands at once, which carry it there together; else from hand to hand
+  std::uint64_t seed{};
+};
+
+/// One change of hands. The whole robot's axes [rad].
+struct RegraspStep {
+  RegraspKind kind{};
+  std::string from, to;                   ///< groups of the arms: who has it or lets go, who takes; empty: none
+  Pose T_world_object{Pose::Identity()};  ///< the object meanwhile
+  Grasp grasp;                            ///< of `to`; of `from` where nobody takes
+  Vector q;                               ///< all hands that touch the object closed on it
+  Vector before;                          ///< the hand that comes, opened, off the object; empty: none comes
+  Vector after;                           ///< the hand that went, opened, off the object; empty: none goes
+};
+
+/// Topic RegraspReply, profile reply.
+struct RegraspReply {
+  Stamp stamp{};
+  RequestId id;
+  bool solved{};
+  std::string reason;
+  std::vector<RegraspStep> steps;
+  Refusals rejected;
 };
 
 /// Topic GraspCandidates, profile advice, 2 Hz: better grasps for the task that runs.

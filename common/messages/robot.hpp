@@ -12,6 +12,14 @@ namespace handsel {
 
 enum class DriveMode : std::uint8_t { off, braked, enabled, protective_stop, user_stop, emergency_stop };
 
+/// What a hand other than the first one feels.
+struct OtherHand {
+  std::string group;    ///< its axes
+  Wrench wrist_wrench;  ///< frame of its palm
+  double hand_effort{};
+  double payload{};
+};
+
 /// Published by the robot side (driver or simulator), 500 Hz. Topic RobotState, profile sensor, keyed by robot.
 struct RobotState {
   Stamp stamp{};
@@ -24,6 +32,7 @@ struct RobotState {
   double hand_effort{};                 ///< sum of |finger torques| [Nm]
   double payload{};                     ///< mass the hand carries as measured by the robot side [kg]
   DriveMode mode{DriveMode::off};
+  std::vector<OtherHand> other_hands;  ///< of a robot with several arms; the fields above speak of the first hand
 };
 
 /// Set-point of every axis, from the trajectory controller only. Topic JointCommand, profile setpoint, keyed by robot.
@@ -33,7 +42,8 @@ struct JointCommand {
   std::uint64_t sequence{};
   Vector position, velocity, acceleration;  ///< per axis, all axes of the robot
   Vector effort;                            ///< likewise, what the motors give besides following [Nm]; empty: nothing
-  double payload{};                         ///< mass the hand holds, for the robot side's own model; 0: nothing or unknown [kg]
+  double payload{};                         ///< mass the first hand holds, for the robot side's own model; 0: nothing or unknown [kg]
+  Vector other_payloads;                    ///< likewise of the other hands, in the order of RobotState::other_hands; or empty [kg]
 };
 
 }  // namespace handsel

@@ -84,6 +84,8 @@ struct ActionGoal {
   ActionKind kind{};
   bool cancel{};  ///< stop action `id`: finish softly, report cancelled
   std::string object, human, surface;
+  bool has_goal{};                      ///< pick, place, regrasp, carry: where the object will stand in the end is known
+  Pose T_world_goal{Pose::Identity()};  ///< the object there
 };
 
 enum class ActionState : std::uint8_t { idle, running, succeeded, failed, cancelled };

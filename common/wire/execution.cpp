@@ -52,6 +52,11 @@ void describe(WireIo& io, HandCommand& m, handsel_HandCommand& w) {
   io.number("payload", m.payload, w.payload, {0, 1e3});
 }
 
+void describe(WireIo& io, OtherHandState& m, handsel_OtherHandState& w) {
+  io.text("group", m.group, w.group, Text::name);
+  io.choice("hand", m.hand, w.hand, kHands);
+}
+
 void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.text("robot", m.robot, w.robot, Text::name);
   io.stamp(m.stamp, w.stamp);
@@ -63,6 +68,7 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.number("progress", m.progress, w.progress, kShare);
   io.integer("hand_command", m.hand_command, w.hand_command);
   io.choice("hand", m.hand, w.hand, kHands);
+  io.list("other_hands", m.other_hands, w.other_hands, 3);
   io.number("pull", m.pull, w.pull, kForce);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.integer("cycles", m.cycles, w.cycles);

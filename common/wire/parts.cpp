@@ -36,6 +36,7 @@ void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w) {
 void describe(WireIo& io, Attachment& m, handsel_Attachment& w) {
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.pose("T_tool_object", m.T_tool_object, w.T_tool_object);
+  io.text("hand", m.hand, w.hand, Text::maybe_empty);
 }
 
 void describe(WireIo& io, Primitive& m, handsel_Primitive& w) {

@@ -1,4 +1,5 @@
 #include "common/messages/planning.hpp"
+#include "common/messages/names.hpp"
 
 #include "common/wire/parts.hpp"
 
@@ -111,6 +112,8 @@ void describe(WireIo& io, TrajectoryRequest& m, handsel_TrajectoryRequest& w) {
   io.flag("upright", m.upright, w.upright);
   io.direction("upright_axis", m.upright_axis, w.upright_axis, m.upright);
   io.number("most_tilt", m.most_tilt, w.most_tilt, kTurn);
+  io.text("follower", m.follower, w.follower, Text::maybe_empty);
+  io.pose("T_tip_follower", m.T_tip_follower, w.T_tip_follower);
   io.check(equally_wide(m.nodes), "nodes", "have different numbers of axes");
 }
 
@@ -150,6 +153,37 @@ void describe(WireIo& io, GraspReply& m, handsel_GraspReply& w) {
   io.list("rejected", m.rejected, w.rejected, 256, true);
 }
 
+void describe(WireIo& io, RegraspRequest& m, handsel_RegraspRequest& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.text("object", m.object, w.object, Text::name);
+  io.vector("start", m.start, w.start, kCoordinate);
+  io.pose("T_world_goal", m.T_world_goal, w.T_world_goal);
+  io.flag("both", m.both, w.both);
+  io.integer("seed", m.seed, w.seed);
+  io.check(m.start.size() > 0, "start", "is empty, one value per axis of the robot is needed");
+}
+
+void describe(WireIo& io, RegraspStep& m, handsel_RegraspStep& w) {
+  io.choice("kind", m.kind, w.kind, kRegraspKindNames);
+  io.text("from", m.from, w.from, Text::maybe_empty);
+  io.text("to", m.to, w.to, Text::maybe_empty);
+  io.pose("T_world_object", m.T_world_object, w.T_world_object);
+  io.part("grasp", m.grasp, w.grasp);
+  io.vector("q", m.q, w.q, kCoordinate);
+  io.vector("before", m.before, w.before, kCoordinate);
+  io.vector("after", m.after, w.after, kCoordinate);
+}
+
+void describe(WireIo& io, RegraspReply& m, handsel_RegraspReply& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.part("id", m.id, w.id);
+  io.flag("solved", m.solved, w.solved);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.list("steps", m.steps, w.steps, 32);
+  io.list("rejected", m.rejected, w.rejected, 256, true);
+}
+
 void describe(WireIo& io, GraspCandidates& m, handsel_GraspCandidates& w) {
   io.text("object", m.object, w.object, Text::name);
   io.stamp(m.stamp, w.stamp);
@@ -179,6 +213,8 @@ HANDSEL_WIRE(TrajectoryRequest)
 HANDSEL_WIRE(TrajectoryReply)
 HANDSEL_WIRE(GraspRequest)
 HANDSEL_WIRE(GraspReply)
+HANDSEL_WIRE(RegraspRequest)
+HANDSEL_WIRE(RegraspReply)
 HANDSEL_WIRE_KEYED(GraspCandidates, object)
 HANDSEL_WIRE(StateQuery)
 HANDSEL_WIRE(StateVerdict)

@@ -5,6 +5,13 @@
 #include "idl/robot.h"
 
 namespace handsel {
+void describe(WireIo& io, OtherHand& m, handsel_OtherHand& w) {
+  io.text("group", m.group, w.group, Text::name);
+  io.wrench("wrist_wrench", m.wrist_wrench, w.wrist_wrench);
+  io.number("hand_effort", m.hand_effort, w.hand_effort, {0, 1e5});
+  io.number("payload", m.payload, w.payload, {-1e3, 1e3});
+}
+
 void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.text("robot", m.robot, w.robot, Text::name);
   io.stamp(m.stamp, w.stamp);
@@ -18,6 +25,7 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.number("hand_effort", m.hand_effort, w.hand_effort, {0, 1e5});
   io.number("payload", m.payload, w.payload, {-1e3, 1e3});
   io.choice("mode", m.mode, w.mode, kDriveModeNames);
+  io.list("other_hands", m.other_hands, w.other_hands, 3);
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
@@ -34,6 +42,7 @@ void describe(WireIo& io, JointCommand& m, handsel_JointCommand& w) {
   io.vector("acceleration", m.acceleration, w.acceleration, kAcceleration);
   io.vector("effort", m.effort, w.effort, kCoordinate);
   io.number("payload", m.payload, w.payload, {0, 1e3});
+  io.vector("other_payloads", m.other_payloads, w.other_payloads, {0, 1e3}, 3);
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");

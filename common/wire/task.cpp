@@ -55,6 +55,8 @@ void describe(WireIo& io, ActionGoal& m, handsel_ActionGoal& w) {
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.text("human", m.human, w.human, Text::maybe_empty);
   io.text("surface", m.surface, w.surface, Text::maybe_empty);
+  io.flag("has_goal", m.has_goal, w.has_goal);
+  io.pose("T_world_goal", m.T_world_goal, w.T_world_goal);
 }
 
 void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {

@@ -31,7 +31,7 @@ inline constexpr Range kSigned{-1, 1};
 inline constexpr Range kTime{0, 1e9};    // [s]
 inline constexpr Range kPeriod{0, 1e4};  // [s]
 inline constexpr double kHorizon = 1e9;  // stands for infinity on the wire
-inline constexpr std::size_t kMaxAxes = 32;
+inline constexpr std::size_t kMaxAxes = 64;
 
 class WireIo {
  public:

@@ -187,11 +187,11 @@ Finding check_configuration(const DdsConfiguration& dds) {
     return {"DDS settings", Verdict::bad,
             format("MaxSampleSize is %.2f MiB in %s; messages of up to %.2f MiB would be dropped",
                    static_cast<double>(*dds.max_sample_size) / (1 << 20), source.c_str(), static_cast<double>(largest) / (1 << 20)),
-            "set Internal/MaxSampleSize to 4MiB"};
+            "set Internal/MaxSampleSize to 8MiB"};
   }
   if (!dds.max_sample_size) {
     return {"DDS settings", Verdict::note, "MaxSampleSize is not set in " + source + "; a single hostile message may take all memory",
-            "set Internal/MaxSampleSize to 4MiB"};
+            "set Internal/MaxSampleSize to 8MiB"};
   }
   return {"DDS settings", Verdict::good, "read from " + source, ""};
 }

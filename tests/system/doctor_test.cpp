@@ -228,8 +228,8 @@ TEST_F(Doctor, finds_settings_that_are_not_there_no_xml_or_dangerous) {
   expect_finding(doctor("", "CYCLONEDDS_URI=" + folder.write("half.xml", "<CycloneDDS><Domain>")), 3, "missing", "DDS settings",
                  "half.xml is no XML");
   expect_finding(doctor("", settings(folder, "<SPDPInterval>", "<Banana>3</Banana><SPDPInterval>")), 1, "bad", "DDS", "Banana");
-  expect_finding(doctor("", settings(folder, "4MiB", "1MiB")), 1, "bad", "DDS settings", "MaxSampleSize is 1.00 MiB");
-  expect_finding(doctor("", settings(folder, "<MaxSampleSize>4MiB</MaxSampleSize>", "")), 0, "note", "DDS settings",
+  expect_finding(doctor("", settings(folder, "8MiB", "1MiB")), 1, "bad", "DDS settings", "MaxSampleSize is 1.00 MiB");
+  expect_finding(doctor("", settings(folder, "<MaxSampleSize>8MiB</MaxSampleSize>", "")), 0, "note", "DDS settings",
                  "MaxSampleSize is not set");
 }
 

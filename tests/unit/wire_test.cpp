@@ -139,7 +139,7 @@ TEST_P(EveryMessage, FullestSampleFitsItsRowOfTheTable) {
   const std::size_t size = test::cdr_size(type, sample(true).get());
   EXPECT_LE(size, type.row().largest) << type.row().type;
   EXPECT_GE(size * 2, type.row().largest) << type.row().type << " is far below its row: " << size;
-  EXPECT_LT(size, 4u << 20);
+  EXPECT_LT(size, 8u << 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, EveryMessage, testing::Range<std::size_t>(0, std::size(kTopics)),
