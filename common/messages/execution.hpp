@@ -107,7 +107,7 @@ struct ExecutionStatus {
   double progress{};             ///< time along the trajectory / its duration
   std::uint64_t hand_command{};  ///< last hand command id received
   HandState hand{HandState::idle};
-  std::vector<OtherHandState> other_hands;                                        ///< none: there is one hand
+  std::vector<OtherHandState> other_hands{};                                      ///< none: there is one hand
   double pull{};                                                                  ///< force beyond the load's weight, toward the person [N]
   std::string reason;                                                             ///< of the last refusal, or of slowing, one sentence
   std::uint64_t cycles{}, late_cycles{};                                          ///< control cycles; later than one period

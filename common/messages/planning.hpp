@@ -24,7 +24,7 @@ struct RequestId {
 struct Attachment {
   std::string object;                    ///< scene object id; empty = nothing held
   Pose T_tool_object{Pose::Identity()};  ///< in the palm of that hand
-  std::string hand;                      ///< group of the hand that holds it; empty: "hand"
+  std::string hand{};                    ///< group of the hand that holds it; empty: "hand"
 };
 
 enum class PlannerKind : std::uint8_t { automatic, rrt, rrt_connect, trrt, bitrrt };
@@ -116,7 +116,7 @@ struct TrajectoryRequest {
   bool upright{};                   ///< as in PathRequest
   Vector3 upright_axis{Vector3::UnitZ()};
   double most_tilt{};
-  std::string follower;  ///< arm whose tip is rigidly joined to the group's (two hands on one object); empty: none
+  std::string follower{};  ///< arm whose tip is rigidly joined to the group's (two hands on one object); empty: none
   Pose T_tip_follower{Pose::Identity()};
 };
 

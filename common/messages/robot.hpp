@@ -32,7 +32,7 @@ struct RobotState {
   double hand_effort{};                 ///< sum of |finger torques| [Nm]
   double payload{};                     ///< mass the hand carries as measured by the robot side [kg]
   DriveMode mode{DriveMode::off};
-  std::vector<OtherHand> other_hands;  ///< of a robot with several arms; the fields above speak of the first hand
+  std::vector<OtherHand> other_hands{};  ///< of a robot with several arms; the fields above speak of the first hand
 };
 
 /// Set-point of every axis, from the trajectory controller only. Topic JointCommand, profile setpoint, keyed by robot.
@@ -43,7 +43,7 @@ struct JointCommand {
   Vector position, velocity, acceleration;  ///< per axis, all axes of the robot
   Vector effort;                            ///< likewise, what the motors give besides following [Nm]; empty: nothing
   double payload{};                         ///< mass the first hand holds, for the robot side's own model; 0: nothing or unknown [kg]
-  Vector other_payloads;                    ///< likewise of the other hands, in the order of RobotState::other_hands; or empty [kg]
+  Vector other_payloads{};                  ///< likewise of the other hands, in the order of RobotState::other_hands; or empty [kg]
 };
 
 }  // namespace handsel
