@@ -166,7 +166,7 @@ void print_plan(const RegraspPlan& plan, const Stage& stage, bool text) {
   const auto id = [&](int index, std::size_t grasp) { return stage.arms[static_cast<std::size_t>(index)].list->grasps[grasp].grasp.id; };
   if (!text) {
     json steps = json::array(), rejected = json::array();
-    for (const RegraspStep& s : plan.steps) {
+    for (const grasp_planner::RegraspStep& s : plan.steps) {
       json step{{"step", name(s.kind)}, {"T_world_object", pose_line(s.T_world_object)}, {"q", numbers(s.q)}};
       if (s.from >= 0) step["from"] = {{"arm", arm(s.from)}, {"grasp", id(s.from, s.grasp_from)}};
       if (s.to >= 0) step["to"] = {{"arm", arm(s.to)}, {"grasp", id(s.to, s.grasp_to)}};
@@ -177,7 +177,7 @@ void print_plan(const RegraspPlan& plan, const Stage& stage, bool text) {
     return;
   }
   for (std::size_t n = 0; n < plan.steps.size(); ++n) {
-    const RegraspStep& s = plan.steps[n];
+    const grasp_planner::RegraspStep& s = plan.steps[n];
     const Vector3 p = s.T_world_object.translation();
     std::string who = s.from >= 0 ? arm(s.from) + " (grasp " + std::to_string(id(s.from, s.grasp_from)) + ")" : "";
     if (s.to >= 0) who += (who.empty() ? "" : " to ") + arm(s.to) + " (grasp " + std::to_string(id(s.to, s.grasp_to)) + ")";

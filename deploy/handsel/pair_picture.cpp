@@ -91,7 +91,7 @@ Picture regrasp_picture(const RobotModel& robot, const Scene& scene, const Grasp
   const int count = static_cast<int>(plan.steps.size());
   Picture out(std::max(1, count) * size, 2 * size, {255, 255, 255});
   for (int n = 0; n < count; ++n) {
-    const RegraspStep& step = plan.steps[static_cast<std::size_t>(n)];
+    const grasp_planner::RegraspStep& step = plan.steps[static_cast<std::size_t>(n)];
     const auto draw = [&](Canvas& canvas, std::size_t) {
       draw_furniture(canvas, scene);
       draw_robot(canvas, robot, step.q, scene.T_world_base, kRobot);

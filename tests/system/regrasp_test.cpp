@@ -57,7 +57,7 @@ void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectS
   const RobotModel& robot = duo().robot;
   CollisionWorld world(robot, [](const std::string& name) { return object_model(name); });
   world.set_scene(duo().scene());
-  for (const RegraspStep& s : plan.steps) {
+  for (const grasp_planner::RegraspStep& s : plan.steps) {
     SCOPED_TRACE(name(s.kind));
     for (int i = 0; i < robot.dof(); ++i) {
       EXPECT_GE(s.q[i], robot.axes()[static_cast<std::size_t>(i)].lower - 1e-9);
@@ -96,7 +96,7 @@ void expect_sequence(const RegraspPlan& plan, const std::string& object, ObjectS
 
 void print(const RegraspPlan& plan, const std::string& object, const char* what) {
   std::printf("%-7s %s:", object.c_str(), what);
-  for (const RegraspStep& s : plan.steps)
+  for (const grasp_planner::RegraspStep& s : plan.steps)
     std::printf(" %s%s", name(s.kind),
                 s.kind == RegraspStepKind::pass ? (s.to == 1 ? " right to left" : " left to right")
                 : s.to == 0 || s.from == 0      ? " right"
@@ -177,7 +177,7 @@ TEST(Regrasp, a_hand_changes_its_own_grasp_through_the_other_hand) {
     print(plan, object, "another grasp of the same hand");
     ASSERT_GE(plan.steps.size(), 2U);
     EXPECT_LE(plan.steps.size(), object == "can" ? 4U : 2U);
-    for (const RegraspStep& s : plan.steps) EXPECT_EQ(s.kind, RegraspStepKind::pass);
+    for (const grasp_planner::RegraspStep& s : plan.steps) EXPECT_EQ(s.kind, RegraspStepKind::pass);
     EXPECT_EQ(plan.steps.back().grasp_to, *task.goal.grasp);
     expect_sequence(plan, object, task.start);
   }
