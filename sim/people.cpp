@@ -46,7 +46,7 @@ People::~People() {
 }
 
 void People::build(const StartPerson& start, const SimSettings& settings, int number, ShapeStore& shapes) {
-  Body person{PersonModel(start.settings), Grip(settings.person_grip), -1, false, {}, {}, {}};
+  Body person{PersonModel(start.settings), Grip(settings.person_grip), -1, object_index(objects_, start.fetches), false, {}, {}, {}};
   person.capsules = body_capsules(person.model.body());
   for (std::size_t c = 0; c < person.capsules.size(); ++c) {
     const BodyCapsule& capsule = person.capsules[c];
@@ -105,7 +105,7 @@ void People::look(Body& person, double dt, const BodyState& robot_hand, int grip
   PersonView view;
   view.robot_hand = robot_hand.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
-    person.object = gripped >= 0 ? gripped : person.model.exchanging() ? person.object : -1;
+    person.object = person.fetches >= 0 ? person.fetches : gripped >= 0 ? gripped : person.model.exchanging() ? person.object : -1;
   if (person.object >= 0) {
     const ObjectBody& object = objects_[person.object];
     view.object = &object.model();

@@ -52,7 +52,8 @@ class People {
   struct Body {
     PersonModel model;
     Grip grip;
-    int object{-1};  // number of the one the exchange is about
+    int object{-1};  // number of the one the exchange is about, or it is after
+    int fetches{-1};
     bool broke{false};
     std::vector<BodyCapsule> capsules;
     std::vector<std::unique_ptr<btRigidBody>> colliders;  // kinematic; none for a hand

@@ -16,6 +16,7 @@ constexpr double kGoneEarly = 0.5;   // ... up to this [m/s]
 constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
 constexpr double kPatience = 8.0;    // pulls no longer than this [s]
 constexpr double kStepBack = 0.2;    // with what it took [m]
+constexpr double kStay = 2.0;        // who has fetched something goes then [s]
 constexpr double kStep = 0.3;        // a recorded body is moved on the floor by no more than this before contact [m]
 
 }  // namespace
@@ -64,6 +65,7 @@ PersonModel::PersonModel(const PersonSettings& settings)
 }
 
 bool PersonModel::exchanging() const {
+  if (settings_.kind == PersonKind::fetcher) return false;
   switch (phase_) {
     case PersonPhase::reaching:
     case PersonPhase::closing:
@@ -180,6 +182,7 @@ void PersonModel::act(double dt, const PersonView& view) {
         hold_back(view);
       } else {
         hand_target_ = keep_point();
+        if (settings_.kind == PersonKind::fetcher && since() > kStay) leave();
       }
       break;
     case PersonPhase::retracting:
@@ -193,13 +196,18 @@ void PersonModel::act(double dt, const PersonView& view) {
       break;
     case PersonPhase::leaving:
       feet_ = home_ - 3.0 * min_jerk(since() * kWalkSpeed / 3.0) * forward();
+      if (wants_grip_) hand_target_ = keep_point();
       break;
   }
 }
 
+/// What the person is after is not where they would take it from: the robot's hand, or, for who fetches it, the place where it stands.
+bool PersonModel::out_of_hand(const PersonView& view) const { return view.held_by_robot == (settings_.kind == PersonKind::fetcher); }
+
 bool PersonModel::offered(const PersonView& view, int side) const {
   const double fastest = settings_.manner.early ? kEarly : kStill;
-  if (refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > fastest) return false;
+  if (refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest) return false;
+  if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
   return (object_centre(view) - shoulder(side)).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
 }
 
@@ -215,7 +223,8 @@ void PersonModel::choose_hand(const PersonView& view) {
 
 void PersonModel::watch(double dt, const PersonView& view) {
   cooldown_ = std::max(0.0, cooldown_ - dt);
-  const bool takes = settings_.kind == PersonKind::taker || settings_.kind == PersonKind::recording;
+  const bool takes =
+      settings_.kind == PersonKind::taker || settings_.kind == PersonKind::recording || settings_.kind == PersonKind::fetcher;
   if (offer_time_ <= 0) choose_hand(view);
   offer_time_ = takes && cooldown_ <= 0 && offered(view, index()) ? offer_time_ + dt : 0;
   if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
@@ -266,7 +275,7 @@ Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) c
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
   const double fastest = settings_.manner.early ? kGoneEarly : kGone;
-  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > fastest;
+  const bool lost = refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest;
   lost_time_ = lost ? lost_time_ + dt : 0;
   if (lost_time_ > 0.3) return give_up();
   if (view.object == nullptr) return;

@@ -17,7 +17,7 @@
 
 namespace handsel::sim {
 
-enum class PersonKind { taker, still, walker, recording, giver, external };
+enum class PersonKind { taker, still, walker, recording, giver, external, fetcher };
 
 /// What makes a person different from the next.
 struct Manner {
@@ -47,6 +47,7 @@ struct PersonSettings {
   double correction{0.15};  ///< an external person's hand is led to what is offered from this near [m]
   double max_warp{0.10};    ///< a recorded hand is moved by no more than this [m]
   double warp_time{0.5};    ///< over the last part before contact [s]
+  double fetches_at{};      ///< who fetches something reaches for it from then on [s]
   Manner manner{};
 };
 
@@ -84,7 +85,8 @@ class PersonModel {
   const Person& body() const { return body_; }  ///< the truth, velocities included
   Side side() const { return side_; }           ///< of the exchanging hand
   bool wants_grip() const { return wants_grip_; }
-  bool exchanging() const;                                        ///< from the reach until the object is withdrawn
+  /// From the reach until the object is withdrawn. Who fetches something for themselves exchanges nothing with the robot.
+  bool exchanging() const;
   const BodyState& hand() const { return hands_[index()]; }       ///< where the exchanging hand is wanted; axes turn with the body
   const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
   bool placed() const { return placed_; }                         ///< the next step takes it elsewhere without a motion
@@ -117,6 +119,7 @@ class PersonModel {
   void pull_after(const Vector3& would_be, double dt, const PersonView&);
   void let_go();
   bool offered(const PersonView&, int side) const;
+  bool out_of_hand(const PersonView&) const;
   void choose_hand(const PersonView&);
   Vector3 grasp_point(const PersonView&) const;
   Vector3 nearest_hold(const PersonView&, const Vector3& from) const;

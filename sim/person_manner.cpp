@@ -96,7 +96,7 @@ Vector3 PersonModel::looked_at(const PersonView& view) const {
   if (refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker) return points_[kHead] + forward();
   const Manner& manner = settings_.manner;
   if (clock_ >= manner.look_away_at && clock_ < manner.look_away_at + manner.look_away) return points_[kHead] + left() + 0.3 * forward();
-  const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_);
+  const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_ || settings_.kind == PersonKind::fetcher);
   return interesting ? object_centre(view) : view.robot_hand;
 }
 

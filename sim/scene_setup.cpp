@@ -24,6 +24,8 @@ PersonKind kind_of(config::PersonBehaviour behaviour) {
       return PersonKind::recording;
     case config::GIVER:
       return PersonKind::giver;
+    case config::FETCHER:
+      return PersonKind::fetcher;
     case config::EXTERNAL:
       return PersonKind::external;
     default:
@@ -131,11 +133,14 @@ class Reader {
         fail("correction of " + s.id + " is " + std::to_string(person.correction()) + ", must be between 0 and 1");
       if (person.correction() > 0) s.correction = person.correction();
     }
-    if (s.kind == PersonKind::giver) {
-      p.holds = person.object();
-      if (std::none_of(out_.objects.begin(), out_.objects.end(), [&](const StartObject& o) { return o.id == p.holds; })) {
-        fail("person " + s.id + " holds " + p.holds + ", which is no object of the scenario");
+    if (s.kind == PersonKind::giver || s.kind == PersonKind::fetcher) {
+      const bool gives = s.kind == PersonKind::giver;
+      (gives ? p.holds : p.fetches) = person.object();
+      if (std::none_of(out_.objects.begin(), out_.objects.end(), [&](const StartObject& o) { return o.id == person.object(); })) {
+        fail("person " + s.id + (gives ? " holds \"" : " fetches \"") + person.object() + "\", which is no object of the scenario");
       }
+      if (person.fetches_at() < 0) fail("fetches_at of " + s.id + " is " + std::to_string(person.fetches_at()) + ", must not be negative");
+      s.fetches_at = person.fetches_at();
     }
     if (person.has_varies() && !vary(s, person.varies())) return;
     out_.people.push_back(std::move(p));

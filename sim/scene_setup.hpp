@@ -30,7 +30,8 @@ struct StartBox {
 
 struct StartPerson {
   PersonSettings settings;
-  std::string holds;  ///< object id, for a giver
+  std::string holds;    ///< object id, for a giver
+  std::string fetches;  ///< object id, for who fetches something
 };
 
 struct TimedControl {

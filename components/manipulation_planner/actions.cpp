@@ -1,4 +1,4 @@
-// The actions, top to bottom: pick, give, place.
+// The actions, top to bottom: pick, give.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 constexpr double kLookAgain = 0.5;  // [s]
 }
 
-Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human) {
+Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human, const std::string& onto) {
   if (status_.holding && attachment_.object == object_id) co_return Outcome{};
   status_.phase = "looking for the object";
   const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
@@ -20,7 +20,11 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
   Outcome last;
   const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
   for (int round = 0; round < 2; ++round) {
-    GraspList list = co_await ask_grasps(object_id, for_human);
+    GraspList list;
+    if (onto.empty())
+      list = co_await ask_grasps(object_id, for_human, settings_.max_grasps());
+    else
+      list = co_await ask_grasps_onto(object_id, onto);
     if (!list.outcome.good) {
       last = list.outcome;
       continue;
@@ -260,76 +264,6 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   Outcome back = co_await retreat(receiver, object_id);
   if (!back.good) refuse("retreat", back.reason);
   co_return Outcome{};
-}
-
-Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const std::string& surface) {
-  if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
-  const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == surface; });
-  if (box == scene_.boxes.end() || !box->supports) co_return Outcome::failure("there is no surface called " + surface);
-  const SceneObject* held = object(object_id);
-  const ObjectModel* model = model_of(object_id);
-  if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
-  status_.phase = "choosing a place";
-
-  const double top = box->T_world_box.translation().z() + box->size.z() / 2;
-  const double heading = std::atan2(held->T_world_object.linear()(1, 0), held->T_world_object.linear()(0, 0));
-  struct Spot {
-    Vector arm_above, arm_at;
-  };
-  auto spots = std::make_shared<std::vector<Spot>>();
-  const std::function<void()> job = [this, spots, scene = scene_, surface_box = *box, T_tool_object = attachment_.T_tool_object,
-                                     q = set_point_, model, top, heading, object_id] {
-    IkOptions options;
-    options.restarts = 2;
-    constexpr double kMargin = 0.08;
-    for (int i = 0; i < 60 && spots->size() < 6; ++i) {
-      const double u = std::fmod(0.5 + 0.7548776662466927 * i, 1.0) - 0.5, v = std::fmod(0.5 + 0.5698402909980532 * i, 1.0) - 0.5;
-      const Vector3 p = surface_box.T_world_box * Vector3(u * std::max(0.0, surface_box.size.x() - 2 * kMargin),
-                                                          v * std::max(0.0, surface_box.size.y() - 2 * kMargin), 0);
-      const bool taken = std::any_of(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& other) {
-        return other.id != object_id && (other.T_world_object.translation() - Vector3(p.x(), p.y(), top)).head<2>().norm() < 0.2;
-      });
-      if (taken) continue;
-      const double turn = heading + (i % 4) * 1.5707963267948966;
-      Pose T_world_object = make_pose({p.x(), p.y(), top + model->height_above_support + 0.004},
-                                      Eigen::Quaterniond(Eigen::AngleAxisd(turn, Vector3::UnitZ())));
-      const Pose T_base_world = scene.T_world_base.inverse();
-      const auto at = robot_->inverse(arm_, T_base_world * T_world_object * T_tool_object.inverse(), q, options);
-      if (!at) continue;
-      T_world_object.translation().z() += settings_.lift_height();
-      const auto above =
-          robot_->inverse(arm_, T_base_world * T_world_object * T_tool_object.inverse(), RobotModel::with(q, arm_, *at), options);
-      if (above) spots->push_back({*above, *at});
-    }
-  };
-  Outcome last = co_await work(job);
-  if (!last.good) co_return last;
-  if (spots->empty()) co_return Outcome::failure("no free place on " + surface + " within the arm's reach");
-  for (const auto& spot : *spots) {
-    Motion above;
-    above.phase = "carry";
-    above.goals = {spot.arm_above};
-    above.allowed = {object_id};
-    above.speed = settings_.carry_speed();
-    last = co_await move(above);
-    if (!last.good) continue;
-    Motion down = above;
-    down.phase = "put down";
-    down.goals = {spot.arm_at};
-    down.straight = true;
-    down.speed = settings_.approach_speed();
-    last = co_await move(down);
-    if (!last.good) continue;
-    Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), robot_->require_group("hand"));
-    HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
-    if (!released.outcome.good) co_return released.outcome;
-    release_object();
-    const std::string nobody;
-    Outcome back = co_await retreat(nobody, object_id);
-    if (!back.good) refuse("retreat", back.reason);
-    co_return Outcome{};
-  }
-  co_return last;
 }
 
 }  // namespace handsel::manipulation_planner

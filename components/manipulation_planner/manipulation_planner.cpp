@@ -172,14 +172,15 @@ Routine<Outcome> ManipulationPlanner::work(const std::function<void()>& job) {
   co_return done ? Outcome{} : Outcome::failure("the computation did not end in time");
 }
 
-Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const std::string& object_id, const std::string& for_human) {
+Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const std::string& object_id, const std::string& for_human,
+                                                                        std::uint32_t most) {
   status_.phase = "choosing a grasp";
   GraspRequest request;
   request.id = next_request();
   request.object = object_id;
   request.start = set_point_;
   request.for_human = for_human;
-  request.max_grasps = settings_.max_grasps();
+  request.max_grasps = most;
   request.seed = goal_.id;
   grasp_reply_.reset();
   for (double waited = 0; waited < settings_.request_timeout(); waited += settings_.request_retry()) {
@@ -508,7 +509,7 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
   Outcome outcome;
   switch (goal.kind) {
     case ActionKind::pick:
-      outcome = co_await pick(goal.object, goal.human);
+      outcome = co_await pick(goal.object, goal.human, goal.surface);
       break;
     case ActionKind::give:
       outcome = co_await give(goal.object, goal.human);

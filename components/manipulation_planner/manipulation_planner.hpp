@@ -125,7 +125,8 @@ class ManipulationPlanner {
 
   // Actions.
   Routine<Outcome> run(ActionGoal goal);
-  Routine<Outcome> pick(const std::string& object, const std::string& for_human);
+  /// `onto`: the surface it will be put down on, empty if that is not known.
+  Routine<Outcome> pick(const std::string& object, const std::string& for_human, const std::string& onto);
   /// Who is out of reach is waited for until `patience`.
   Routine<Outcome> keep_givable(std::vector<Grasp>& grasps, const std::string& object, const std::string& human, TimePoint patience);
   Routine<Outcome> try_grasp(const std::string& object, const Grasp& grasp);
@@ -148,7 +149,9 @@ class ManipulationPlanner {
   Routine<Outcome> go_to_rest();
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
-  Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human);
+  Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human, std::uint32_t most);
+  /// Grasps that serve at a free place of that surface too, which place() then tries first; if there is none, any.
+  Routine<GraspList> ask_grasps_onto(const std::string& object, const std::string& surface);
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
   Routine<Outcome> move(const Motion& motion);
   Routine<Outcome> execute(const std::vector<Vector>& nodes, Motion& motion);
@@ -195,6 +198,7 @@ class ManipulationPlanner {
   bool may_move() const;
   Vector posture() const;  // the arm as commanded, hand and head as measured: squeezing fingers are commanded beyond what they touch
   const SceneObject* object(const std::string& id) const;
+  const SceneBox* surface(const std::string& id) const;      // null: no box of that name on which things can stand
   const ObjectModel* model_of(const std::string& id) const;  // of an object of the scene; null: unknown
   const Person* person(const std::string& id) const;         // empty id: the nearest
   bool lost(const std::string& id) const;                    // a person who might be anywhere near where they were last seen
@@ -203,6 +207,7 @@ class ManipulationPlanner {
   void drop_action();
   void refuse(const std::string& what, const std::string& reason);
   RequestId next_request() { return {client_, ++requests_}; }
+  static void place_world(CollisionWorld& world, const Scene& scene, const HumanState& people);
   Pose T_world_tool() const;
   std::optional<Vector> reach(const Pose& T_world_tool) const;
   std::vector<Vector3> ways_out(const std::string& touched) const;  // directions in the world, the likeliest first
@@ -240,6 +245,13 @@ class ManipulationPlanner {
 
   Attachment attachment_;
   std::optional<Grasp> grasp_;
+  /// Where what is picked by a grasp can be put down.
+  struct Destination {
+    std::uint64_t grasp{};
+    std::string object, surface;
+    Pose T_world_object;
+  };
+  std::vector<Destination> destinations_;
   LiveCounts live_counts_;
   // Used by jobs only, which run one after the other.
   std::shared_ptr<CollisionWorld> world_;

@@ -16,6 +16,7 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   positive("request_timeout", s.request_timeout());
   positive("motion_attempts", s.motion_attempts());
   positive("max_grasps", s.max_grasps());
+  positive("max_grasps_onto", s.max_grasps_onto());
   positive("planning_time", s.planning_time());
   positive("carry_speed", s.carry_speed());
   positive("approach_speed", s.approach_speed());

@@ -73,7 +73,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     status_.object = offer->object;
     status_.human = offer->giver;
     status_.exchange_point = object(offer->object)->T_world_object.translation();
-    GraspList list = co_await ask_grasps(offer->object, "");
+    GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps());
     last = list.outcome;
     if (std::all_of(list.grasps.begin(), list.grasps.end(), [&](const Grasp& g) { return did_not_hold.count(g.id) > 0; }))
       did_not_hold.clear();

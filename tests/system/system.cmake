@@ -42,3 +42,11 @@ handsel_test(facts_truth SOURCES ${CMAKE_CURRENT_LIST_DIR}/facts_truth_test.cpp 
 set_tests_properties(facts_truth PROPERTIES TIMEOUT 300)
 add_test(NAME facts_truth_twenty COMMAND test_facts_truth)
 set_tests_properties(facts_truth_twenty PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_RUNS=20)
+
+handsel_test(clear_table SOURCES ${CMAKE_CURRENT_LIST_DIR}/clear_table_test.cpp LINK handsel_lockstep LABEL system)
+set_tests_properties(clear_table PROPERTIES TIMEOUT 600)
+
+# Long: trials of people who differ over real processes, and deaths at random.
+handsel_test(exchanges SOURCES ${CMAKE_CURRENT_LIST_DIR}/exchanges_test.cpp LINK handsel_command LABEL full)
+add_dependencies(test_exchanges product)
+set_tests_properties(exchanges PROPERTIES RUN_SERIAL TRUE TIMEOUT 14400)

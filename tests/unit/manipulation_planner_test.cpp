@@ -180,7 +180,7 @@ class Rig {
                                                                      : HandState::idle;
     if (command.action == HandAction::grasp && grasp_holds) {
       if (object_comes) scene.objects[0].holder = Holder::robot;
-      T_tool_mug = make_pose({0.08, 0.02, 0.23});
+      T_tool_mug = grasped_as_it_stands ? Pose(tool().inverse() * scene.objects[0].T_world_object) : make_pose({0.08, 0.02, 0.23});
     }
   }
   void hold_out() {
@@ -208,6 +208,7 @@ class Rig {
   std::string touched;  // by the robot as long as it is in touching_posture
   Vector touching_posture;
   Pose T_tool_mug{Pose::Identity()};
+  bool grasped_as_it_stands{false};
   TimePoint now{};
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0};
@@ -490,6 +491,12 @@ TEST(ManipulationPlanner, WhoDoesNotLetGoKeepsIt) {
 
 TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {
   Rig rig;
+  Vector at_grasp = rig.q;  // as the rig answers
+  at_grasp[rig.robot->require_group("arm").axes[0]] += 0.2;
+  const Vector3 mug = rig.robot->link_pose(at_grasp, rig.robot->tool_link()).translation() - Vector3(0, 0, 0.3);
+  rig.scene.objects[0].T_world_object = make_pose(mug);
+  rig.grasped_as_it_stands = true;
+  rig.scene.boxes[0] = {"table", make_pose({mug.x(), mug.y(), mug.z() - 0.16}), {0.5, 0.5, 0.1}, true};
   rig.start(ActionKind::pick);
   rig.run(30);
   rig.start(ActionKind::place);

@@ -259,6 +259,38 @@ TEST(SimRecording, TheHandIsWarpedByAtMostTenCentimetresInTheLastHalfSecondAndTh
   }
 }
 
+TEST(SimWorld, WhoFetchesAMugTakesItFromWhereItStandsAndGoes) {
+  config::Scenario scenario = mug_in_hand();
+  config::PersonDescription* anna = add_person(scenario, config::FETCHER);
+  anna->set_object("mug");
+  anna->set_fetches_at(1.0);
+  // The arm is raised out of the way.
+  (*scenario.mutable_start())["arm_a2"] = 0.2;
+  SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
+  GroundTruth truth;
+  const Vector3 before = world.T_world_object("mug").translation();
+  while (world.time() < 0.95) world.step();
+  EXPECT_LT((world.T_world_object("mug").translation() - before).norm(), 0.02) << "not yet";
+  while (world.time() < 9) world.step();
+  world.truth(truth);
+  EXPECT_EQ(truth.carrier, "human");
+  EXPECT_FALSE(truth.dropped);
+  EXPECT_EQ(world.person_phase(0), PersonPhase::leaving);
+  EXPECT_GT((world.T_world_object("mug").translation() - before).norm(), 0.5);
+}
+
+TEST(SimWorld, WhoFetchesWhatIsNotThereIsRefused) {
+  config::Scenario scenario = mug_in_hand();
+  add_person(scenario, config::FETCHER)->set_object("vase");
+  try {
+    SimWorld(jido(), library(), scenario, SimSettings{}, 1);
+    ADD_FAILURE() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("person anna fetches \"vase\", which is no object of the scenario"), std::string::npos)
+        << error.what();
+  }
+}
+
 class BadRecording : public ::testing::Test {
  protected:
   std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("recording_" + std::to_string(getpid()));

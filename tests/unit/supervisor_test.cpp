@@ -195,13 +195,28 @@ TEST(Supervisor, WhatCannotBeGraspedIsLeftAndTold) {
 TEST(Supervisor, WhatCannotBePutAwayGoesBackAndTheRestIsCleared) {
   TaskRig rig;
   rig.world.on["box"] = "table";
-  rig.fails = [](const ActionGoal& goal) { return goal.object == "box" && goal.surface == "shelf" ? "no free place on shelf" : ""; };
+  rig.fails = [](const ActionGoal& goal) {
+    return goal.kind == ActionKind::place && goal.object == "box" && goal.surface == "shelf" ? "no free place on shelf" : "";
+  };
   rig.run(2.5);
   rig.ask(TaskKind::clear, "", "", "table");
   ASSERT_TRUE(rig.finish());
   EXPECT_EQ(rig.done(), "pick box, place box on shelf, place box on table, pick mug, place mug on shelf, go to rest");
   EXPECT_EQ(rig.last().state, TaskState::failed);
   EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no free place on shelf");
+}
+
+TEST(Supervisor, ATableIsNotClearWhileItsLastThingIsInTheHand) {
+  TaskRig rig;
+  int failures = 0;
+  rig.fails = [&](const ActionGoal& goal) {
+    return goal.kind == ActionKind::place && goal.surface == "shelf" && failures++ == 0 ? "no free place on shelf" : "";
+  };
+  rig.run(2.5);
+  rig.ask(TaskKind::clear, "", "", "table");
+  ASSERT_TRUE(rig.finish());
+  EXPECT_TRUE(rig.world.in_hand().empty());
+  EXPECT_EQ(rig.last().state == TaskState::succeeded, rig.world.on["mug"] == "shelf") << rig.last().reason;
 }
 
 TEST(Supervisor, ReceivesAndPutsDownWhateverItIs) {

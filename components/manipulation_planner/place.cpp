@@ -1,0 +1,123 @@
+// Putting down: a place is chosen before the object is picked, so that the grasp serves there too (chapter section 3.2.9; places: ours).
+#include <algorithm>
+#include <map>
+#include <numbers>
+
+#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/placing.hpp"
+
+namespace handsel::manipulation_planner {
+
+namespace {
+constexpr std::size_t kPlaces = 24;   // on a surface that are looked at
+constexpr std::size_t kPostures = 6;  // that motions are planned to
+}  // namespace
+
+const SceneBox* ManipulationPlanner::surface(const std::string& id) const {
+  const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == id && b.supports; });
+  return box == scene_.boxes.end() ? nullptr : &*box;
+}
+
+Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(const std::string& object_id, const std::string& onto) {
+  destinations_.clear();
+  GraspList list = co_await ask_grasps(object_id, "", settings_.max_grasps_onto());
+  const SceneBox* box = surface(onto);
+  const SceneObject* thing = object(object_id);
+  if (!list.outcome.good || box == nullptr || thing == nullptr) co_return list;
+  status_.phase = "choosing a place";
+  struct Found {
+    std::map<std::size_t, Pose> places;  // of each grasp that serves
+    std::string objections;
+  };
+  auto found = std::make_shared<Found>();
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
+  const std::function<void()> job = [this, found, world = world_, scene = scene_, people = people_, box = *box, object_id,
+                                     grasps = list.grasps, q = posture(), T_now = thing->T_world_object] {
+    place_world(*world, scene, people);
+    Putting putting(*world, *robot_, scene.T_world_base, free_places(*robot_, scene, people, objects_, object_id, box, T_now, kPlaces),
+                    settings_.lift_height());
+    const Group& fingers = robot_->require_group("hand");
+    for (std::size_t i = 0; i < grasps.size() && found->places.size() < settings_.max_grasps(); ++i) {
+      const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers, grasps[i].hand_joints);
+      const auto posture = putting.anywhere(closed, {object_id, grasps[i].T_object_hand.inverse()}, 1);
+      if (!posture.empty()) found->places[i] = posture.front().T_world_object;
+    }
+    found->objections = putting.objections();
+  };
+  Outcome worked = co_await work(job);
+  if (!worked.good || found->places.empty()) {
+    refuse("place", worked.good ? "no grasp of " + object_id + " serves on " + onto + " too: " + found->objections : worked.reason);
+    co_return list;
+  }
+  GraspList serving;
+  for (const auto& [grasp, place] : found->places) {
+    serving.grasps.push_back(list.grasps[grasp]);
+    destinations_.push_back({list.grasps[grasp].id, object_id, onto, place});
+  }
+  co_return serving;
+}
+
+void ManipulationPlanner::place_world(CollisionWorld& world, const Scene& scene, const HumanState& people) {
+  world.set_scene(scene);
+  world.set_people(people);
+  world.set_moving_axes({});
+}
+
+Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const std::string& onto) {
+  if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
+  const SceneBox* box = surface(onto);
+  if (box == nullptr) co_return Outcome::failure("there is no surface called " + onto);
+  if (model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
+  status_.phase = "choosing a place";
+  const auto chosen = std::find_if(destinations_.begin(), destinations_.end(), [&](const Destination& d) {
+    return grasp_ && d.grasp == grasp_->id && d.object == object_id && d.surface == onto;
+  });
+  const std::optional<Pose> T_chosen = chosen == destinations_.end() ? std::nullopt : std::optional<Pose>(chosen->T_world_object);
+
+  struct Found {
+    std::vector<PuttingPosture> postures;
+    std::string objections;
+  };
+  auto found = std::make_shared<Found>();
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
+  const std::function<void()> job = [this, found, T_chosen, world = world_, scene = scene_, people = people_, box = *box,
+                                     held = attachment_, q = posture(), T_now = T_world_tool() * attachment_.T_tool_object] {
+    place_world(*world, scene, people);
+    std::vector<Pose> places = free_places(*robot_, scene, people, objects_, held.object, box, T_now, kPlaces);
+    if (T_chosen) places.insert(places.begin(), *T_chosen);
+    Putting putting(*world, *robot_, scene.T_world_base, std::move(places), settings_.lift_height());
+    found->postures = putting.anywhere(q, held, kPostures);
+    found->objections = putting.objections();
+  };
+  Outcome last = co_await work(job);
+  if (!last.good) co_return last;
+  if (found->postures.empty()) co_return Outcome::failure("no free place on " + onto + " within the arm's reach: " + found->objections);
+  for (const PuttingPosture& posture : found->postures) {
+    Motion above;
+    above.phase = "carry";
+    above.goals = {posture.arm_above};
+    above.allowed = {object_id};
+    above.speed = settings_.carry_speed();
+    last = co_await move(above);
+    if (!last.good) continue;
+    Motion down = above;
+    down.phase = "put down";
+    down.goals = {posture.arm_at};
+    down.straight = true;
+    down.speed = settings_.approach_speed();
+    last = co_await move(down);
+    if (!last.good) continue;
+    destinations_.clear();
+    Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), robot_->require_group("hand"));
+    HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
+    if (!released.outcome.good) co_return released.outcome;
+    release_object();
+    const std::string nobody;
+    Outcome back = co_await retreat(nobody, object_id);
+    if (!back.good) refuse("retreat", back.reason);
+    co_return Outcome{};
+  }
+  co_return last;
+}
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,137 @@
+#include "components/manipulation_planner/placing.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/model/arm_reach.hpp"
+#include "common/model/human_body.hpp"
+#include "common/model/object_extent.hpp"
+
+namespace handsel::manipulation_planner {
+
+namespace {
+
+constexpr double kRoomy = 0.20;                              // farther from other things is no better [m]
+constexpr double kPersonNear = 0.8;                          // from a person is no worse [m]
+constexpr double kTurns[] = {0, 0.25, -0.25, 0.5, -0.5, 1};  // of the object from how the arm would turn it by itself [half turns]
+
+/// Of the circle about its frame's vertical axis that it stands inside [m].
+double footprint(const ObjectModel* model, const Primitive& primitive) {
+  const Eigen::AlignedBox3d extent = object_extent(model, primitive);
+  if (extent.isEmpty()) return 0.1;
+  return extent.min().cwiseAbs().cwiseMax(extent.max().cwiseAbs()).head<2>().norm();
+}
+
+}  // namespace
+
+std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const HumanState& people, const ObjectLibrary& library,
+                              const std::string& object, const SceneBox& surface, const Pose& T_world_object, std::size_t most,
+                              const PlacingSettings& settings) {
+  const auto thing = std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == object; });
+  const ObjectModel* model = thing == scene.objects.end() ? nullptr : library(thing->model);
+  const ArmReach reach = arm_reach(robot);
+  if (model == nullptr || reach.shoulder < 0) return {};
+  const double radius = footprint(model, {});
+  const Vector& q = scene.robot_position.size() == robot.dof() ? scene.robot_position : robot.rest_posture();
+  const Vector3 p_shoulder = (scene.T_world_base * robot.link_pose(q, reach.shoulder)).translation();
+  const double top = surface.size.z() / 2;
+  const auto bearing = [&](const Vector3& p) { return std::atan2(p.y() - p_shoulder.y(), p.x() - p_shoulder.x()); };
+
+  struct Place {
+    Pose T_world_object;
+    double cost;
+  };
+  std::vector<Place> places;
+  const Vector3 room = surface.size / 2 - Vector3::Constant(settings.edge + std::min(radius, 0.06));
+  const int nx = static_cast<int>(std::floor(room.x() / settings.grid)), ny = static_cast<int>(std::floor(room.y() / settings.grid));
+  for (int ix = -nx; ix <= nx && room.x() >= 0; ++ix) {
+    for (int iy = -ny; iy <= ny && room.y() >= 0; ++iy) {
+      const Vector3 p =
+          surface.T_world_box * Vector3(ix * settings.grid, iy * settings.grid, top + model->height_above_support + settings.above);
+      double nearest = kRoomy, person = kPersonNear;
+      bool taken = false;
+      for (const SceneObject& other : scene.objects) {
+        if (other.id == object || std::abs(other.T_world_object.translation().z() - p.z()) > 0.5) continue;
+        const double gap =
+            (other.T_world_object.translation() - p).head<2>().norm() - radius - footprint(library(other.model), other.primitive);
+        taken = taken || gap < settings.beside;
+        nearest = std::min(nearest, gap);
+      }
+      for (const SceneBox& box : scene.boxes) {
+        const Vector3 beyond = (box.T_world_box.inverse() * p).cwiseAbs() - box.size / 2;
+        taken = taken || (box.id != surface.id && beyond.maxCoeff() < radius);
+      }
+      for (const Person& who : people.people)
+        person = std::min(person, (who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position - p).head<2>().norm());
+      const double away = (p - p_shoulder).norm() / reach.length;
+      if (taken || away > 1) continue;
+      const double turn = bearing(p) - bearing(T_world_object.translation());
+      places.push_back(
+          {make_pose(p, Eigen::Quaterniond(Eigen::AngleAxisd(
+                            std::atan2(T_world_object.linear()(1, 0), T_world_object.linear()(0, 0)) + turn, Vector3::UnitZ()))),
+           std::abs(away - settings.at_reach) + (kRoomy - nearest) + 0.5 * (kPersonNear - person)});
+    }
+  }
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
+  std::vector<Pose> out;
+  for (const Place& place : places) {
+    if (out.size() >= most) break;
+    const bool beside = std::any_of(out.begin(), out.end(), [&](const Pose& T) {
+      return (T.translation() - place.T_world_object.translation()).norm() < settings.apart;
+    });
+    if (!beside) out.push_back(place.T_world_object);
+  }
+  return out;
+}
+
+Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Pose& T_world_base, std::vector<Pose> places, double from_above)
+    : world_(world),
+      robot_(robot),
+      arm_(robot.require_group("arm")),
+      T_base_world_(T_world_base.inverse()),
+      places_(std::move(places)),
+      from_above_(from_above) {}
+
+std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, const Attachment& held) {
+  IkOptions options;
+  options.restarts = 0;
+  const Pose T_object_tool = held.T_tool_object.inverse();
+  world_.set_attachment(held, {held.object});
+  for (const double turn : kTurns) {
+    Pose T = place;
+    T.linear() = Eigen::AngleAxisd(turn * std::numbers::pi, Vector3::UnitZ()) * place.linear();
+    const auto at = robot_.inverse(arm_, T_base_world_ * T * T_object_tool, q, options);
+    Pose T_above = T;
+    T_above.translation().z() += from_above_;
+    const auto above = at ? robot_.inverse(arm_, T_base_world_ * T_above * T_object_tool, RobotModel::with(q, arm_, *at), options)
+                          : std::optional<Vector>();
+    if (!above) {
+      ++objections_["out of reach"];
+      continue;
+    }
+    CollisionVerdict verdict = world_.check(RobotModel::with(q, arm_, *at));
+    if (verdict.free) verdict = world_.check(RobotModel::with(q, arm_, *above));
+    if (verdict.free) return PuttingPosture{T, *above, *at};
+    ++objections_["because " + verdict.first + " would touch " + verdict.second];
+  }
+  return std::nullopt;
+}
+
+std::vector<PuttingPosture> Putting::anywhere(const Vector& q, const Attachment& held, std::size_t most) {
+  std::vector<PuttingPosture> out;
+  for (const Pose& place : places_) {
+    if (out.size() >= most) break;
+    if (auto posture = at(place, q, held)) out.push_back(std::move(*posture));
+  }
+  return out;
+}
+
+std::string Putting::objections() const {
+  if (places_.empty()) return "all of it is taken or too far away";
+  std::string all;
+  for (const auto& [objection, count] : objections_) all += (all.empty() ? "" : ", ") + std::to_string(count) + " " + objection;
+  return all;
+}
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,61 @@
+// Where an object can be put down on a surface, and how the arm gets it there (ours). Pure.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/collision/collision_world.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/object_model.hpp"
+#include "common/model/robot_model.hpp"
+
+namespace handsel::manipulation_planner {
+
+struct PlacingSettings {
+  double beside{0.05};   ///< left free around it, for the hand [m]
+  double edge{0.03};     ///< of the surface that is kept free [m]
+  double grid{0.04};     ///< places are tried so far apart [m]
+  double apart{0.12};    ///< those that are given are at least so far apart [m]
+  double at_reach{0.6};  ///< share of the arm's reach at which it works best
+  double above{0.004};   ///< lowered to this above the surface [m]
+};
+
+/// Free places for an object that stands upright there, T_world_object each, the best first: where the arm reaches well, away from other
+/// things and from people. It has turned about the vertical by as much as the arm turns to get there from `T_world_object`.
+std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const HumanState& people, const ObjectLibrary& library,
+                              const std::string& object, const SceneBox& surface, const Pose& T_world_object, std::size_t most,
+                              const PlacingSettings& settings = {});
+
+/// Postures that put what the hand holds at a place: from above, then down to it.
+struct PuttingPosture {
+  Pose T_world_object{Pose::Identity()};  ///< at the place
+  Vector arm_above, arm_at;               ///< arm axes [rad]
+};
+
+/// Puts what is held on a surface, somewhere.
+class Putting {
+ public:
+  /// `world` knows scene and people; its attachment is changed. `places` as from free_places().
+  Putting(CollisionWorld& world, const RobotModel& robot, const Pose& T_world_base, std::vector<Pose> places, double from_above);
+
+  /// At this place, its object turned about the vertical as is best for the arm; nullopt: what stands in the way is counted. `q`: all axes,
+  /// the hand closed on the object.
+  std::optional<PuttingPosture> at(const Pose& place, const Vector& q, const Attachment& held);
+  /// At the first `most` places where it can be.
+  std::vector<PuttingPosture> anywhere(const Vector& q, const Attachment& held, std::size_t most);
+  /// What stood in the way so far, how often: "12 out of reach, 3 link forearm would touch box table".
+  std::string objections() const;
+
+ private:
+  CollisionWorld& world_;
+  const RobotModel& robot_;
+  const Group& arm_;
+  Pose T_base_world_;
+  std::vector<Pose> places_;
+  double from_above_;
+  std::map<std::string, int> objections_;
+};
+
+}  // namespace handsel::manipulation_planner

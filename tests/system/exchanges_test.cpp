@@ -1,0 +1,136 @@
+// People who differ, over real processes in real time: they give and take; and whatever process dies meanwhile, the task is finished or
+// given up in order. HANDSEL_RUNS: trials of each; HANDSEL_FIRST_SEED: of the first one.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cstdlib>
+#include <random>
+
+#include <nlohmann/json.hpp>
+
+#include "common/config/resources.hpp"
+#include "deploy/handsel/performer.hpp"
+#include "deploy/handsel/report.hpp"
+#include "deploy/handsel/system.hpp"
+#include "deploy/handsel/system_options.hpp"
+
+namespace handsel {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kSuccess = 0.94;
+constexpr double kLatest = 25.0;  // after the task was given something dies [s]
+constexpr int kDomain = 39;
+const Duration kPatience = std::chrono::minutes(4);
+const Duration kRestPatience = std::chrono::seconds(10);
+
+std::uint64_t number(const char* variable, std::uint64_t otherwise) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? otherwise : std::strtoull(value, nullptr, 10);
+}
+
+/// Who dies, when [s] after the task was given.
+struct Death {
+  std::string process;
+  double at{};
+};
+
+struct Performance {
+  Json report;
+  bool over{}, at_rest{};
+  std::string killed_in;  ///< phase of the action
+};
+
+Performance perform(const std::string& name, std::uint64_t seed, const std::optional<Death>& death) {
+  config::Scenario scenario;
+  load_text_proto(scenario_file(name), scenario);
+  System system({.domain = kDomain, .scenario = name, .seed = seed, .web_port = 0});
+  Session& session = system.session();
+  Performer performer(session.bus(), session.observer(), scenario, 0, [&] { return not_ready(session.snapshot()).empty(); });
+  Performance out;
+  const auto ready = system.wait_ready(kReadyPatience);
+  if (!ready) return out;
+  ReportInputs inputs{.scenario = name, .robot = robot_of(system.options()), .seed = seed, .ready = to_seconds(*ready)};
+  inputs.before = counters(session.snapshot());
+  inputs.truth_before = session.snapshot().truth.sample;
+  if (death) {
+    system.wait(kPatience, [&] {
+      return performer.finished() || (performer.started() && session.bus().now() - performer.begin() > from_seconds(death->at));
+    });
+    out.killed_in = session.snapshot().action.sample.phase;
+    if (const pid_t pid = system.launcher().pid(death->process); pid > 0) ::kill(pid, SIGKILL);
+  }
+  out.over = system.wait(kPatience, [&] { return performer.finished(); });
+  out.at_rest = system.wait(kRestPatience, [&] {
+    return !session.snapshot().truth.sample.robot_moving && session.snapshot().action.sample.state != ActionState::running;
+  });
+  out.report = make_report(inputs, performer, session.observer());
+  return out;
+}
+
+std::string told(const Json& report) {
+  const Json& task = report["tasks"].back();
+  return (report["success"].get<bool>() ? "done" : "failed: " + report["failure"].get<std::string>()) + " in " +
+         std::to_string(task["duration_s"].get<double>()) + " s";
+}
+
+void expect_harmless(const Json& report, const std::string& what) {
+  EXPECT_EQ(report["ssm_violations"], 0) << what;
+  EXPECT_EQ(report["oracle"]["limit_violations"], 0) << what;
+  EXPECT_FALSE(report["oracle"]["dropped"].get<bool>()) << what;
+  EXPECT_LE(report["oracle"]["commanders"].get<int>(), 2) << what << ": more than the controller and the one that took its place";
+}
+
+class Exchanges : public testing::TestWithParam<const char*> {};
+
+TEST_P(Exchanges, succeed) {
+  const std::uint64_t runs = number("HANDSEL_RUNS", 50), first = number("HANDSEL_FIRST_SEED", 9001);
+  std::uint64_t done = 0;
+  for (std::uint64_t seed = first; seed < first + runs; ++seed) {
+    const Performance trial = perform(GetParam(), seed, std::nullopt);
+    ASSERT_TRUE(trial.over) << "seed " << seed;
+    const std::string what = std::string(GetParam()) + " seed " + std::to_string(seed) + ": " + told(trial.report);
+    std::printf("%s\n", what.c_str());
+    std::fflush(stdout);
+    done += trial.report["success"].get<bool>();
+    expect_harmless(trial.report, what);
+    EXPECT_TRUE(trial.report["success"].get<bool>() || !trial.report["failure"].get<std::string>().empty()) << what;
+  }
+  std::printf("%s: %llu of %llu\n", GetParam(), static_cast<unsigned long long>(done), static_cast<unsigned long long>(runs));
+  EXPECT_GE(static_cast<double>(done), kSuccess * static_cast<double>(runs));
+}
+
+INSTANTIATE_TEST_SUITE_P(OverDds, Exchanges, testing::Values("trial_give", "trial_receive"),
+                         [](const auto& instance) { return std::string(instance.param); });
+
+TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {
+  const std::uint64_t runs = number("HANDSEL_RUNS", 50), first = number("HANDSEL_FIRST_SEED", 7001);
+  std::vector<std::string> mortal;
+  for (const std::string process : kProcesses)
+    if (process != "sim") mortal.push_back(process);  // the simulator is the world
+  std::uint64_t done = 0;
+  for (std::uint64_t seed = first; seed < first + runs; ++seed) {
+    std::mt19937_64 random(seed);
+    const Death death{mortal[random() % mortal.size()], std::uniform_real_distribution<double>(0, kLatest)(random)};
+    const char* scenario = seed % 2 == 0 ? "give_mug" : "receive_mug";
+    const Performance trial = perform(scenario, seed, death);
+    std::string what = std::string(scenario) + " seed " + std::to_string(seed) + ": " + death.process + " dies after " +
+                       std::to_string(death.at) + " s in \"" + trial.killed_in + "\"";
+    EXPECT_TRUE(trial.over) << what;
+    if (!trial.over) continue;
+    what += ": " + told(trial.report);
+    std::printf("%s\n", what.c_str());
+    std::fflush(stdout);
+    done += trial.report["success"].get<bool>();
+    expect_harmless(trial.report, what);
+    EXPECT_TRUE(trial.at_rest) << what;
+    const std::string state = trial.report["tasks"].back()["state"];
+    EXPECT_TRUE(state == "succeeded" || state == "failed" || state == "refused") << what << ", left " << state;
+    EXPECT_TRUE(trial.report["success"].get<bool>() || !trial.report["failure"].get<std::string>().empty()) << what;
+  }
+  std::printf("%llu of %llu finished, the others given up\n", static_cast<unsigned long long>(done), static_cast<unsigned long long>(runs));
+}
+
+}  // namespace
+}  // namespace handsel
