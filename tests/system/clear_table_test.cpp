@@ -6,6 +6,7 @@
 #include "common/config/resources.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "deploy/handsel/performer.hpp"
+#include "deploy/handsel/system.hpp"
 
 namespace handsel {
 namespace {
@@ -27,7 +28,7 @@ TEST(ClearTable, five_of_six_things_are_put_away_while_a_person_takes_one) {
     system.seat().subscribe<ObjectObservation>([&](const ObjectObservation& seen, const Receipt&) {
       for (const ObservedObject& object : seen.objects) at[object.id] = object.T_world_object.translation();
     });
-    Performer performer(system.seat(), system.observer(), scenario, 0, [] { return true; });
+    Performer performer(system.seat(), system.observer(), scenario, 0, [&] { return not_ready(system.snapshot(), false).empty(); });
     system.network().run_until([&] { return performer.finished(); }, TimePoint(from_seconds(500)));
     ASSERT_TRUE(performer.finished());
     const std::string what = "seed " + std::to_string(seed) + ": " + performer.outcomes().back().reason;
