@@ -55,6 +55,10 @@ AttentionAdvice Attention::advice() const {
     const Behaviour kind = e.schema->kind();
     const bool about_people = kind != Behaviour::pick && kind != Behaviour::place && kind != Behaviour::search;
     if (about_people && (shortest == 0.0 || e.clock.period() < shortest)) shortest = e.clock.period();
+    if (const auto wish = e.schema->wish()) {
+      advice.change = wish->change;
+      advice.person = wish->person;
+    }
     if (!e.released) continue;
     const double factor = std::clamp(e.schema->speed_factor(), -1.0, 1.0);
     if (factor < advice.speed_factor) {

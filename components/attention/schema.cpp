@@ -228,14 +228,57 @@ class Pick : public Schema {
   Vector3 target_{Vector3::Zero()};
 };
 
+/// Somebody whose hand has been coming for what the robot holds, and for how long.
+class ReachWatch {
+ public:
+  explicit ReachWatch(const MotorSettings& motor) : near_(motor.reach_near), hold_(motor.reach_hold) {}
+
+  /// Distance of the nearest hand that reaches [m]; +inf: nobody's.
+  double look(const World& w, const Vector3& p_held, TimePoint now) {
+    double nearest = kInfinity;
+    std::string who;
+    if (w.people == nullptr) return nearest;
+    for (const Person& person : w.people->people) {
+      const double distance = nearest_hand(person, p_held).distance;
+      if (distance > near_ || distance > nearest || !(reaches(w, person.id) || distance < kAtIt)) continue;
+      nearest = distance;
+      who = person.id;
+    }
+    if (who != person_) since_ = now;
+    person_ = who;
+    held_ = !who.empty() && now - since_ >= from_seconds(hold_);
+    return nearest;
+  }
+  void forget() { person_.clear(), held_ = false; }
+  std::optional<TaskWish> wish() const { return held_ ? std::optional(TaskWish{TaskChange::give, person_}) : std::nullopt; }
+
+ private:
+  static constexpr double kAtIt = 0.15;  // it has come [m]
+  static bool reaches(const World& w, const std::string& person) {
+    return w.facts && std::any_of(w.facts->facts.begin(), w.facts->facts.end(), [&](const Fact& f) {
+             return f.kind == FactKind::reaching && f.subject == person && f.object == w.action->object;
+           });
+  }
+
+  double near_, hold_;
+  std::string person_;
+  TimePoint since_{};
+  bool held_{};
+};
+
 class Place : public Schema {
  public:
-  Place(const Body& body, const MotorSettings& motor) : body_(body), motor_(motor) {}
+  Place(const Body& body, const MotorSettings& motor) : body_(body), motor_(motor), reach_(motor) {}
   Behaviour kind() const override { return Behaviour::place; }
-  double perceive(const World& w, TimePoint) override {
+  double perceive(const World& w, TimePoint now) override {
     height_ = kInfinity;
     if (!w.scene || !w.action || !robot_known(w, body_)) return kInfinity;
     const Vector3 p = body_.grasp_point(w.active->position, w.active->T_world_base);
+    double hand = kInfinity;
+    if (putting_down(w))
+      hand = reach_.look(w, p, now);
+    else
+      reach_.forget();
     for (const SceneBox& box : w.scene->boxes) {
       if (!box.supports) continue;
       const Vector3 local = box.T_world_box.inverse() * p;
@@ -246,18 +289,22 @@ class Place : public Schema {
         target_ = p - Vector3(0, 0, height);
       }
     }
-    return height_;
+    return std::min(height_, hand);
   }
-  bool released(const World& w) const override { return doing(w, ActionKind::place) && w.action->holding && std::isfinite(height_); }
+  bool released(const World& w) const override { return putting_down(w) && std::isfinite(height_); }
   double speed_factor() const override {
     return motor_.ease_factor + (1.0 - motor_.ease_factor) * ramp(height_, 0.0, motor_.ease_distance);
   }
   const char* reason() const override { return "easing onto the support"; }
   std::optional<Vector3> gaze() const override { return std::isfinite(height_) ? std::optional(target_) : std::nullopt; }
+  std::optional<TaskWish> wish() const override { return reach_.wish(); }
 
  private:
+  static bool putting_down(const World& w) { return doing(w, ActionKind::place) && w.action->holding; }
+
   const Body& body_;
   MotorSettings motor_;
+  ReachWatch reach_;
   double height_{kInfinity};
   Vector3 target_{Vector3::Zero()};
 };

@@ -58,6 +58,14 @@ struct MotorSettings {
   double hand_factor{0.25};        ///< to this factor
   double shift_limit{0.15};        ///< largest shift of the exchange point [m]
   double lost_after{1.0};          ///< a person not seen for longer is not tracked [s]
+  double reach_near{0.6};          ///< a hand that reaches for what the robot holds counts when it is nearer than this [m] ...
+  double reach_hold{0.2};          ///< ... for this long [s]
+};
+
+/// That another task should take the place of the one that runs.
+struct TaskWish {
+  TaskChange change{};
+  std::string person;  ///< whom it is about
 };
 
 /// One behaviour. perceive() runs when its clock fires; released() and the motor part use what it saw last.
@@ -72,6 +80,7 @@ class Schema {
   virtual const char* reason() const { return ""; }                             ///< one phrase for a factor below 1
   virtual std::optional<Vector3> gaze() const { return std::nullopt; }          ///< world [m]
   virtual std::optional<Vector3> target_shift() const { return std::nullopt; }  ///< world [m]
+  virtual std::optional<TaskWish> wish() const { return std::nullopt; }         ///< only of the behaviour that owns the task
 };
 
 std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones);

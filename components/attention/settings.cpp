@@ -53,6 +53,8 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
   m.hand_factor = share(read.hand_factor(), 0, 1, "hand_factor", file);
   m.shift_limit = share(read.shift_limit(), 0, 10, "shift_limit", file);
   m.lost_after = share(read.lost_after(), 0, 60, "lost_after", file);
+  m.reach_near = share(read.reach_near(), 1e-3, 10, "reach_near", file);
+  m.reach_hold = share(read.reach_hold(), 0, 10, "reach_hold", file);
   for (const auto& b : read.behaviours()) {
     const ClockLaw law = b.law() == config::WEBER ? ClockLaw::weber : ClockLaw::linear;
     s.behaviours.push_back({behaviour_named(b.name(), file), {law, b.p_min(), b.p_max(), b.near(), b.far(), b.weber_gain()}});

@@ -46,6 +46,9 @@ set_tests_properties(facts_truth_twenty PROPERTIES LABELS full TIMEOUT 900 ENVIR
 handsel_test(clear_table SOURCES ${CMAKE_CURRENT_LIST_DIR}/clear_table_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(clear_table PROPERTIES TIMEOUT 600)
 
+handsel_test(place_reached SOURCES ${CMAKE_CURRENT_LIST_DIR}/place_reached_test.cpp LINK handsel_lockstep LABEL system)
+set_tests_properties(place_reached PROPERTIES TIMEOUT 1800)
+
 # Long: trials of people who differ over real processes, and deaths at random.
 handsel_test(exchanges SOURCES ${CMAKE_CURRENT_LIST_DIR}/exchanges_test.cpp LINK handsel_command LABEL full)
 add_dependencies(test_exchanges product)

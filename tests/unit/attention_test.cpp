@@ -308,5 +308,30 @@ TEST_F(AttentionTest, missing_samples_hurt_nothing) {
   EXPECT_FALSE(attention.advice().has_gaze_target);
 }
 
+TEST_F(AttentionTest, who_reaches_for_what_is_put_down_is_to_be_given_it_and_who_only_stands_there_is_not) {
+  Attention attention(settings(), body_);
+  action_.kind = ActionKind::place;
+  action_.state = ActionState::running;
+  action_.object = "mug";
+  action_.holding = true;
+  Person anna = standing(2, 0);
+  anna.joints[11].position = body_.grasp_point(active_.position, active_.T_world_base) + Vector3(0.4, 0, 0);
+  people_.people = {anna};
+  facts_known_ = true;
+  run(attention, 0, 2);
+  EXPECT_EQ(attention.advice().change, TaskChange::none);
+  facts_.facts = {{FactKind::reaching, "anna", "mug", 0.4, 0.1}};
+  run(attention, 2, 3);
+  EXPECT_EQ(attention.advice().change, TaskChange::give);
+  EXPECT_EQ(attention.advice().person, "anna");
+  facts_.facts.clear();
+  run(attention, 3, 4);
+  EXPECT_EQ(attention.advice().change, TaskChange::none);
+  facts_.facts = {{FactKind::reaching, "anna", "mug", 0.4, 0.1}};
+  action_.kind = ActionKind::give;
+  run(attention, 4, 5);
+  EXPECT_EQ(attention.advice().change, TaskChange::none) << "it is being given already";
+}
+
 }  // namespace
 }  // namespace handsel::attention
