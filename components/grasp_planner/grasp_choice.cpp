@@ -37,6 +37,8 @@ const char* reason_text(ChoiceReason reason) {
       return "the arm could not lift the object straight up";
     case ChoiceReason::no_approach:
       return "no straight approach is free";
+    case ChoiceReason::near_giver:
+      return "the arm would come too near to the body of who holds it";
     case ChoiceReason::goal_support:
       return "the hand would be in or under what the object is to be put on";
     case ChoiceReason::goal_taken:

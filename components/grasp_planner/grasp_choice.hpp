@@ -31,6 +31,7 @@ struct ChoiceSettings {
   double sturdy_margin{2.0};            ///< [N]
   double rank_away{0.6};                ///< the hand stays on the robot's side of what a person holds
   double off_fingers{0.01};             ///< kept between the robot and the hands of who holds it [m]
+  double off_giver{0.12};               ///< likewise and their head, torso, upper arms and legs: nearer the guard lets it only creep [m]
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object
   double rank_drive{0.2};               ///< taken off for each metre the platform has to drive
   double platform_room{0.5};            ///< kept between robot and people where the platform drives to [m]
@@ -45,6 +46,7 @@ enum class ChoiceReason : std::uint8_t {
   collision,      ///< arm or hand collides there
   cannot_lift,    ///< the arm cannot go straight up with it
   no_approach,    ///< no straight way in without touching the object or anything else
+  near_giver,     ///< too near to the body of who holds it
   goal_support,   ///< the same where the object is to be put
   goal_taken,     ///< something is there already
   goal_out_of_reach,

@@ -56,6 +56,12 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
       if (p.id == holder) p.inflation += settings().off_fingers;
     }
     start.world.set_people(around);
+    for (Person& p : around.people) {
+      if (p.id == holder) p.inflation += settings().off_giver - settings().off_fingers;
+    }
+    giver.emplace(robot(), self.library_);
+    giver->set_people(around, PeopleParts::without_forearms_and_hands);
+    giver->set_attachment({}, {request.object});
   }
   if (request.has_goal) {
     Scene then = scene;
@@ -80,6 +86,7 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
   if (goal) goal->world.set_base(T_world_base);
   if (carrying) carrying->set_base(T_world_base);
   if (held) held->set_base(T_world_base);
+  if (giver) giver->set_base(T_world_base);
   places.reset();
   eye.reset();
   if (person == nullptr) {
@@ -263,11 +270,24 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
   return lifted && (*lifted - grasp_q).cwiseAbs().maxCoeff() <= kLargestLift && free(start.world, *lifted, g.hand_joints);
 }
 
+bool GraspChooser::Search::stands_in(const Grasp& g) const {
+  std::vector<std::vector<Pose>> T_fingers;
+  self.kit_->forward(g.pregrasp_joints, T_fingers);
+  const std::vector<HandShape::Low> lows = self.kit_->shape.lows(T_fingers, g.T_object_hand);
+  return std::none_of(lows.begin(), lows.end(),
+                      [&](const HandShape::Low& low) { return low.height < object.box().min().z() + settings().support_gap; });
+}
+
 double GraspChooser::Search::on_our_side(const Grasp& g) const {
   const Vector3 to_robot =
       (scene.T_world_base.translation() - start.T_world_object.translation()).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
   const Vector3 to_hand = start.T_world_object.linear() * (g.T_object_hand.translation() - object.box().center());
   return 0.5 * (1 + to_hand.stableNormalized().dot(to_robot));
+}
+
+bool GraspChooser::Search::off_giver(const Vector& arm_q, const Grasp& g) {
+  ++out.states;
+  return giver->check_people(whole(arm_q, g.pregrasp_joints)).free;
 }
 
 ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
@@ -278,6 +298,7 @@ ChoiceReason GraspChooser::Search::pick_up(Grasp& g) {
   if (holder.empty() && !can_lift(T_world_hand, *grasp_q, g)) return ChoiceReason::cannot_lift;
   const auto approach_q = approach(start, *grasp_q, g);
   if (!approach_q) return ChoiceReason::no_approach;
+  if (giver && (!off_giver(*grasp_q, g) || !off_giver(*approach_q, g))) return ChoiceReason::near_giver;
   g.arm_joints = *grasp_q;
   g.approach_joints = *approach_q;
   return ChoiceReason::chosen;
@@ -306,6 +327,7 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   if (below_support(start.T_world_object, listed)) return ChoiceReason::below_support;
   if (goal_is_taken) return ChoiceReason::goal_taken;
   if (goal && below_support(goal->T_world_object, listed)) return ChoiceReason::goal_support;
+  if (!holder.empty() && !stands_in(listed)) return ChoiceReason::goal_support;
   Grasp& g = found.grasp;
   g = listed;
   const auto hidden = [&](const Pose& T_world_object) {

@@ -58,6 +58,10 @@ struct GraspChooser::Search {
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
   /// How far on the robot's side of the object the hand is, [0, 1]: the person who holds it is on the other.
   double on_our_side(const Grasp& g) const;
+  /// Whether the object can be stood on a surface in this grasp: the open hand is nowhere below its foot.
+  bool stands_in(const Grasp& g) const;
+  /// Far enough from head, torso, upper arms and legs of who holds it, the hand open.
+  bool off_giver(const Vector& arm_q, const Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 
   const GraspChooser& self;
@@ -70,6 +74,7 @@ struct GraspChooser::Search {
   Scene scene;
   Site start;
   std::optional<Site> goal;
+  std::optional<CollisionWorld> giver;     // who holds it, but for forearms and hands
   std::optional<CollisionWorld> carrying;  // about the goal, with the object in the hand
   std::optional<CollisionWorld> held;      // likewise, at the exchange: the person's arms are no obstacle
   bool goal_is_taken{};

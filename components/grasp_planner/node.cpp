@@ -107,6 +107,8 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_tilt = t.rank_tilt();
   s.rank_away = t.rank_away();
   s.off_fingers = positive("off_fingers", t.off_fingers());
+  s.off_giver = positive("off_giver", t.off_giver());
+  if (s.off_giver < s.off_fingers) throw ConfigError("grasp_planner.txtpb: off_giver must be at least off_fingers");
   s.rank_drive = t.rank_drive();
   s.platform_room = t.platform_room();
   s.platform_reaches = static_cast<std::uint32_t>(positive("platform_reaches", t.platform_reaches()));

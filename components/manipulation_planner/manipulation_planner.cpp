@@ -8,7 +8,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kForever = 600;  // [s] a motion this long has been forgotten by everybody
+constexpr double kSameGoal = 1e-6;  // [rad]
+constexpr double kForever = 600;    // [s] a motion this long has been forgotten by everybody
 constexpr std::uint32_t kBlocked = 1U << static_cast<unsigned>(Cause::forecast_collision);
 constexpr std::uint32_t kTooNear = 1U << static_cast<unsigned>(Cause::separation);
 
@@ -222,8 +223,11 @@ Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const V
     const bool come = co_await waiting_.until([this] { return path_reply_.has_value(); }, settings_.request_retry());
     if (!come) continue;
     planned.nodes = path_reply_->path;
+    double length = 0;
+    for (std::size_t i = 1; i < planned.nodes.size(); ++i) length += (planned.nodes[i] - planned.nodes[i - 1]).cwiseAbs().maxCoeff();
     planned.start_touches = path_reply_->start_touches;
     if (!path_reply_->solved) planned.outcome = Outcome::failure(path_reply_->reason);
+    if (length > motion.longest) planned.outcome = Outcome::failure("only a long way around leads there");
     co_return planned;
   }
   planned.outcome = Outcome::failure("the path planner does not answer");
@@ -293,7 +297,10 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     done = co_await waiting_.until(over, live ? settings_.live_period() : kForever);
     if (done || !live) break;
     if (!motion.receiver.empty()) co_await follow(motion, running.nodes.back());
+    const std::optional<Vector3> shifted_to = motion.follows ? follow_offer(motion) : std::nullopt;
     Outcome gone_on = co_await go_on(running, motion);
+    if (shifted_to && (running.nodes.back() - motion.goals.front()).norm() < kSameGoal)
+      motion.p_world_aim = status_.exchange_point = *shifted_to;
   }
   if (!ended()) {
     Outcome blocked = Outcome::failure(strayed(motion) ? motion.aims_at + " was moved away" : "the way is blocked: " + execution_->reason);

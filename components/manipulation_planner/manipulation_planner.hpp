@@ -74,6 +74,7 @@ class ManipulationPlanner {
   std::string complaint(TimePoint now) { return layers_.complaint(now); }  ///< about layers left out; empty: none
 
  private:
+  static constexpr double kAnyLength = 1e9;
   struct Motion {
     std::string phase;
     std::vector<Vector> goals;  // arm axes, alternatives
@@ -81,11 +82,13 @@ class ManipulationPlanner {
     std::vector<std::string> allowed;
     std::vector<std::string> tolerated;  // the plan keeps off these, but a brush foreseen on the way is no reason to hold
     double speed{1.0};
+    double longest{kAnyLength};            // a path that is longer is none, sum of the legs' max norms [rad]
     std::string receiver;                  // the goals are exchange postures for this person, chosen anew as they move; empty: they stay
     Vector3 receiver_at{Vector3::Zero()};  // their torso when the goals were chosen, world [m]
     std::string aims_at;                   // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
     Vector3 p_world_aim{Vector3::Zero()};
     double aim_slack{};
+    std::optional<Grasp> follows;  // led before where that grasp is now, while it moves
   };
   struct PlannedPath {
     Outcome outcome;
@@ -136,16 +139,27 @@ class ManipulationPlanner {
   /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
   Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp);
+  Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp) const;
+  /// Leaves the grasps whose way in and closing fingers keep off the giver's hand, as it is seen now; with none left it says so.
+  Routine<Outcome> keep_off_fingers(const std::string& object, const std::string& giver, std::vector<Grasp>& grasps);
   /// From the offered object with the hand opened, the way it came; the result is `why`.
+  Routine<Outcome> draw_back(const std::string& object, const std::string& giver);
   Routine<Outcome> back_off(const std::string& object, const std::string& giver, const Grasp& grasp, const Outcome& why);
   /// Who holds out what.
   struct Offer {
     std::string object, giver;
   };
+  /// Draws the hand back where it leaves no room to hold something out; nullopt: nothing was offered until `patience`.
+  Routine<std::optional<Offer>> watch_for_offer(const std::string& wanted, const std::string& giver, TimePoint patience);
+  /// Back from the giver, toward the robot's own body.
+  Routine<Outcome> make_room(const std::string& giver);
+  double room_before(const std::string& giver) const;  // between their chest and the hand, level [m]
   std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
   /// The grasp for where the object is now; nullopt: the arm does not reach it there.
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
   bool strayed(const Motion& motion) const;
+  /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or the arm does not reach there.
+  std::optional<Vector3> follow_offer(Motion& motion);
   Routine<Outcome> go_to_rest();
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.

@@ -10,6 +10,21 @@ namespace handsel::manipulation_planner {
 namespace {
 constexpr double kSteady = 0.25;     // [s] an offer must last before the hand goes for it
 constexpr double kLookAgain = 0.02;  // [s]
+constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
+constexpr double kAimed = 0.012;     // [m] before the object the hand stands where the straight way in begins, up to this
+constexpr double kHandLength = 0.3;  // [m] palm to what is beyond the open fingers
+constexpr double kNear = 0.5;        // [m] palm to what is offered
+// [m] While a new way is sought, an offer may be shifted by this share of the way that is left to there, and at its end by this.
+constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
+// [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and this.
+constexpr double kDetour = 1.5, kMoreThan = 2.0;
+constexpr int kMostAims = 6;          // so often the hand follows before it waits for the offer anew
+constexpr double kOffFingers = 0.01;  // [m] kept from the giver's hand, closing included
+constexpr double kRoom = 0.9;         // [m] between chest and waiting hand, so that there is room to hold something out, level
+constexpr double kCrowded = 0.05;     // [m] less room than that by more makes the hand draw back
+
+Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
+const Vector3& torso_of(const Person& who) { return who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
 }  // namespace
 
 std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std::string& wanted, const std::string& giver) const {
@@ -19,8 +34,8 @@ std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std
     const SceneObject* held = object(fact.object);
     const Person* who = person(fact.subject);
     if (held == nullptr || who == nullptr || held->holder != Holder::human || held->holder_id != fact.subject) continue;
-    const Vector3 out = held->T_world_object.translation() - who->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-    if (out.head<2>().norm() < settings_.held_out() || held->velocity.norm() > settings_.offer_still()) continue;
+    const Vector3 out = level(held->T_world_object.translation() - torso_of(*who));
+    if (out.norm() < settings_.held_out() || held->velocity.norm() > settings_.offer_still()) continue;
     return Offer{fact.object, fact.subject};
   }
   return std::nullopt;
@@ -29,7 +44,22 @@ std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std
 bool ManipulationPlanner::strayed(const Motion& motion) const {
   if (motion.aims_at.empty()) return false;
   const SceneObject* aim = object(motion.aims_at);
-  return aim == nullptr || (aim->T_world_object.translation() - motion.p_world_aim).norm() > motion.aim_slack;
+  if (aim == nullptr) return true;
+  const double shifted = (aim->T_world_object.translation() - motion.p_world_aim).norm();
+  if (!motion.follows) return shifted > motion.aim_slack;
+  const double ahead = (aim->T_world_object.translation() - T_world_tool().translation()).norm() - kHandLength;
+  return shifted > std::clamp(kOfTheWay * ahead, kBesideHand, motion.aim_slack) ||
+         std::none_of(facts_.facts.begin(), facts_.facts.end(),
+                      [&](const Fact& fact) { return fact.kind == FactKind::offering && fact.object == motion.aims_at; });
+}
+
+std::optional<Vector3> ManipulationPlanner::follow_offer(Motion& motion) {
+  const SceneObject* aim = object(motion.aims_at);
+  if (aim == nullptr || (aim->T_world_object.translation() - motion.p_world_aim).norm() < kAimed) return std::nullopt;
+  const std::optional<Grasp> there = aimed(motion.aims_at, *motion.follows);
+  if (!there) return std::nullopt;
+  motion.goals = {there->approach_joints};
+  return aim->T_world_object.translation();
 }
 
 std::optional<Grasp> ManipulationPlanner::aimed(const std::string& object_id, const Grasp& grasp) const {
@@ -52,29 +82,80 @@ std::optional<Grasp> ManipulationPlanner::aimed(const std::string& object_id, co
   return now;
 }
 
+double ManipulationPlanner::room_before(const std::string& giver) const {
+  const Person* who = person(giver);
+  return who == nullptr ? kRoom : level(T_world_tool().translation() - torso_of(*who)).norm();
+}
+
+Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver) {
+  const Person* who = person(giver);
+  if (who == nullptr) co_return Outcome::failure("nobody is in sight");
+  const Pose T_rest = scene_.T_world_base * robot_->link_pose(robot_->rest_posture(), robot_->tool_link());
+  const Vector3 chest = torso_of(*who), away = level(scene_.T_world_base.translation() - chest).stableNormalized();
+  const double room = room_before(giver), lacks = std::max(0.0, kRoom - level(T_rest.translation() - chest).norm());
+  IkOptions options;
+  options.restarts = 2;
+  Motion back;
+  back.phase = "making room";
+  Outcome last = Outcome::failure("no posture of the arm lies farther back");
+  for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0}) {
+    Pose T = T_rest;
+    T.translation() += share * lacks * away;
+    if (level(T.translation() - chest).norm() < room + kCrowded) break;
+    const auto joints = robot_->inverse(arm_, scene_.T_world_base.inverse() * T, robot_->rest_posture(), options);
+    if (!joints) continue;
+    back.goals = {*joints};
+    last = co_await move(back);
+    if (last.good) break;
+  }
+  co_return last;
+}
+
+Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_for_offer(const std::string& wanted, const std::string& giver,
+                                                                                        TimePoint patience) {
+  std::optional<Offer> offer;
+  bool made_room = false;
+  for (TimePoint since = waiting_.now(); waiting_.now() < patience;) {
+    status_.phase = "watching for an offer";
+    const std::optional<Offer> seen = offered(wanted, giver);
+    if (!seen || !offer || seen->object != offer->object || seen->giver != offer->giver) since = waiting_.now();
+    offer = seen;
+    if (offer && to_seconds(waiting_.now() - since) >= kSteady) co_return offer;
+    if (!offer && !made_room && room_before(giver) < kRoom - kCrowded) {
+      made_room = true;
+      Outcome made = co_await make_room(giver);
+      if (!made.good) refuse("making room", made.reason);
+      continue;
+    }
+    co_await waiting_.pause(kLookAgain);
+  }
+  co_return std::nullopt;
+}
+
 Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const std::string& giver) {
   if (status_.holding && (wanted.empty() || attachment_.object == wanted)) co_return Outcome{};
   Outcome last = Outcome::failure((giver.empty() ? "nobody offers " : giver + " does not offer ") + (wanted.empty() ? "anything" : wanted) +
                                   " within " + std::to_string(static_cast<int>(settings_.receive_timeout())) + " s");
   std::set<std::uint64_t> did_not_hold;
-  for (std::uint32_t attempt = 0; attempt < settings_.receive_attempts(); ++attempt) {
-    status_.phase = "watching for an offer";
+  TimePoint patience = waiting_.now() + from_seconds(settings_.receive_timeout());
+  for (std::uint32_t attempt = 0; attempt < settings_.receive_attempts();) {
     status_.exchange_engaged = false;
-    const TimePoint patience = waiting_.now() + from_seconds(settings_.receive_timeout());
-    std::optional<Offer> offer;
-    for (TimePoint since = waiting_.now(); waiting_.now() < patience;) {
-      const std::optional<Offer> seen = offered(wanted, giver);
-      if (!seen || !offer || seen->object != offer->object || seen->giver != offer->giver) since = waiting_.now();
-      offer = seen;
-      if (offer && to_seconds(waiting_.now() - since) >= kSteady) break;
-      co_await waiting_.pause(kLookAgain);
-    }
-    if (!offer) co_return last;
+    std::optional<Offer> offer = co_await watch_for_offer(wanted, giver, patience);
+    if (!offer) break;
     status_.object = offer->object;
     status_.human = offer->giver;
     status_.exchange_point = object(offer->object)->T_world_object.translation();
     GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps());
-    last = list.outcome;
+    if (!list.grasps.empty()) list.outcome = co_await keep_off_fingers(offer->object, offer->giver, list.grasps);
+    if (!list.outcome.good || list.grasps.empty()) {
+      // Who is not come for holds it out elsewhere, nearer, or farther out where there is room.
+      if (list.outcome.reason != last.reason) refuse("offer", list.outcome.reason);
+      last = list.outcome;
+      if (room_before(offer->giver) < kRoom - kCrowded) co_await make_room(offer->giver);
+      co_await waiting_.pause(kAnotherTry);
+      continue;
+    }
+    ++attempt;
     if (std::all_of(list.grasps.begin(), list.grasps.end(), [&](const Grasp& g) { return did_not_hold.count(g.id) > 0; }))
       did_not_hold.clear();
     for (const Grasp& grasp : list.grasps) {
@@ -85,10 +166,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       if (!last.strayed) did_not_hold.insert(grasp.id);
       if (last.strayed || !offered(offer->object, offer->giver)) break;
     }
-    if (!last.good && list.grasps.empty()) {
-      refuse("offer", last.reason);
-      co_await waiting_.pause(kSteady);
-    }
+    patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   }
   status_.exchange_engaged = false;
   co_return last;
@@ -98,49 +176,62 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   status_.phase = "planning";
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
   if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
-  const std::optional<Grasp> first_aim = aimed(object_id, chosen);
-  if (!first_aim) co_return Outcome::failure("no posture of the arm reaches it where it is held now");
-
-  Motion approach;
-  approach.phase = "approach";
-  approach.goals = {first_aim->approach_joints};
-  approach.tolerated = {object_id, giver};
-  approach.aims_at = object_id;
-  approach.p_world_aim = object(object_id)->T_world_object.translation();
-  approach.aim_slack = settings_.approach_slack();
-  const Group& hand_group = robot_->require_group("hand");
-  const Vector opened = RobotModel::with(set_point_, hand_group, chosen.pregrasp_joints);
+  const Outcome out_of_reach = Outcome::failure("no posture of the arm reaches it where it is held now");
+  std::optional<Grasp> grasp = aimed(object_id, chosen);
+  if (!grasp) co_return out_of_reach;
+  Motion approach = approach_to(object_id, giver, *grasp);
+  const Vector opened = RobotModel::with(set_point_, robot_->require_group("hand"), chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
   if (!way.outcome.good) co_return Outcome::failure("approach: " + way.outcome.reason);
   status_.phase = "opening the hand";
   HandResult open = co_await hand(HandAction::move, chosen.pregrasp_joints, settings_.hand_timeout());
   if (!open.outcome.good) co_return open.outcome;
-  status_.exchange_engaged = true;
-  Outcome moved = co_await move(approach);
-  if (!moved.good) status_.exchange_engaged = false;
-  if (!moved.good) co_return moved;
 
+  Outcome last;
   const auto steady = [this, &object_id, &giver] { return offered(object_id, giver).has_value(); };
-  const bool offers = co_await waiting_.until(steady, settings_.sight_timeout());
-  const std::optional<Grasp> grasp = offers ? aimed(object_id, chosen) : std::nullopt;
-  if (!grasp) status_.exchange_engaged = false;
-  if (!offers) co_return Outcome::failure(giver + " has drawn " + object_id + " back");
-  if (!grasp) co_return Outcome::failure("no posture of the arm reaches it where it is held now");
-  Motion reach_object;
-  reach_object.phase = "reaching the object";
-  reach_object.goals = {grasp->arm_joints};
-  reach_object.straight = true;
-  reach_object.allowed = {object_id, giver};
-  reach_object.speed = settings_.approach_speed();
-  reach_object.aims_at = object_id;
-  reach_object.p_world_aim = object(object_id)->T_world_object.translation();
-  reach_object.aim_slack = settings_.aim_slack();
-  status_.exchange_point = reach_object.p_world_aim;
-  moved = co_await move(reach_object);
-  if (!moved.good) {
-    moved = co_await back_off(object_id, giver, *grasp, moved);
-    co_return moved;
+  bool there = false;
+  for (int aims = 0; aims < kMostAims && !there; ++aims) {
+    status_.exchange_engaged = true;
+    approach = approach_to(object_id, giver, *grasp);
+    last = co_await move(approach);
+    if (!last.good && !last.strayed) break;
+    const bool offers = co_await waiting_.until(steady, settings_.sight_timeout());
+    last = offers ? out_of_reach : Outcome::failure(giver + " has drawn " + object_id + " back");
+    last.strayed = !offers;
+    grasp = offers ? aimed(object_id, chosen) : std::nullopt;
+    if (!grasp) break;
+    const Pose T_before =
+        scene_.T_world_base * robot_->link_pose(RobotModel::with(set_point_, arm_, grasp->approach_joints), robot_->tool_link());
+    last = Outcome::failure(object_id + " is moved about");
+    last.strayed = true;
+    if ((T_before.translation() - T_world_tool().translation()).norm() > kAimed) continue;
+    std::vector<Grasp> this_one{*grasp};
+    last = co_await keep_off_fingers(object_id, giver, this_one);
+    if (last.good && object(object_id) == nullptr) last = Outcome::failure(object_id + " is out of sight");
+    if (!last.good) break;
+    Motion reach_object;
+    reach_object.phase = "reaching the object";
+    reach_object.goals = {grasp->arm_joints};
+    reach_object.straight = true;
+    reach_object.allowed = {object_id, giver};
+    reach_object.speed = settings_.approach_speed();
+    reach_object.aims_at = object_id;
+    reach_object.p_world_aim = status_.exchange_point = object(object_id)->T_world_object.translation();
+    reach_object.aim_slack = settings_.aim_slack();
+    last = co_await move(reach_object);
+    there = last.good;
+    if (there) break;
+    last = co_await back_off(object_id, giver, *grasp, last);
+    if (!last.strayed || !steady()) break;
+    grasp = aimed(object_id, chosen);
+    if (!grasp) break;
   }
+  if (!there) {
+    co_await draw_back(object_id, giver);
+    status_.exchange_engaged = false;
+    co_return last;
+  }
+  Outcome moved;
 
   status_.phase = "grasp";
   HandResult closed = co_await hand(HandAction::grasp, grasp->hand_joints, settings_.hand_timeout(), &grasp->hand_effort);
@@ -172,6 +263,65 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   status_.exchange_engaged = false;
   if (!moved.good) refuse("retreat", moved.reason);
   co_return Outcome{};
+}
+
+ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& object_id, const std::string& giver,
+                                                             const Grasp& grasp) const {
+  Motion approach;
+  approach.phase = "approach";
+  approach.goals = {grasp.approach_joints};
+  approach.tolerated = {object_id, giver};
+  approach.aims_at = object_id;
+  approach.p_world_aim = object(object_id)->T_world_object.translation();
+  approach.aim_slack = settings_.approach_slack();
+  approach.follows = grasp;
+  approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + kMoreThan;
+  return approach;
+}
+
+Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object_id, const std::string& giver, std::vector<Grasp>& grasps) {
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
+  auto clear = std::make_shared<std::vector<Grasp>>();
+  HumanState around = people_;
+  for (Person& who : around.people)
+    if (who.id == giver) who.inflation += kOffFingers;
+  const std::function<void()> job = [this, clear, around, grasps, object_id, world = world_, scene = scene_, q = posture()] {
+    constexpr int kSteps = 6;
+    world->set_scene(scene);
+    world->set_people(around);
+    world->set_attachment({}, {object_id});
+    world->set_moving_axes(arm_.axes);
+    const Group& fingers = robot_->require_group("hand");
+    const auto free = [&](const Vector& arm, const Vector& hand) {
+      return world->check_people(RobotModel::with(RobotModel::with(q, arm_, arm), fingers, hand)).free;
+    };
+    for (const Grasp& g : grasps) {
+      bool off = true;
+      for (int k = kSteps; k >= 0 && off; --k) {
+        const double s = static_cast<double>(k) / kSteps;
+        off = free(g.approach_joints + s * (g.arm_joints - g.approach_joints), g.pregrasp_joints) &&
+              free(g.arm_joints, g.pregrasp_joints + s * (g.hand_joints - g.pregrasp_joints));
+      }
+      if (off) clear->push_back(g);
+    }
+  };
+  Outcome worked = co_await work(job);
+  if (!worked.good) co_return worked;
+  grasps = *clear;
+  if (grasps.empty()) worked = Outcome::failure("the hand would come too near to the fingers of " + giver);
+  co_return worked;
+}
+
+/// While the giver's hand is still excepted: from so near to it nothing but straight away leads off.
+Routine<Outcome> ManipulationPlanner::draw_back(const std::string& object_id, const std::string& giver) {
+  const SceneObject* held = object(object_id);
+  if (held == nullptr || (held->T_world_object.translation() - T_world_tool().translation()).norm() > kNear) co_return Outcome{};
+  Motion next;
+  next.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
+  next.allowed = {object_id};
+  Outcome drawn = co_await withdraw(giver, next);
+  if (!drawn.good) refuse("drawing back", drawn.reason);
+  co_return drawn;
 }
 
 Routine<Outcome> ManipulationPlanner::back_off(const std::string& object_id, const std::string& giver, const Grasp& grasp,

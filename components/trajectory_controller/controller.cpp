@@ -373,6 +373,8 @@ void Controller::go_back_to_path(TimePoint now) noexcept {
   }
   arm_ = Arm::running;
   judge_new_path(now);
+  // It was left because the guard's word fell faster than the path could slow: what it allows further on is found out gently.
+  runner_.begin_with(0.0);
 }
 
 void Controller::step_arm(TimePoint now) noexcept {
