@@ -30,6 +30,7 @@ struct ChoiceSettings {
   double rank_sturdy{1.0};              ///< the squeeze's margin / `sturdy_margin`, -2 to 1: what only just holds comes last
   double sturdy_margin{2.0};            ///< [N]
   double rank_away{0.6};                ///< the hand stays on the robot's side of what a person holds
+  double rank_stands{1.0};              ///< from a person's hand: it can be put down in this grasp
   double off_fingers{0.01};             ///< kept between the robot and the hands of who holds it [m]
   double off_giver{0.12};               ///< likewise and their head, torso, upper arms and legs: nearer the guard lets it only creep [m]
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object

@@ -121,7 +121,7 @@ double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) 
   double sum =
       settings().rank_quality * listed.grasp.quality + settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
   sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
-  if (!holder.empty()) sum += settings().rank_away * on_our_side(listed.grasp);
+  if (!holder.empty()) sum += settings().rank_away * on_our_side(listed.grasp) + (stands_in(listed.grasp) ? settings().rank_stands : 0.0);
   if (request.for_human.empty()) return sum;
   sum += settings().rank_room * listed.room;
   return places ? sum + settings().rank_partner * pairs->promise(index) : sum;
@@ -327,7 +327,6 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   if (below_support(start.T_world_object, listed)) return ChoiceReason::below_support;
   if (goal_is_taken) return ChoiceReason::goal_taken;
   if (goal && below_support(goal->T_world_object, listed)) return ChoiceReason::goal_support;
-  if (!holder.empty() && !stands_in(listed)) return ChoiceReason::goal_support;
   Grasp& g = found.grasp;
   g = listed;
   const auto hidden = [&](const Pose& T_world_object) {

@@ -106,6 +106,7 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.rank_visible = t.rank_visible();
   s.rank_tilt = t.rank_tilt();
   s.rank_away = t.rank_away();
+  s.rank_stands = t.rank_stands();
   s.off_fingers = positive("off_fingers", t.off_fingers());
   s.off_giver = positive("off_giver", t.off_giver());
   if (s.off_giver < s.off_fingers) throw ConfigError("grasp_planner.txtpb: off_giver must be at least off_fingers");
