@@ -12,11 +12,15 @@ AdaptiveClock::AdaptiveClock(const ClockSettings& settings, Duration slack, cons
   if (!(settings.p_max >= settings.p_min)) throw ConfigError("attention: behaviour " + what + ": p_max must not be below p_min");
   if (!(settings.far > settings.near)) throw ConfigError("attention: behaviour " + what + ": far must be above near");
   if (!(settings.weber_gain > 0)) throw ConfigError("attention: behaviour " + what + ": weber_gain must be above 0");
+  if (settings.law == ClockLaw::fixed && !(settings.period >= settings.p_min && settings.period <= settings.p_max))
+    throw ConfigError("attention: behaviour " + what + ": period must be from p_min to p_max where the law is FIXED");
 }
 
 void AdaptiveClock::fire(double stimulus, TimePoint now) {
   const double s = std::isfinite(stimulus) ? std::clamp(stimulus, 0.0, settings_.far) : settings_.far;
-  if (settings_.law == ClockLaw::linear) {
+  if (settings_.law == ClockLaw::fixed) {
+    period_ = settings_.period;
+  } else if (settings_.law == ClockLaw::linear) {
     period_ = settings_.p_max * (0.1 + 0.9 * (s - settings_.near) / (settings_.far - settings_.near));
   } else {
     const double floor = 0.01 * settings_.far;

@@ -12,6 +12,7 @@ namespace handsel::attention {
 enum class ClockLaw {
   linear,  ///< p = p_max * (0.1 + 0.9 * (s - near) / (far - near))
   weber,   ///< the period changes in proportion to the relative change of the stimulus
+  fixed,   ///< `period`, whatever happens
 };
 
 struct ClockSettings {
@@ -21,6 +22,7 @@ struct ClockSettings {
   double near{0.1};        ///< stimulus at which it wants a tenth of p_max (unit of the stimulus)
   double far{1.2};         ///< stimulus at which it wants p_max, > near
   double weber_gain{1.0};  ///< relative change of the period per relative change of the stimulus, > 0
+  double period{};         ///< of the fixed law, [p_min, p_max] [s]
 };
 
 /// p_t = rho * clamp(f(s_t, p_t-1)) + (1 - rho) * p_t-1 with rho = 1 when the clock fires.

@@ -23,6 +23,7 @@ Attention::Attention(const AttentionSettings& settings, const Body& body) : sett
 
 void Attention::step(const World& world, TimePoint now) {
   now_ = now;
+  if (settings_.off) return;
   for (Entry& e : entries_) {
     if (e.clock.due(now)) {
       e.stimulus = e.schema->perceive(world, now);
@@ -50,6 +51,7 @@ void Attention::choose_gaze(TimePoint now) {
 
 AttentionAdvice Attention::advice() const {
   AttentionAdvice advice;
+  if (settings_.off) return advice;
   double shortest = 0.0;
   for (const Entry& e : entries_) {
     const Behaviour kind = e.schema->kind();

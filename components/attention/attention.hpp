@@ -16,6 +16,7 @@ struct BehaviourSettings {
 };
 
 struct AttentionSettings {
+  bool off{};                  ///< looks at nothing and asks for nothing
   double tick{0.01};           ///< how often step() is called [s]; clocks are rounded to it
   double gaze_dwell{0.5};      ///< gaze stays with a behaviour at least this long [s]
   double gaze_advantage{0.8};  ///< another takes it only with a period below this share of the present one's

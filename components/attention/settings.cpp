@@ -28,6 +28,7 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
   config::AttentionSettings read;
   load_text_proto(file, read);
   AttentionSettings s;
+  s.off = read.off();
   s.tick = share(read.tick(), 0.001, 0.1, "tick", file);
   s.gaze_dwell = share(read.gaze_dwell(), 0, 60, "gaze_dwell", file);
   s.gaze_advantage = share(read.gaze_advantage(), 0, 1, "gaze_advantage", file);
@@ -56,8 +57,15 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
   m.reach_near = share(read.reach_near(), 1e-3, 10, "reach_near", file);
   m.reach_hold = share(read.reach_hold(), 0, 10, "reach_hold", file);
   for (const auto& b : read.behaviours()) {
-    const ClockLaw law = b.law() == config::WEBER ? ClockLaw::weber : ClockLaw::linear;
-    s.behaviours.push_back({behaviour_named(b.name(), file), {law, b.p_min(), b.p_max(), b.near(), b.far(), b.weber_gain()}});
+    const ClockLaw law = b.law() == config::WEBER ? ClockLaw::weber : b.law() == config::FIXED ? ClockLaw::fixed : ClockLaw::linear;
+    const Behaviour behaviour = behaviour_named(b.name(), file);
+    const ClockSettings clock{law, b.p_min(), b.p_max(), b.near(), b.far(), b.weber_gain(), b.period()};
+    try {
+      AdaptiveClock(clock, {}, b.name());
+    } catch (const ConfigError& error) {
+      throw ConfigError(locate(file, '"' + b.name() + '"') + ": " + error.what());
+    }
+    s.behaviours.push_back({behaviour, clock});
   }
   return s;
 }

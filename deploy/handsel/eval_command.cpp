@@ -28,18 +28,36 @@ struct EvalOptions {
   double timeout{0.0};
 };
 
-/// The settings with the attention's law replaced: a copy of the folder, removed with this object.
+/// Mean period of each behaviour's clock [s].
+using Periods = std::map<std::string, double>;
+
+/// How the attention's clocks run: as set ("adaptive"), all at their shortest period ("max"), each always at the mean period of the
+/// adaptive ones ("mean"), or no attention ("off").
+void set_mode(const std::string& mode, const Periods& mean, config::AttentionSettings& settings) {
+  settings.set_off(mode == "off");
+  if (mode != "max" && mode != "mean") return;
+  for (auto& behaviour : *settings.mutable_behaviours()) {
+    behaviour.set_law(config::FIXED);
+    const auto period = mean.find(behaviour.name());
+    behaviour.set_period(mode == "max" || period == mean.end() ? behaviour.p_min()
+                                                               : std::clamp(period->second, behaviour.p_min(), behaviour.p_max()));
+  }
+}
+
+/// The settings with the attention's law and mode replaced: a copy of the folder, removed with this object.
 class DerivedSettings {
  public:
-  explicit DerivedSettings(const std::string& law) {
-    if (law.empty()) return;
+  DerivedSettings(const std::string& law, const std::string& mode, const Periods& mean) {
+    if (law.empty() && mode == "adaptive") return;
     namespace fs = std::filesystem;
     folder_ = fs::temp_directory_path() / ("handsel-settings-" + std::to_string(getpid()));
     fs::create_directories(folder_);
     for (const auto& entry : fs::directory_iterator(resource("config"))) fs::copy(entry.path(), folder_ / entry.path().filename());
     config::AttentionSettings settings;
     load_text_proto(folder_ / "attention.txtpb", settings);
-    for (auto& behaviour : *settings.mutable_behaviours()) behaviour.set_law(law == "weber" ? config::WEBER : config::LINEAR);
+    if (!law.empty())
+      for (auto& behaviour : *settings.mutable_behaviours()) behaviour.set_law(law == "weber" ? config::WEBER : config::LINEAR);
+    set_mode(mode, mean, settings);
     std::string text;
     google::protobuf::TextFormat::PrintToString(settings, &text);
     std::ofstream(folder_ / "attention.txtpb") << text;
@@ -84,7 +102,7 @@ void print_table(const std::map<std::string, Tally>& tallies) {
   }
 }
 
-std::vector<Trial> plan_trials(const EvalOptions& options, const std::filesystem::path& settings) {
+std::vector<Trial> plan_trials(const EvalOptions& options, const std::string& mode, const std::filesystem::path& settings) {
   std::vector<Trial> trials;
   const Shard shard = parse_shard(options.shard);
   const int count = options.replay ? 1 : options.trials;
@@ -94,7 +112,7 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::filesystem
     for (int i = 0; i < count; ++i) {
       if (i % shard.count != shard.index) continue;
       context.seed = first + static_cast<std::uint64_t>(i);
-      Trial trial{.context = context, .options = {.scenario = scenario, .attention = options.attention, .timeout = options.timeout}};
+      Trial trial{.context = context, .options = {.scenario = scenario, .attention = mode, .timeout = options.timeout}};
       trial.options.law = options.law.empty() ? "as set" : options.law;
       if (options.replay) {
         trial.options.on_event = [](double at, const std::string& text) { std::fprintf(stderr, "%8.3f s  %s\n", at, text.c_str()); };
@@ -105,19 +123,40 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::filesystem
   return trials;
 }
 
+int jobs_of(const EvalOptions& options) {
+  return options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// What the adaptive clocks come to in the trials that were asked for.
+Periods mean_periods(const EvalOptions& options) {
+  const DerivedSettings settings(options.law, "adaptive", {});
+  std::map<std::string, double> activations;
+  double time = 0;
+  run_trials(plan_trials(options, "adaptive", settings.folder()), jobs_of(options), [&](const nlohmann::json& line) {
+    if (!line.contains("activations_of")) return;
+    time += line["duration_s"].get<double>();
+    for (const auto& [behaviour, count] : line["activations_of"].items()) activations[behaviour] += count.get<double>();
+  });
+  Periods mean;
+  for (const auto& [behaviour, count] : activations) {
+    mean[behaviour] = time / std::max(1.0, count);
+    std::fprintf(stderr, "%-8s every %.3f s when adaptive\n", behaviour.c_str(), mean[behaviour]);
+  }
+  return mean;
+}
+
 int evaluate(const EvalOptions& options) {
-  const DerivedSettings settings(options.law);
-  const std::vector<Trial> trials = plan_trials(options, settings.folder());
+  const DerivedSettings settings(options.law, options.attention, options.attention == "mean" ? mean_periods(options) : Periods{});
+  const std::vector<Trial> trials = plan_trials(options, options.attention, settings.folder());
   std::ofstream out;
   if (!options.out.empty()) {
     out.open(options.out);
     if (!out) throw ConfigError("cannot write " + options.out);
   }
   const bool to_stdout = options.out.empty();
-  const int jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   std::map<std::string, Tally> tallies;
   std::size_t done = 0, successes = 0;
-  const bool clean = run_trials(trials, jobs, [&](const nlohmann::json& line) {
+  const bool clean = run_trials(trials, jobs_of(options), [&](const nlohmann::json& line) {
     Tally& tally = tallies[line["scenario"]];
     const bool success = line["success"];
     ++tally.trials;
@@ -152,8 +191,11 @@ void add_eval_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--replay", options->replay, "one trial with this seed, bit for bit, telling what happens")
       ->check(CLI::PositiveNumber);
-  command->add_option("--attention", options->attention, "how the attention's clocks run")
-      ->check(CLI::IsMember({"adaptive"}))
+  command
+      ->add_option("--attention", options->attention,
+                   "how its clocks run: adaptive; max: all at their shortest period; mean: each at the mean period of the adaptive ones,\n"
+                   "which run first; off: no attention")
+      ->check(CLI::IsMember({"adaptive", "max", "mean", "off"}))
       ->capture_default_str();
   command->add_option("--law", options->law, "of the attention's clocks (default: as in its settings)")
       ->check(CLI::IsMember({"linear", "weber"}));

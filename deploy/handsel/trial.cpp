@@ -113,8 +113,10 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   const Json report = make_report(inputs, performer, system.observer());
   const GroundTruth& truth = system.snapshot().truth.sample;
   std::uint64_t activations = 0, fastest = 0;
+  Json activations_of = Json::object();
   for (const BehaviourState& behaviour : system.snapshot().attention.sample.behaviours) {
     activations += behaviour.activations;
+    activations_of[name(behaviour.behaviour)] = behaviour.activations;
     fastest += behaviour.activations_at_fastest;
   }
   char hash[32];
@@ -130,10 +132,12 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                {"limit_violations", truth.limit_violations},
                {"collisions", truth.self_or_scene_collisions},
                {"contact_force_n", truth.contact_force},
+               {"peak_closing_speed_m_s", truth.peak_closing_speed},
                {"drops", truth.dropped ? 1 : 0},
                {"lifted_m", truth.max_lifted},
                {"contact_share", report["oracle"]["contact_share"]},
                {"activations", activations},
+               {"activations_of", activations_of},
                {"activations_at_pmin", fastest},
                {"reaction_p50_s", nullptr},
                {"reaction_p99_s", nullptr},

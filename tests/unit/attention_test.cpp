@@ -3,8 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "common/base/errors.hpp"
+#include "common/config/resources.hpp"
+#include "components/attention/settings.hpp"
 #include "tests/support/small_robot.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace handsel::attention {
 namespace {
@@ -104,6 +109,15 @@ TEST(AdaptiveClock, weber_law_changes_the_period_in_proportion_to_the_relative_c
   EXPECT_NEAR(clock.period(), 0.1, 1e-12);
   clock.fire(0.6, at(3));
   EXPECT_NEAR(clock.period(), 0.12, 1e-12);
+}
+
+TEST(AdaptiveClock, the_fixed_law_heeds_nothing) {
+  AdaptiveClock clock({ClockLaw::fixed, 0.01, 0.4, 0.1, 2.0, 1.0, 0.17}, Duration(0), "avoid");
+  for (const double stimulus : {5.0, 0.0, 0.7}) {
+    clock.fire(stimulus, at(1));
+    EXPECT_EQ(clock.period(), 0.17);
+  }
+  EXPECT_THROW(AdaptiveClock({ClockLaw::fixed, 0.1, 0.4, 0.1, 2.0, 1.0, 0.05}, Duration(0), "avoid"), ConfigError);
 }
 
 TEST(AdaptiveClock, refuses_settings_that_cannot_work) {
@@ -331,6 +345,38 @@ TEST_F(AttentionTest, who_reaches_for_what_is_put_down_is_to_be_given_it_and_who
   action_.kind = ActionKind::give;
   run(attention, 4, 5);
   EXPECT_EQ(attention.advice().change, TaskChange::none) << "it is being given already";
+}
+
+TEST_F(AttentionTest, off_it_looks_at_nothing_and_asks_for_nothing) {
+  AttentionSettings off = settings();
+  off.off = true;
+  Attention attention(off, body_);
+  people_.people = {standing(0.6, 0.3)};
+  point_arm_at_person_with_trajectory(0.5);
+  run(attention, 0, 2);
+  EXPECT_EQ(attention.advice().speed_factor, 1.0);
+  EXPECT_FALSE(attention.advice().has_gaze_target);
+  for (const BehaviourState& state : attention.state().behaviours) EXPECT_EQ(state.activations, 0u);
+}
+
+std::string refusal_of(std::string settings, const std::string& part, const std::string& instead) {
+  settings.replace(settings.find(part), part.size(), instead);
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("attention.txtpb", settings);
+  return test::message_of<ConfigError>([&] { load_settings(file); });
+}
+
+TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stands) {
+  std::ifstream in(resource("config/attention.txtpb"));
+  const std::string shipped((std::istreambuf_iterator<char>(in)), {});
+  EXPECT_EQ(refusal_of(shipped, "tick", "tick"), "no error");
+  const std::string order = refusal_of(shipped, "p_min: 0.04 p_max: 0.2", "p_min: 0.4 p_max: 0.2");
+  EXPECT_THAT(order, HasSubstr("attention.txtpb:28"));
+  EXPECT_THAT(order, HasSubstr("behaviour avoid: p_max must not be below p_min"));
+  const std::string stranger = refusal_of(shipped, "\"give\"", "\"hug\"");
+  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:31"));
+  EXPECT_THAT(stranger, HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
+  EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"), HasSubstr("behaviour search: period must be from p_min to p_max"));
 }
 
 }  // namespace
