@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/model/human_body.hpp"
 
@@ -105,7 +106,23 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
     status_.exchange_engaged = false;
     action_ = {};
   }
+  status_.time_to_exchange = time_to_exchange();
   out_ = nullptr;
+}
+
+/// What the running motion still takes at the pace it has now, and what usually comes after it.
+double ManipulationPlanner::time_to_exchange() const {
+  constexpr double kNever = std::numeric_limits<double>::infinity(), kSlowest = 0.05, kReachIn = 1.5, kClose = 0.5;
+  if (status_.state != ActionState::running) return kNever;
+  const bool gives = status_.kind == ActionKind::give, receives = status_.kind == ActionKind::receive;
+  const std::string& phase = status_.phase;
+  if ((gives && phase == "offer") || (receives && status_.exchange_engaged && phase.rfind("waiting for", 0) == 0)) return 0;
+  if (receives && phase == "grasp") return kClose;
+  const bool on_the_way = (gives && phase == "carry") || (receives && (phase == "approach" || phase == "reaching the object"));
+  if (!on_the_way || !execution_ || execution_->motion != MotionState::running || active_.trajectory != execution_->trajectory)
+    return kNever;
+  const double left = std::max(0.0, active_.rest.duration() - active_.time) / std::clamp(active_.speed_factor, kSlowest, 1.0);
+  return left + (phase == "approach" ? kReachIn : 0.0) + (receives ? kClose : 0.0);
 }
 
 bool ManipulationPlanner::at_rest() const { return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9; }

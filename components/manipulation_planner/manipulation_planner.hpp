@@ -208,6 +208,7 @@ class ManipulationPlanner {
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);
 
+  double time_to_exchange() const;  // as foreseen [s]
   bool at_rest() const;
   bool may_move() const;
   Vector posture() const;  // the arm as commanded, hand and head as measured: squeezing fingers are commanded beyond what they touch

@@ -267,6 +267,46 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
   EXPECT_GT(mean(choose(r, scene, anna(1.35, 0.3), sight)), mean(choose(r, scene, anna(1.35, 0.3), blind)));
 }
 
+/// Held out by anna at her right hand, toward the robot.
+Scene held_out(HumanState& people) {
+  Scene scene = table_with_mug();
+  people = anna(1.45, 0.0);
+  Person& who = people.people.front();
+  const auto at = [&](const char* joint) -> Vector3& { return who.joints[static_cast<std::size_t>(body_joint_index(joint))].position; };
+  at("r_hand") = {0.97, 0.0, 1.1};
+  at("r_wrist") = {1.05, 0.0, 1.1};
+  at("r_elbow") = {1.28, 0.1, 1.1};
+  scene.objects[0].T_world_object = make_pose({0.88, 0.0, 1.12});
+  scene.objects[0].holder = Holder::human;
+  scene.objects[0].holder_id = "anna";
+  return scene;
+}
+
+TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
+  HumanState people;
+  const Scene scene = held_out(people);
+  const Choice c = choose(request(), scene, people);
+  ASSERT_FALSE(c.grasps.empty()) << c.why_none(mug().list);
+  HumanState around = people;
+  around.people.front().inflation = ChoiceSettings{}.off_giver - 0.001;
+  CollisionWorld body(*robot().model, library);
+  body.set_scene(scene);
+  body.set_people(around, PeopleParts::without_forearms_and_hands);
+  around.people.front().inflation = ChoiceSettings{}.off_fingers - 0.001;
+  CollisionWorld all(*robot().model, library);
+  all.set_scene(scene);
+  all.set_people(around);
+  for (const Grasp& g : c.grasps) {
+    EXPECT_TRUE(body.check_people(posture(g.arm_joints, g.pregrasp_joints)).free) << g.id;
+    EXPECT_TRUE(all.check_people(posture(g.arm_joints, g.hand_joints)).free) << g.id;
+  }
+  ChoiceSettings far;
+  far.off_giver = 0.6;
+  const Choice none = choose(request(), scene, people, far);
+  EXPECT_TRUE(none.grasps.empty());
+  EXPECT_GT(count(none, ChoiceReason::near_giver), 0U);
+}
+
 TEST(Platform, drives_to_what_is_out_of_reach_and_stays_clear) {
   const Scene scene = table_with_mug(2.4, 0.3);
   const HumanState people = anna(2.0, 1.2);

@@ -70,6 +70,7 @@ class Rig {
       q = active.position = RobotModel::with(q, robot->require_group("arm"), state.position);
       active.velocity(robot->require_group("arm").axes) = state.velocity;
       active.trajectory = execution.trajectory;
+      active.speed_factor = 1;
       active.time = along;
       active.rest = way;
       along = std::min(along + 0.02, way.duration());
@@ -474,6 +475,30 @@ TEST(ManipulationPlanner, AnOfferThatIsShiftedIsFollowedWhileTheArmMoves) {
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
   EXPECT_GT(rig.led_over, 0) << "nobody asked for a way to where it is now";
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 0);
+}
+
+TEST(ManipulationPlanner, ForeseesWhenTheObjectChangesHands) {
+  Rig rig;
+  rig.moves = true;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  double at_first = 0, closed_at = 0, foreseen_at = 0;
+  for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
+    rig.cycle();
+    const double left = rig.planner.status().time_to_exchange, now = to_seconds(rig.now.time_since_epoch());
+    const std::string& phase = rig.planner.status().phase;
+    const bool waits = phase == "watching for an offer" || phase == "making room";
+    EXPECT_FALSE(waits && std::isfinite(left)) << phase;
+    if (phase == "approach" && std::isfinite(left) && at_first == 0) {
+      at_first = left;
+      foreseen_at = now + left;
+    }
+    if (phase == "grasp" && closed_at == 0) closed_at = now;
+  }
+  ASSERT_GT(at_first, 0.5);
+  ASSERT_GT(closed_at, 0);
+  EXPECT_NEAR(foreseen_at, closed_at, 2.0);
+  EXPECT_FALSE(std::isfinite(rig.planner.status().time_to_exchange)) << "it is over";
 }
 
 TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
