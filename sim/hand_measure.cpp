@@ -5,8 +5,8 @@
 
 namespace handsel::sim {
 
-HandMeasure::HandMeasure(int dof, double cut_off, double step)
-    : cut_off_(cut_off), step_(step), torque_(Vector::Zero(dof)), external_(Vector::Zero(dof)) {}
+HandMeasure::HandMeasure(int dof, double cut_off, double step, bool whole)
+    : cut_off_(cut_off), step_(step), whole_(whole), torque_(Vector::Zero(dof)), external_(Vector::Zero(dof)) {}
 
 void HandMeasure::update(const std::vector<Touch>& touches, const RobotBody& robot, const RobotGrasp& grasp, const Pose& tool,
                          const Wrench& load, const Vector3& at) {
@@ -14,7 +14,7 @@ void HandMeasure::update(const std::vector<Touch>& touches, const RobotBody& rob
   external_.setZero();
   const Vector3 origin = tool.translation();
   const auto add = [&](int body, const Vector3& point, const Vector3& force, const Vector3& torque) {
-    robot.project(body, point, {force, torque}, external_);
+    if (whole_) robot.project(body, point, {force, torque}, external_);
     if (grasp.chain_of(body) < 0) return;
     wrench.force += force;
     wrench.torque += torque + (point - origin).cross(force);
@@ -26,6 +26,7 @@ void HandMeasure::update(const std::vector<Touch>& touches, const RobotBody& rob
     if (t.b == Owner::person) contact += t.normal_force;
   }
   add(grasp.palm(), at, load.force, load.torque);
+  if (!whole_) robot.project(grasp.palm(), at, load, external_);
   const auto share = [&](double rate) { return std::min(1.0, step_ * 2 * M_PI * rate); };
   const double k = share(cut_off_);
   wrench_.force += k * (tool.linear().transpose() * wrench.force - wrench_.force);

@@ -1,5 +1,5 @@
-// What the robot side measures of the world's forces: wrist wrench, joint torques, payload (filtered as a sensor does); and the largest
-// force on a person.
+// What the robot side measures of the world's forces at a hand: wrist wrench, joint torques, payload (filtered as a sensor does); and the
+// largest force on a person.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,8 @@ namespace handsel::sim {
 
 class HandMeasure {
  public:
-  HandMeasure(int dof, double cut_off, double step);
+  /// `whole`: the joint torques hold what touches the robot anywhere; else only what this hand's hold gives, the rest is another's.
+  HandMeasure(int dof, double cut_off, double step, bool whole = true);
 
   /// Call once a step. `tool`: pose of the tool; `load`: wrench of the hold on the palm about `at`, world, zero when there is none.
   void update(const std::vector<Touch>&, const RobotBody&, const RobotGrasp&, const Pose& tool, const Wrench& load, const Vector3& at);
@@ -24,6 +25,7 @@ class HandMeasure {
 
  private:
   double cut_off_, step_;
+  bool whole_;
   Wrench wrench_;
   Vector torque_, external_;
   double payload_{0}, contact_{0}, largest_contact_{0};

@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "common/model/manipulator.hpp"
+
 namespace handsel::sim {
 
 namespace {
@@ -152,12 +154,13 @@ void RobotBody::lump(const RobotModel& model) {
 }
 
 void RobotBody::find_fingers() {
-  const int palm = model_.tool_link() < 0 ? -1 : body_of_link_[model_.tool_link()];
-  if (palm < 0) return;
+  std::vector<char> palm(bodies_.size(), 0);
+  for (const Manipulator& hand : hands_of(model_))
+    if (hand.palm >= 0 && body_of_link_[hand.palm] >= 0) palm[body_of_link_[hand.palm]] = 1;
   int fingers = 0;
   for (Body& b : bodies_) {
-    if (b.parent < 0 || (b.parent != palm && bodies_[b.parent].finger < 0)) continue;
-    b.finger = b.parent == palm ? fingers++ : bodies_[b.parent].finger;
+    if (b.parent < 0 || (!palm[b.parent] && bodies_[b.parent].finger < 0)) continue;
+    b.finger = palm[b.parent] ? fingers++ : bodies_[b.parent].finger;
     b.inertia += settings_.rotor_inertia * Eigen::Matrix3d::Identity();
   }
 }

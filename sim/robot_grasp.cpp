@@ -9,10 +9,10 @@ constexpr int kConeEdges = 8;
 constexpr double kTorqueScale = 10;  // [1/m]; closure does not depend on it
 }  // namespace
 
-RobotGrasp::RobotGrasp(const RobotModel& model, const RobotBody& robot, double touch_force, double grasp_time, double lose_time)
+RobotGrasp::RobotGrasp(int palm, const RobotBody& robot, double touch_force, double grasp_time, double lose_time)
     : touch_force_(touch_force), grasp_time_(grasp_time), lose_time_(lose_time), chain_(robot.bodies(), -1) {
-  if (model.tool_link() < 0) return;
-  palm_ = robot.body_of(model.tool_link());
+  if (palm < 0) return;
+  palm_ = robot.body_of(palm);
   if (palm_ < 0) return;
   chain_[palm_] = 0;
   int fingers = 0;

@@ -11,7 +11,8 @@ namespace handsel::sim {
 
 class RobotGrasp {
  public:
-  RobotGrasp(const RobotModel&, const RobotBody&, double touch_force, double grasp_time, double lose_time);
+  /// `palm`: link of the hand; -1: there is none.
+  RobotGrasp(int palm, const RobotBody&, double touch_force, double grasp_time, double lose_time);
 
   /// Which chain of the hand a body belongs to: 0 the palm, 1 … the fingers, -1 not the hand.
   int chain_of(int body) const { return body < 0 ? -1 : chain_[body]; }

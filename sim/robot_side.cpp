@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/model/manipulator.hpp"
+
 namespace handsel::sim {
 
 RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSideSettings& settings)
     : settings_(settings), limits_(model.stop_limits()), position_(start) {
   velocity_ = acceleration_ = effort_ = Vector::Zero(start.size());
   stops_.resize(start.size());
-  if (const Group* hand = model.group("hand")) hand_axes_ = hand->axes;
+  for (const Manipulator& hand : hands_of(model))
+    if (hand.fingers != nullptr) hand_axes_.insert(hand_axes_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
 }
 
 bool RobotSide::command(const JointCommand& command, double now) {
@@ -29,6 +32,7 @@ bool RobotSide::command(const JointCommand& command, double now) {
   velocity_ = command.velocity;
   acceleration_ = command.acceleration;
   payload_ = command.payload;
+  other_payloads_ = command.other_payloads;
   effort_ = command.effort.size() == n ? command.effort : Vector(Vector::Zero(n));
   return true;
 }
@@ -61,6 +65,11 @@ void RobotSide::begin_stop(DriveMode mode) {
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
     stops_[i].init({position_[i], velocity_[i], acceleration_[i]}, {limits_.velocity[i], limits_.acceleration[i], limits_.jerk[i]});
   }
+}
+
+double RobotSide::payload(std::size_t hand) const {
+  if (hand == 0) return payload_;
+  return hand <= static_cast<std::size_t>(other_payloads_.size()) ? other_payloads_[static_cast<Eigen::Index>(hand) - 1] : 0.0;
 }
 
 bool RobotSide::hand_moves() const {

@@ -38,7 +38,8 @@ class RobotSide {
   const Vector& velocity() const { return velocity_; }
   const Vector& acceleration() const { return acceleration_; }
   const Vector& effort() const { return effort_; }  ///< kept through a stop: what is held stays held
-  double payload() const { return payload_; }       ///< mass told to be in the hand [kg]
+  /// Mass told to be in the hand, hands as common/model/manipulator has them [kg].
+  double payload(std::size_t hand = 0) const;
   DriveMode mode() const { return mode_; }
   bool hand_moves() const;  ///< its reference does
   bool stopped() const { return stopping_ && at_rest_; }
@@ -55,6 +56,7 @@ class RobotSide {
   std::vector<SoftStop> stops_;
   bool stopping_{false}, at_rest_{false}, seen_{false}, fresh_{false}, clenched_{false};
   double last_{0}, hand_rest_{0}, payload_{0};
+  Vector other_payloads_;
   int matching_{0};
 };
 

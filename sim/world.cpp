@@ -8,6 +8,7 @@
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 
+#include "common/model/manipulator.hpp"
 #include "common/model/robot_capsules.hpp"
 #include "sim/contacts.hpp"
 #include "sim/hand_measure.hpp"
@@ -52,7 +53,6 @@ struct SimWorld::Impl {
         dynamics(&dispatcher, &broadphase, &solver, &configuration),
         side(robot_model, setup.start, side_settings()),
         limits(robot_model, s.robot_side.max_gap, s.setpoint_period),
-        measured(robot_model.dof(), s.wrench_filter, s.step),
         separations(robot_model, s.ssm) {
     settings.constraint = settings.constraint && !setup.no_weld;
     dynamics.setGravity(btVector3(0, 0, -9.81));
@@ -67,8 +67,8 @@ struct SimWorld::Impl {
       own(*collider, Owner::robot, i);
       collider->setContactProcessingThreshold(kReach);
     }
-    grasp = std::make_unique<RobotGrasp>(model, *robot, settings.touch_force, settings.grasp_time, settings.lose_time);
-    robot_grip = Grip(settings.robot_grip);
+    for (const Manipulator& hand : hands_of(model)) add_hand(hand);
+    if (hands.empty()) add_hand({});
     for (const StartObject& start : setup.objects) objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
     people = std::make_unique<People>(setup, settings, objects, shapes, dynamics);
     prepare_sight();
@@ -97,6 +97,12 @@ struct SimWorld::Impl {
     return s;
   }
 
+  void add_hand(const Manipulator& hand) {
+    hands.push_back({hand.arm, hand.fingers, hand.palm,
+                     RobotGrasp(hand.palm, *robot, settings.touch_force, settings.grasp_time, settings.lose_time),
+                     Grip(settings.robot_grip), HandMeasure(model.dof(), settings.wrench_filter, settings.step, hands.empty())});
+  }
+
   double now() const { return static_cast<double>(steps) * settings.step; }
 
   void add_fixed(btCollisionShape* shape, const Pose& T, Owner owner, int index) {
@@ -116,73 +122,100 @@ struct SimWorld::Impl {
     }
   }
 
-  BodyState tool_state() const {
-    const int tool = model.tool_link();
+  struct Hand {
+    const Group *arm{}, *fingers{};
+    int palm{-1};  // link
+    RobotGrasp grasp;
+    Grip grip;
+    HandMeasure measured;
+    int gripped{-1};  // object
+  };
+
+  BodyState tool_state(const Hand& hand) const {
     BodyState s;
-    if (tool < 0) return s;
-    s.T_world_body = robot->T_world_link(tool);
-    s.velocity = robot->point_velocity(robot->body_of(tool), s.T_world_body.translation());
-    s.angular_velocity = robot->angular_velocity(robot->body_of(tool));
+    if (hand.palm < 0) return s;
+    s.T_world_body = robot->T_world_link(hand.palm);
+    s.velocity = robot->point_velocity(robot->body_of(hand.palm), s.T_world_body.translation());
+    s.angular_velocity = robot->angular_velocity(robot->body_of(hand.palm));
     return s;
   }
 
-  void hold_with_robot() {
-    if (gripped < 0 || !settings.constraint) return;
-    ObjectBody& object = objects[gripped];
-    const BodyState tool = tool_state();
-    const Wrench w = robot_grip.update(tool, object.state(), object.model().mass, object.least_inertia(), settings.step);
-    if (!robot_grip.holding()) {
-      let_go();
+  void hold_with(Hand& hand) {
+    if (hand.gripped < 0 || !settings.constraint) return;
+    ObjectBody& object = objects[hand.gripped];
+    const Wrench w = hand.grip.update(tool_state(hand), object.state(), object.model().mass, object.least_inertia(), settings.step);
+    if (!hand.grip.holding()) {
+      let_go(hand);
       return;
     }
     object.push(w);
-    robot->push(grasp->palm(), object.state().T_world_body.translation(), {-w.force, -w.torque});
+    robot->push(hand.grasp.palm(), object.state().T_world_body.translation(), {-w.force, -w.torque});
   }
 
-  void let_go() {
-    robot_grip.release();
-    grasp->reset();
-    gripped = -1;
+  static void let_go(Hand& hand) {
+    hand.grip.release();
+    hand.grasp.reset();
+    hand.gripped = -1;
   }
 
-  void update_grasp() {
-    int candidate = gripped;
+  bool grips(int object) const {
+    return std::any_of(hands.begin(), hands.end(), [&](const Hand& hand) { return hand.gripped == object; });
+  }
+  bool grips_something() const {
+    return std::any_of(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
+  }
+  bool of_hand(int body) const {
+    return std::any_of(hands.begin(), hands.end(), [&](const Hand& hand) { return hand.grasp.chain_of(body) >= 0; });
+  }
+
+  void update_grasp(Hand& hand) {
+    int candidate = hand.gripped;
     if (candidate < 0) {
       double most = 0;
       for (int i = 0; i < static_cast<int>(objects.size()); ++i) {
-        const double pressure = grasp->pressure(touches, i);
+        const double pressure = hand.grasp.pressure(touches, i);
         if (pressure > most) most = pressure, candidate = i;
       }
     }
     const Vector3 centre = candidate < 0 ? Vector3(Vector3::Zero()) : objects[candidate].state().T_world_body.translation();
-    const bool held = grasp->update(touches, candidate, centre, settings.step);
-    if (gripped < 0 && held) {
-      gripped = candidate;
-      if (settings.constraint) robot_grip.hold(tool_state().T_world_body.inverse() * objects[candidate].state().T_world_body);
-    } else if (gripped >= 0 && !held) {
-      let_go();
+    const bool held = hand.grasp.update(touches, candidate, centre, settings.step);
+    if (hand.gripped < 0 && held) {
+      hand.gripped = candidate;
+      if (settings.constraint) hand.grip.hold(tool_state(hand).T_world_body.inverse() * objects[candidate].state().T_world_body);
+    } else if (hand.gripped >= 0 && !held) {
+      let_go(hand);
     }
-    if (gripped < 0) return;
+  }
+
+  void update_grasps() {
+    for (Hand& hand : hands) update_grasp(hand);
+    if (!grips_something()) return;
     held_time += settings.step;
-    constraint_carries = robot_grip.holding() && robot_grip.wrench().force.norm() > grasp->force(touches, gripped).norm();
+    double by_constraints = 0, by_contacts = 0;
+    for (const Hand& hand : hands) {
+      if (hand.gripped < 0) continue;
+      if (hand.grip.holding()) by_constraints += hand.grip.wrench().force.norm();
+      by_contacts += hand.grasp.force(touches, hand.gripped).norm();
+    }
+    constraint_carries = by_constraints > by_contacts;
     if (constraint_carries) constraint_time += settings.step;
   }
 
-  void measure() {
+  void measure(Hand& hand) {
     Wrench load;
     Vector3 at = Vector3::Zero();
-    if (gripped >= 0 && robot_grip.holding()) {
-      load = {-robot_grip.wrench().force, -robot_grip.wrench().torque};
-      at = objects[gripped].state().T_world_body.translation();
+    if (hand.gripped >= 0 && hand.grip.holding()) {
+      load = {-hand.grip.wrench().force, -hand.grip.wrench().torque};
+      at = objects[hand.gripped].state().T_world_body.translation();
     }
-    measured.update(touches, *robot, *grasp, tool_state().T_world_body, load, at);
+    hand.measured.update(touches, *robot, hand.grasp, tool_state(hand).T_world_body, load, at);
   }
 
   void judge() {
     bool collided = false;
     for (const Touch& t : touches) {
       if (t.a != Owner::robot) continue;
-      const bool by_hand = grasp->chain_of(t.index_a) >= 0;
+      const bool by_hand = of_hand(t.index_a);
       if (t.b == Owner::object && by_hand) continue;
       const bool yields = t.b == Owner::person && people->yields(t.index_b);
       const bool fingers_meet = yields && by_hand && t.distance < -kFingersMeet && handover && !handover->shared();
@@ -198,7 +231,7 @@ struct SimWorld::Impl {
     }
     if (collided) ++collisions;
 
-    people->volumes(tool_state().T_world_body.translation(), person_volumes);
+    people->volumes(tool_state(hands.front()).T_world_body.translation(), person_volumes);
     near = separations.separation(*robot, person_volumes);
     least_separation = std::min(least_separation, near.distance);
     if (near.link >= 0 && near.distance < 0.5) {
@@ -230,7 +263,7 @@ struct SimWorld::Impl {
     ObjectSituation s;
     const ObjectBody& object = objects[watched];
     s.height = object.state().T_world_body.translation().z();
-    s.robot_grips = gripped == watched;
+    s.robot_grips = grips(watched);
     s.on_floor = object.T_world_object().translation().z() < kFloorHeight;
     for (const Touch& t : touches) {
       if (t.a == Owner::robot && t.b == Owner::object && t.index_b == watched && t.normal_force > 0) s.robot_touches = true;
@@ -299,17 +332,19 @@ struct SimWorld::Impl {
     while (next_disturbance < setup.disturbances.size() && setup.disturbances[next_disturbance].at <= now() + 1e-9) {
       control(setup.disturbances[next_disturbance++].control);
     }
-    side.step(now(), settings.step, gripped >= 0);
+    side.step(now(), settings.step, grips_something());
     robot->drive(side.position(), side.velocity(), side.acceleration(), side.effort());
-    people->move(settings.step, tool_state(), gripped);
-    hold_with_robot();
+    const auto holding = std::find_if(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
+    const Hand& offering = holding != hands.end() ? *holding : hands.front();
+    people->move(settings.step, tool_state(offering), offering.gripped);
+    for (Hand& hand : hands) hold_with(hand);
     dynamics.stepSimulation(settings.step, 0);
     ++steps;
     robot->read();
     for (ObjectBody& object : objects) object.read();
     gather(dispatcher, settings.step, kReach, touches);
-    update_grasp();
-    measure();
+    update_grasps();
+    for (Hand& hand : hands) measure(hand);
     judge();
     sense();
   }
@@ -379,11 +414,10 @@ struct SimWorld::Impl {
   std::unique_ptr<People> people;
 
   RobotSide side;
-  Grip robot_grip{GripSettings{}};
-  std::unique_ptr<RobotGrasp> grasp;
-  bool constraint_carries{false};  // the constraint's force on the object is larger than that of the hand's contacts together
+  std::vector<Hand> hands;         // never empty; the first is that of the tool
+  bool constraint_carries{false};  // the constraints' force on what is held is larger than that of the hands' contacts
   double held_time{0}, constraint_time{0};
-  int gripped{-1}, watched{-1}, ssm_every{10};
+  int watched{-1}, ssm_every{10};
   std::uint64_t steps{0}, state_sequence{0};
   std::size_t next_disturbance{0};
   double human_silent_until{0}, state_silent_until{0};
@@ -396,7 +430,6 @@ struct SimWorld::Impl {
   std::vector<ObjectSensor> object_sensors;
 
   LimitsOracle limits;
-  HandMeasure measured;
   SeparationOracle separations;
   std::unique_ptr<HandoverOracle> handover;
   TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
@@ -435,22 +468,33 @@ bool SimWorld::robot_state(RobotState& out) {
   for (Eigen::Index i = 0; i < out.position.size(); ++i) out.position[i] += w.noise(w.settings.position_noise);
   out.velocity = w.robot->velocity();
   out.effort = w.robot->effort();
-  out.external_torque = w.measured.external_torque();
-  if (w.side.payload() > 0 && w.model.tool_link() >= 0) {  // what it was told to hold is part of the robot's own model
-    const Wrench weight{Vector3(0, 0, 9.81 * w.side.payload()), Vector3::Zero()};
-    w.robot->project(w.robot->body_of(w.model.tool_link()), w.tool_state().T_world_body.translation(), weight, out.external_torque);
+  out.external_torque = w.hands.front().measured.external_torque();
+  for (std::size_t i = 1; i < w.hands.size(); ++i) out.external_torque += w.hands[i].measured.external_torque();
+  for (std::size_t i = 0; i < w.hands.size(); ++i) {
+    const Impl::Hand& hand = w.hands[i];
+    if (!(w.side.payload(i) > 0) || hand.palm < 0) continue;  // what it was told to hold is part of the robot's own model
+    const Wrench weight{Vector3(0, 0, 9.81 * w.side.payload(i)), Vector3::Zero()};
+    w.robot->project(w.robot->body_of(hand.palm), w.tool_state(hand).T_world_body.translation(), weight, out.external_torque);
   }
   for (Eigen::Index i = 0; i < out.external_torque.size(); ++i) out.external_torque[i] += w.noise(0.1 * w.settings.force_noise);
-  out.wrist_wrench = w.measured.wrist_wrench();
-  for (int i = 0; i < 3; ++i) {
-    out.wrist_wrench.force[i] += w.noise(w.settings.force_noise);
-    out.wrist_wrench.torque[i] += w.noise(0.1 * w.settings.force_noise);
+  const auto feel = [&w](const Impl::Hand& hand, Wrench& wrench, double& effort, double& payload) {
+    wrench = hand.measured.wrist_wrench();
+    for (int i = 0; i < 3; ++i) {
+      wrench.force[i] += w.noise(w.settings.force_noise);
+      wrench.torque[i] += w.noise(0.1 * w.settings.force_noise);
+    }
+    effort = 0;
+    if (hand.fingers != nullptr)
+      for (int axis : hand.fingers->axes) effort += std::abs(w.robot->effort()[axis]);
+    payload = std::max(0.0, hand.measured.payload());
+  };
+  feel(w.hands.front(), out.wrist_wrench, out.hand_effort, out.payload);
+  out.other_hands.resize(w.hands.size() - 1);
+  for (std::size_t i = 1; i < w.hands.size(); ++i) {
+    OtherHand& other = out.other_hands[i - 1];
+    other.group = w.hands[i].fingers != nullptr ? w.hands[i].fingers->name : "";
+    feel(w.hands[i], other.wrist_wrench, other.hand_effort, other.payload);
   }
-  out.hand_effort = 0;
-  if (const Group* hand = w.model.group("hand")) {
-    for (int axis : hand->axes) out.hand_effort += std::abs(w.robot->effort()[axis]);
-  }
-  out.payload = std::max(0.0, w.measured.payload());
   out.mode = w.side.mode();
   return true;
 }
@@ -471,7 +515,7 @@ void SimWorld::truth(GroundTruth& out) const {
     out.object = w.objects[w.watched].start().id;
     out.T_world_object = w.objects[w.watched].T_world_object();
     w.handover->write(out);
-    out.hold = w.gripped != w.watched ? "" : w.constraint_carries ? "constraint" : "contact";
+    out.hold = !w.grips(w.watched) ? "" : w.constraint_carries ? "constraint" : "contact";
     out.held_time = w.held_time;
     out.constraint_time = w.constraint_time;
   }
@@ -479,7 +523,7 @@ void SimWorld::truth(GroundTruth& out) const {
   out.least_separation = w.least_separation;
   out.ssm_violations = w.ssm_violations;
   out.peak_closing_speed = w.peak_closing;
-  out.contact_force = w.measured.largest_contact();
+  out.contact_force = w.hands.front().measured.largest_contact();
   out.limit_share_velocity = w.limits.share_velocity();
   out.limit_share_acceleration = w.limits.share_acceleration();
   out.limit_share_jerk = w.limits.share_jerk();
@@ -490,9 +534,11 @@ void SimWorld::truth(GroundTruth& out) const {
   out.set_points = w.limits.count();
   out.hash = w.hash.value;
   out.robot_moving = false;
-  const Group* arm = w.model.group("arm");
+  const auto of_arm = [](const Impl::Hand& hand, Eigen::Index axis) {
+    return hand.arm == nullptr || std::find(hand.arm->axes.begin(), hand.arm->axes.end(), axis) != hand.arm->axes.end();
+  };
   for (Eigen::Index i = 0; i < w.robot->velocity().size(); ++i) {
-    const bool counts = arm == nullptr || std::find(arm->axes.begin(), arm->axes.end(), i) != arm->axes.end();
+    const bool counts = std::any_of(w.hands.begin(), w.hands.end(), [&](const Impl::Hand& hand) { return of_arm(hand, i); });
     if (counts && std::abs(w.robot->velocity()[i]) > 1e-3) out.robot_moving = true;
   }
   out.person.clear();
@@ -509,8 +555,13 @@ const std::string& SimWorld::last_collision() const { return impl_->last_collisi
 DriveMode SimWorld::mode() const { return impl_->side.mode(); }
 const std::vector<Touch>& SimWorld::touches() const { return impl_->touches; }
 const std::string& SimWorld::robot_body(int body) const { return impl_->robot->name_of(body); }
-bool SimWorld::robot_grips() const { return impl_->gripped >= 0; }
-double SimWorld::robot_pressure() const { return impl_->watched < 0 ? 0 : impl_->grasp->pressure(impl_->touches, impl_->watched); }
+bool SimWorld::robot_grips() const { return impl_->grips_something(); }
+double SimWorld::robot_pressure() const {
+  double sum = 0;
+  if (impl_->watched >= 0)
+    for (const Impl::Hand& hand : impl_->hands) sum += hand.grasp.pressure(impl_->touches, impl_->watched);
+  return sum;
+}
 double SimWorld::constraint_share() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }
 const Pose& SimWorld::T_world_object(const std::string& id) const {
   const int i = object_index(impl_->objects, id);

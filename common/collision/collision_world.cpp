@@ -10,6 +10,7 @@
 #include "common/collision/enclosing.hpp"
 #include "common/collision/wide_capsules.hpp"
 #include "common/collision/wide_world.hpp"
+#include "common/model/manipulator.hpp"
 #include "common/model/object_extent.hpp"
 #include "common/model/robot_capsules.hpp"
 
@@ -24,7 +25,7 @@ struct RobotBody {
   CollisionShapePtr shape;
   Pose T_link_shape;
   bool moves{};             ///< some axis moves it
-  bool hand{};              ///< rigid with the tool link, or beyond it
+  int hand{-1};             ///< whose palm it is rigid with, or beyond; -1: no hand's
   CollisionShapePtr wider;  ///< for what the moving axes move; null: as it is
   Pose T_link_wider{Pose::Identity()};
 };
@@ -82,7 +83,9 @@ struct CollisionWorld::Impl {
   std::set<std::string> allowed;
   std::vector<LinkCapsule> capsules;  // links, then what is held
   std::size_t link_capsules{};
-  std::vector<bool> hand_link;
+  std::vector<Manipulator> hands;
+  std::vector<int> hand_link;  // of each link the hand it belongs to, or -1
+  std::vector<char> at_held;   // of each hand: it holds the object, or is there for it
   std::vector<std::set<int>> joints_above;
   std::map<std::string, CollisionShapePtr> meshes;
   std::uint64_t checks{}, exact_checks{};
@@ -113,11 +116,14 @@ struct CollisionWorld::Impl {
       joints_above[i] = joints_above[robot.joints()[joint].parent];
       if (robot.joints()[joint].dof >= 0) joints_above[i].insert(joint);
     }
-    hand_link.assign(links.size(), false);
-    if (robot.tool_link() >= 0) {
-      const std::set<int>& tool = joints_above[robot.tool_link()];
+    hand_link.assign(links.size(), -1);
+    hands = hands_of(robot);
+    at_held.assign(hands.size(), 0);
+    for (std::size_t h = 0; h < hands.size(); ++h) {
+      if (hands[h].palm < 0) continue;
+      const std::set<int>& tool = joints_above[hands[h].palm];
       for (std::size_t i = 0; i < links.size(); ++i)
-        hand_link[i] = std::includes(joints_above[i].begin(), joints_above[i].end(), tool.begin(), tool.end());
+        if (std::includes(joints_above[i].begin(), joints_above[i].end(), tool.begin(), tool.end())) hand_link[i] = static_cast<int>(h);
     }
     for (std::size_t i = 0; i < links.size(); ++i)
       for (const PlacedShape& placed : links[i].collision)
@@ -125,7 +131,7 @@ struct CollisionWorld::Impl {
                           CollisionShape::make(placed.shape),
                           placed.T_parent_shape,
                           !joints_above[i].empty(),
-                          static_cast<bool>(hand_link[i]),
+                          hand_link[i],
                           nullptr,
                           {}});
     link_bodies = bodies.size();
@@ -211,24 +217,32 @@ struct CollisionWorld::Impl {
     scene = std::move(bodies_now);
   }
 
+  bool may_touch_held(int hand) const { return hand >= 0 && at_held[static_cast<std::size_t>(hand)] != 0; }
+
+  /// Fingers may lean on each other around what they hold.
+  bool lean(const SelfPair& pair) const { return bodies[pair.a].hand == bodies[pair.b].hand && may_touch_held(bodies[pair.a].hand); }
+
   void rebuild_held() {
     bodies.resize(link_bodies);
     capsules.resize(link_capsules);
     held_pairs.clear();
-    if (!attachment.object.empty() && robot.tool_link() >= 0) {
+    const int hand = attachment.object.empty() ? -1 : hand_index(hands, attachment.hand), palm = hand < 0 ? -1 : hands[hand].palm;
+    at_held.assign(hands.size(), hand >= 0 && allowed.count(attachment.object) > 0);
+    if (hand >= 0) at_held[hand] = 1;
+    if (palm >= 0) {
       SceneObject held;
       held.model = attachment.object;
       for (const SceneObject& object : last_scene.objects)
         if (object.id == attachment.object) held = object;
       if (CollisionShapePtr shape = object_shape(held, 0)) {
         LinkCapsule capsule = enclosing_capsule(shape->is_mesh() ? std::get<MeshPtr>(shape->shape())->vertices : corners(held));
-        capsule.link = robot.tool_link();
+        capsule.link = palm;
         capsule.a = attachment.T_tool_object * capsule.a;
         capsule.b = attachment.T_tool_object * capsule.b;
         capsules.push_back(capsule);
-        bodies.push_back({robot.tool_link(), shape, attachment.T_tool_object, true, true, nullptr, {}});
+        bodies.push_back({palm, shape, attachment.T_tool_object, true, hand, nullptr, {}});
         for (std::size_t i = 0; i < link_bodies; ++i)
-          if (!bodies[i].hand) add_pair(i, link_bodies, held_pairs);
+          if (!may_touch_held(bodies[i].hand)) add_pair(i, link_bodies, held_pairs);
       }
     }
     self_free.resize(0);
@@ -270,9 +284,8 @@ struct CollisionWorld::Impl {
   }
 
   bool self_touch(const std::vector<SelfPair>& pairs, CollisionVerdict* verdict) const {
-    const bool holding = !attachment.object.empty();
     for (const SelfPair& pair : pairs) {
-      if (holding && bodies[pair.a].hand && bodies[pair.b].hand) continue;  // fingers may lean on each other around what they hold
+      if (lean(pair)) continue;
       if (std::none_of(pair.axes.begin(), pair.axes.end(), [this](int axis) { return changed[axis]; })) continue;
       if (!touch_pair(pair)) continue;
       if (verdict) *verdict = {false, name_of(pair.a), name_of(pair.b), ""};
@@ -284,7 +297,7 @@ struct CollisionWorld::Impl {
   bool scene_touch(std::size_t i, const std::vector<SceneBody>& things, CollisionVerdict* verdict) const {
     const bool held = i >= link_bodies;
     for (const SceneBody& thing : things) {
-      if (thing.allowed && bodies[i].hand) continue;
+      if (thing.allowed && bodies[i].hand >= 0) continue;
       const bool lowered = held && thing.lowered;
       const CollisionShape& shape = lowered ? *thing.lowered : *thing.shape;
       if (!touch(*bodies[i].shape, T_world_body[i], shape, lowered ? thing.T_world_lowered : thing.T_world_shape)) continue;
@@ -359,10 +372,9 @@ struct CollisionWorld::Impl {
     for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
       rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
                      (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) || person_touch(i, nullptr));
-    const bool holding = !attachment.object.empty();
     for (const auto* pairs : {&link_pairs, &held_pairs})
       for (const SelfPair& pair : *pairs) {
-        if (rest_touches || (holding && bodies[pair.a].hand && bodies[pair.b].hand) || changes(pair)) continue;
+        if (rest_touches || lean(pair) || changes(pair)) continue;
         rest_touches = touch_pair(pair);
       }
     solids_stale = false;
@@ -393,14 +405,13 @@ struct CollisionWorld::Impl {
       wide_bodies.push_back({body.link, covered ? shape.cover() : nullptr, shape.shape(),
                              body.wider ? body.T_link_wider : body.T_link_shape,
                              static_cast<std::uint8_t>(i >= link_bodies ? kWideHeld
-                                                       : body.hand      ? kWideHand
+                                                       : body.hand >= 0 ? kWideHand
                                                                         : kWideArm)});
     }
     std::vector<std::pair<int, int>> wide_pairs;
-    const bool holding = !attachment.object.empty();
     for (const auto* pairs : {&link_pairs, &held_pairs})
       for (const SelfPair& pair : *pairs)
-        if (!(holding && bodies[pair.a].hand && bodies[pair.b].hand) && changes(pair)) wide_pairs.emplace_back(pair.a, pair.b);
+        if (!lean(pair) && changes(pair)) wide_pairs.emplace_back(pair.a, pair.b);
     wide->set_robot(wide_bodies, wide_pairs, moving, q);
     folded_at = q;
   }
@@ -636,7 +647,7 @@ double CollisionWorld::distance_to_scene(const Vector& q, double cap, Vector3* o
     if (!w.bodies[i].moves) continue;
     for (const auto* things : {&w.scene, &w.obstacles})
       for (const SceneBody& thing : *things) {
-        if (thing.allowed && w.bodies[i].hand) continue;
+        if (thing.allowed && w.bodies[i].hand >= 0) continue;
         const double bound = gap_bound(*w.bodies[i].shape, w.T_world_body[i], *thing.shape, thing.T_world_shape);
         if (bound < cap) candidates.push_back({bound, i, &thing});
       }

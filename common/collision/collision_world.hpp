@@ -50,9 +50,10 @@ class CollisionWorld {
   void set_scene(const Scene&);  ///< objects (held ones are ignored) and boxes; takes Scene::T_world_base when robot_known
   void set_people(const HumanState&, PeopleParts parts = PeopleParts::all);  ///< capsules, inflated
   void set_obstacles(const std::vector<Obstacle>&);  ///< further fixed obstacles, besides the scene; named "box <id>"
-  /// The object moves with the tool link. Links of the hand may touch it, each other around it, and the `allowed` scene objects and boxes;
-  /// so may the object. A person named among the allowed keeps head, torso, upper arms and legs as obstacles; forearms and hands are none
-  /// (the exchange is engaged). The object may be up to kSupportSlack inside the top of boxes that support objects.
+  /// The object moves with the palm of the hand that holds it. Links of that hand may touch it, each other around it, and the `allowed`
+  /// scene objects and boxes; so may the object. Where it is among the allowed itself, so may every other hand. A person named among the
+  /// allowed keeps head, torso, upper arms and legs as obstacles; forearms and hands are none (the exchange is engaged). The object may be
+  /// up to kSupportSlack inside the top of boxes that support objects.
   void set_attachment(const Attachment&, const std::vector<std::string>& allowed_contacts);
 
   /// From now on is_free and check_motion ask the wide check first. Only these axes should differ between the states asked; when another

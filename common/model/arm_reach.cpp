@@ -2,11 +2,18 @@
 
 namespace handsel {
 
-ArmReach arm_reach(const RobotModel& robot) {
+ArmReach arm_reach(const RobotModel& robot) { return arm_reach(robot, robot.group("arm"), robot.tool_link()); }
+
+ArmReach arm_reach(const RobotModel& robot, const Group* arm, int palm) {
+  const int first = arm == nullptr || arm->axes.empty() ? -1 : robot.axes()[static_cast<std::size_t>(arm->axes.front())].joint;
   ArmReach reach;
-  for (int link = robot.tool_link(); link > 0;) {
-    const Joint& joint = robot.joints()[static_cast<std::size_t>(robot.links()[static_cast<std::size_t>(link)].parent_joint)];
+  bool whole = false;
+  for (int link = palm; link > 0;) {
+    const int up = robot.links()[static_cast<std::size_t>(link)].parent_joint;
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(up)];
+    if (whole && joint.kind != JointKind::fixed) break;  // a torso carries it
     if (joint.kind != JointKind::fixed) reach.shoulder = link;
+    whole = whole || up == first;
     reach.length += joint.T_parent_joint.translation().norm();
     link = joint.parent;
   }

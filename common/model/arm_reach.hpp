@@ -12,5 +12,7 @@ struct ArmReach {
 };
 
 ArmReach arm_reach(const RobotModel& robot);
+/// Of the arm `arm` (may be null) whose hand is at `palm`: not counting axes that carry the arm.
+ArmReach arm_reach(const RobotModel& robot, const Group* arm, int palm);
 
 }  // namespace handsel

@@ -29,6 +29,30 @@ std::shared_ptr<const RobotModel> mobile(const NodeContext& context) {
   return model ? std::make_shared<const RobotModel>(std::move(*model)) : nullptr;
 }
 
+/// The first with the kit and the book that are there already.
+std::vector<ArmBook> load_arms(const NodeContext& context, const std::shared_ptr<const HandKit>& kit,
+                               const std::shared_ptr<GraspBook>& book, const GraspListSettings& settings, const GraspStore& store) {
+  std::vector<ArmBook> arms;
+  if (context.description.empty()) return arms;
+  for (const Manipulator& m : manipulators(context.description, *context.robot)) {
+    if (arms.empty()) {
+      arms.push_back({m, kit, book});
+      continue;
+    }
+    const auto other = std::make_shared<const HandKit>(HandModel::load(hand_description(m.hand)));
+    arms.push_back({m, other, std::make_shared<GraspBook>(other, settings, store)});
+  }
+  return arms;
+}
+
+RegraspSettings regrasp_settings(const config::GraspPlannerSettings& text) {
+  RegraspSettings s;
+  s.lift = text.lift();
+  s.stand_off = text.stand_off();
+  s.grip = list_settings(text, 1).grip;
+  return s;
+}
+
 double positive(const char* key, double value) {
   if (!(value > 0)) throw ConfigError(std::string("grasp_planner.txtpb: ") + key + " must be > 0");
   return value;
@@ -38,6 +62,9 @@ double positive(const char* key, double value) {
 Duration list_time(const GraspList& list) {
   return from_seconds(3e-6 * static_cast<double>(list.finger_solutions) + 6e-6 * static_cast<double>(list.touch_tests) +
                       12e-6 * static_cast<double>(list.closure_tests) + 10e-6 * static_cast<double>(list.frames));
+}
+Duration regrasp_time(const RegraspAnswer& answer) {
+  return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.judged) + 2e-4 * static_cast<double>(answer.listed));
 }
 Duration choice_time(const Choice& choice) {
   return from_seconds(0.002 + 4e-4 * static_cast<double>(choice.reaches) + 5e-5 * static_cast<double>(choice.transfer_reaches) +
@@ -125,7 +152,10 @@ Node::Node(Bus& bus, const NodeContext& context)
       // The list of an object is the same whatever the seed of the node: it is kept on disk and shared.
       book_(std::make_shared<GraspBook>(kit_, list_settings(settings_, 1), GraspStore(settings_.store() ? default_store() : ""))),
       transfers_(transfer_book(settings_, kit_, GraspStore(settings_.store() ? default_store() : ""))),
+      arms_(load_arms(context, kit_, book_, list_settings(settings_, 1), GraspStore(settings_.store() ? default_store() : ""))),
+      regrasp_settings_(regrasp_settings(settings_)),
       reply_out_(bus.advertise<GraspReply>()),
+      regrasp_out_(bus.advertise<RegraspReply>()),
       candidates_out_(bus.advertise<GraspCandidates>()) {
   positive("candidates_period", settings_.candidates_period());
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
@@ -134,6 +164,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
   bus.subscribe<GraspRequest>([this](const GraspRequest& request, const Receipt&) { answer(request); });
+  bus.subscribe<RegraspRequest>([this](const RegraspRequest& request, const Receipt&) { answer(request); });
   bus.every(from_seconds(settings_.candidates_period()), [this](TimePoint now) { propose(now); });
 }
 
@@ -156,10 +187,13 @@ void Node::prepare(const Scene& scene) {
             if (!problem->empty()) bus_.set_degraded(*problem);
           });
     };
-    prepare_by([book = book_, model](const std::function<bool()>& cancelled) {
-      const auto page = book->page(*model, cancelled);
-      return page ? list_time(page->list) : Duration{};
-    });
+    std::vector<std::shared_ptr<GraspBook>> books{book_};
+    for (std::size_t i = 1; i < arms_.size(); ++i) books.push_back(arms_[i].book);
+    for (const auto& each : books)
+      prepare_by([book = each, model](const std::function<bool()>& cancelled) {
+        const auto page = book->page(*model, cancelled);
+        return page ? list_time(page->list) : Duration{};
+      });
     if (!transfers_) continue;
     prepare_by([book = book_, transfers = transfers_, model](const std::function<bool()>& cancelled) {
       const auto page = book->page(*model, cancelled);
@@ -244,6 +278,52 @@ void Node::choose(const GraspRequest& request, bool reply) {
         served_ = request;
         served_at_ = bus_.now();
         serving_ = true;
+      });
+}
+
+std::string Node::objection(const RegraspRequest& request) const {
+  if (arms_.size() != 2) return "the robot has " + std::to_string(arms_.size()) + " arms with hands, to pass an object it needs two";
+  if (!scene_.robot_known) return "the place of the robot is not known yet";
+  if (request.start.size() != chooser_->robot().dof())
+    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(chooser_->robot().dof());
+  const auto object =
+      std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
+  if (object == scene_.objects.end()) return "object " + request.object + " is not in the scene";
+  if (object->holder == Holder::robot || object->holder == Holder::human) return request.object + " is held: it must stand first";
+  if (objects_(object->model) == nullptr) return "there is no description of " + request.object + ", grasps need one";
+  return {};
+}
+
+void Node::answer(const RegraspRequest& request) {
+  if (regrasp_pending_ == request.id) return;
+  if (regrasp_reply_ && regrasp_reply_->id == request.id) {
+    regrasp_reply_->stamp = 0;
+    regrasp_out_->publish(*regrasp_reply_);
+    return;
+  }
+  regrasp_pending_ = request.id;
+  auto answer = std::make_shared<RegraspAnswer>();
+  answer->reply.id = request.id;
+  answer->reply.reason = objection(request);
+  const bool work = answer->reply.reason.empty();
+  const auto object =
+      std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
+  const ObjectModel* model = work ? objects_(object->model) : nullptr;
+  bus_.run_job(
+      [this, answer, request, model, scene = scene_](const CancelToken& token) {
+        if (model == nullptr) return Duration{};
+        try {
+          *answer = answer_regrasp(request, chooser_->robot(), arms_, *model, objects_, scene, regrasp_settings_,
+                                   [&token] { return token.cancelled(); });
+        } catch (const ConfigError& e) {
+          answer->reply.reason = e.what();
+        }
+        return regrasp_time(*answer);
+      },
+      [this, answer] {
+        regrasp_pending_.reset();
+        regrasp_reply_ = answer->reply;
+        regrasp_out_->publish(*regrasp_reply_);
       });
 }
 

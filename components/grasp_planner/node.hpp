@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "common/config/grasp_planner.pb.h"
 #include "components/grasp_planner/grasp_book.hpp"
 #include "components/grasp_planner/grasp_choice.hpp"
+#include "components/grasp_planner/regrasp_desk.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -27,6 +29,9 @@ class Node {
   void answer(const GraspRequest& request);
   void choose(const GraspRequest& request, bool reply);
   void propose(TimePoint now);
+  void answer(const RegraspRequest& request);
+  /// Why hands for it cannot be looked for, one sentence; empty: they can.
+  std::string objection(const RegraspRequest& request) const;
 
   Bus& bus_;
   config::GraspPlannerSettings settings_;
@@ -35,14 +40,19 @@ class Node {
   std::shared_ptr<const GraspChooser> chooser_;
   std::shared_ptr<GraspBook> book_;          // used by jobs only, one after the other
   std::shared_ptr<TransferBook> transfers_;  // likewise; nullptr: no hand of a person is known
+  std::vector<ArmBook> arms_;                // likewise; the first has the kit and the book above
+  RegraspSettings regrasp_settings_;
   std::unique_ptr<Publisher<GraspReply>> reply_out_;
+  std::unique_ptr<Publisher<RegraspReply>> regrasp_out_;
   std::unique_ptr<Publisher<GraspCandidates>> candidates_out_;
   Scene scene_;
   HumanState people_;
   std::set<std::string> prepared_;  // models whose list was asked for
   std::deque<GraspReply> replies_;  // the latest: asking twice is harmless
   std::deque<RequestId> pending_;
-  GraspRequest served_;  // the request whose object candidates are kept up for
+  std::optional<RequestId> regrasp_pending_;
+  std::optional<RegraspReply> regrasp_reply_;  // the latest
+  GraspRequest served_;                        // the request whose object candidates are kept up for
   TimePoint served_at_{};
   bool serving_{}, proposing_{};
   Pose T_world_proposed_{Pose::Identity()};

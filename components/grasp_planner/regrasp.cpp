@@ -1,6 +1,7 @@
 #include "components/grasp_planner/regrasp.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -44,6 +45,8 @@ const char* name(RegraspStepKind kind) {
       return "pass";
     case RegraspStepKind::place:
       return "place";
+    case RegraspStepKind::join:
+      return "join";
   }
   return "unknown";
 }
@@ -134,19 +137,97 @@ struct RegraspPlanner::Impl {
     const auto lifted = reach(arm, T_lifted, step.q, 0);
     if (!lifted || (*lifted - *arm_q).cwiseAbs().maxCoeff() > kLargestApproach || !world.is_free(with(rest, arm, *lifted, g.hand_joints)))
       return {{}, "the arm could not lift it straight up"};
+    if (auto off = stand_off(arm, i, T_world_object, opened, *arm_q)) {
+      step.before = step.after = std::move(*off);
+      return {std::move(step), ""};
+    }
+    return {{}, "no straight way to or from it is free"};
+  }
+
+  /// Where the hand, opened, stands off the object before it comes, or after it went; the other axes as in `q`.
+  std::optional<Vector> stand_off(int arm, std::size_t i, const Pose& T_world_object, const Vector& q, const Vector& arm_q) {
+    const Grasp& g = grasp(arm, i);
     Steps T_open;
     const HandKit& kit = *arms[static_cast<std::size_t>(arm)].kit;
     kit.forward(g.pregrasp_joints, T_open);
     std::vector<Vector3> all = ways[static_cast<std::size_t>(arm)];
-    all.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
+    all.push_back((T_world_object * g.T_object_hand).linear().transpose() * Vector3::UnitZ());
     for (const Vector3& way : all) {
       if (!retreat_free(kit, T_open, object, g.T_object_hand, way, settings.stand_off, kWayClearance)) continue;
-      if (auto off = straight(arm, i, T_world_object, opened, *arm_q, way)) {
-        step.before = step.after = *off;
-        return {std::move(step), ""};
-      }
+      if (auto off = straight(arm, i, T_world_object, q, arm_q, way)) return off;
     }
-    return {{}, "no straight way to or from it is free"};
+    return std::nullopt;
+  }
+
+  /// Both arms with their hands closed on the object there, found from `seed`.
+  std::optional<Vector> both_on(std::size_t i, std::size_t k, const Pose& T_world_object, const Vector& seed, int restarts,
+                                std::string& why) {
+    const auto first = reach(0, T_world_object * grasp(0, i).T_object_hand, seed, restarts);
+    const auto second = first ? reach(1, T_world_object * grasp(1, k).T_object_hand, seed, restarts) : std::nullopt;
+    if (!second) {
+      why = "not both arms reach it";
+      return std::nullopt;
+    }
+    Vector q = with(with(seed, 0, *first, grasp(0, i).hand_joints), 1, *second, grasp(1, k).hand_joints);
+    if (world.is_free(q) && clear_of_object(q, T_world_object, 0, 1)) return q;
+    why = "arms or hands would collide";
+    return std::nullopt;
+  }
+
+  /// Two hands at once, from `T_start` to `T_goal`.
+  std::optional<std::vector<RegraspStep>> judge_together(std::size_t i, std::size_t k, const Pose& T_start, const Pose& T_goal,
+                                                         std::string& why) {
+    const auto raised = [&](const Pose& T) {
+      Pose up = T;
+      up.translation().z() += settings.lift;
+      return up;
+    };
+    const auto at_start = both_on(i, k, T_start, robot.rest_posture(), 2, why);
+    if (!at_start) return std::nullopt;
+    const auto lifted = both_on(i, k, raised(T_start), *at_start, 0, why);
+    const auto above = lifted ? both_on(i, k, raised(T_goal), *lifted, 0, why) : std::nullopt;
+    const auto at_goal = above ? both_on(i, k, T_goal, *above, 0, why) : std::nullopt;
+    if (!at_goal) {
+      why += " lifted or at the goal";
+      return std::nullopt;
+    }
+    const auto opened = [&](const Vector& q, int arm, std::size_t n) {
+      return RobotModel::with(q, *arms[static_cast<std::size_t>(arm)].arm.fingers, grasp(arm, n).pregrasp_joints);
+    };
+    const auto arm_of = [&](const Vector& q, int arm) { return RobotModel::part(q, *arms[static_cast<std::size_t>(arm)].arm.arm); };
+    const auto off = [&](const Vector& q, const Pose& T, int arm, std::size_t n) { return stand_off(arm, n, T, q, arm_of(q, arm)); };
+    RegraspStep first, second, down;
+    const Manipulator& other = arms[1].arm;
+    const Vector& rest = robot.rest_posture();
+    const Vector alone = with(*at_start, 1, RobotModel::part(rest, *other.arm), RobotModel::part(rest, *other.fingers));
+    const auto before_first = off(alone, T_start, 0, i);
+    const auto before_second = before_first ? off(opened(*at_start, 0, i), T_start, 1, k) : std::nullopt;
+    const auto after_first = before_second ? off(opened(*at_goal, 1, k), T_goal, 0, i) : std::nullopt;
+    const auto after_second = after_first ? off(opened(*at_goal, 0, i), T_goal, 1, k) : std::nullopt;
+    if (!after_second) {
+      why = "no straight way to or from it is free";
+      return std::nullopt;
+    }
+    first.kind = RegraspStepKind::pick;
+    first.to = 0;
+    first.grasp_to = i;
+    first.T_world_object = second.T_world_object = T_start;
+    first.q = alone;
+    first.before = *before_first;
+    second.kind = RegraspStepKind::join;
+    second.from = 0;
+    second.to = 1;
+    second.grasp_from = i;
+    second.grasp_to = k;
+    second.q = *at_start;
+    second.before = *before_second;
+    down.kind = RegraspStepKind::place;
+    down.from = 0;
+    down.grasp_from = i;
+    down.T_world_object = T_goal;
+    down.q = *at_goal;
+    down.after = RobotModel::with(*after_first, *other.arm, arm_of(*after_second, 1));
+    return std::vector<RegraspStep>{first, second, down};
   }
 
   /// The middle between the shoulders, and each shoulder: where the arms' first axes are.
@@ -291,6 +372,70 @@ RegraspPlanner::RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> 
                                const Scene& scene, const std::string& object_id, const RegraspSettings& settings)
     : impl_(std::make_unique<Impl>(robot, std::move(arms), object, std::move(library), scene, object_id, settings)) {}
 RegraspPlanner::~RegraspPlanner() = default;
+
+RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled) {
+  Impl& impl = *impl_;
+  if (impl.arms.size() != 2) throw ConfigError("two hands at once need two arms, there is " + std::to_string(impl.arms.size()));
+  RegraspPlan out;
+  // Grasps each arm reaches from where it stands to where it is to stand.
+  std::vector<Pose> T_root_object;
+  for (const Pose& T : {T_world_start, T_world_goal}) {
+    Pose raised = T;
+    raised.translation().z() += impl.settings.lift;
+    for (const Pose& at : {T, raised}) T_root_object.push_back(impl.T_root_world * at);
+  }
+  std::array<GraspList, 2> reached;
+  std::array<std::vector<std::size_t>, 2> index;
+  std::array<HandSide, 2> sides;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const RegraspArm& arm = impl.arms[a];
+    const std::vector<double> scores = posture_scores(impl.robot, *arm.arm.arm, impl.robot.rest_posture(), *arm.list, T_root_object);
+    for (std::size_t n = 0; n < scores.size(); ++n) {
+      if (scores[n] < 0) continue;
+      reached[a].grasps.push_back(arm.list->grasps[n]);
+      index[a].push_back(n);
+      sides[a].posture.push_back(scores[n]);
+    }
+    sides[a].kit = arm.kit;
+    sides[a].list = &reached[a];
+    if (!index[a].empty()) continue;
+    out.reason = "by none of " + std::to_string(scores.size()) + " grasps does " + arm.arm.name + " reach it at its start and its goal";
+    return out;
+  }
+  DoubleSettings pairs;
+  pairs.most_of_each = impl.settings.most_of_each;
+  pairs.taken = Taken::spread;
+  pairs.p_object_middle = impl.object.box().center();
+  pairs.clearance = impl.settings.clearance;
+  DoubleList doubles = list_double_grasps(sides[0], sides[1], pairs);
+  for (DoubleGrasp& d : doubles.grasps) d.first = index[0][d.first], d.second = index[1][d.second];
+  out.double_grasps = doubles.grasps.size();
+  std::map<std::string, std::uint64_t> rejected;
+  for (const DoubleGrasp& d : doubles.grasps) {
+    const Vector3 between = impl.grasp(0, d.first).T_object_hand.translation() - impl.grasp(1, d.second).T_object_hand.translation();
+    if (between.norm() < impl.settings.least_apart) {
+      ++rejected["the hands would be too near each other"];
+      continue;
+    }
+    if (out.judged >= impl.settings.most_pairs_tried || (cancelled && cancelled())) break;
+    ++out.judged;
+    std::string why;
+    auto steps = impl.judge_together(d.first, d.second, T_world_start, T_world_goal, why);
+    if (steps) {
+      out.steps = std::move(*steps);
+      out.solved = true;
+      break;
+    }
+    ++rejected[why];
+  }
+  for (const auto& [what, times] : rejected) out.rejected.push_back({std::to_string(times) + " pairs", what});
+  for (Refusal& r : doubles.refusals()) out.rejected.push_back(std::move(r));
+  if (out.solved) return out;
+  const auto most = std::max_element(rejected.begin(), rejected.end(), [](const auto& x, const auto& y) { return x.second < y.second; });
+  out.reason = "no two grasps take it there together";
+  if (most != rejected.end()) out.reason += "; most often: " + most->first;
+  return out;
+}
 
 RegraspPlan RegraspPlanner::plan(const RegraspTask& task, const std::function<bool()>& cancelled) {
   Impl& impl = *impl_;

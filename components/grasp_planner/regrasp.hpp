@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/collision/collision_world.hpp"
+#include "common/grasp/grip_force.hpp"
 #include "common/model/manipulator.hpp"
 #include "components/grasp_planner/double_grasp.hpp"
 
@@ -33,7 +34,7 @@ struct RegraspTask {
   std::vector<Pose> placements;  ///< T_world_object: where else it can be put down
 };
 
-enum class RegraspStepKind { pick, pass, place };
+enum class RegraspStepKind { pick, pass, place, join };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
@@ -42,8 +43,8 @@ struct RegraspStep {
   std::size_t grasp_from{}, grasp_to{};
   Pose T_world_object{Pose::Identity()};
   Vector q;       ///< all hands that touch the object closed on it
-  Vector before;  ///< pick, pass: the hand that comes, opened, off the object
-  Vector after;   ///< pass, place: the hand that went, opened, off the object
+  Vector before;  ///< pick, pass, join: the hand that comes, opened, off the object
+  Vector after;   ///< pass, place: the hand that went, opened, off the object; both when two put it down
 };
 
 struct RegraspSettings {
@@ -53,6 +54,9 @@ struct RegraspSettings {
   double lift{0.08};                     ///< what is picked up or put down must be able to go this far straight up [m]
   int exchange_tries{200};               ///< places and turns of the object tried to pass it in one double grasp
   std::uint64_t most_steps_tried{3000};  ///< the search ends when so many picks, passes and places were judged
+  GripForceSettings grip;                ///< of hands that share a load
+  double least_apart{0.25};              ///< of the palms of two hands that carry together [m]
+  std::size_t most_pairs_tried{400};     ///< of two hands at once
 };
 
 struct RegraspPlan {
@@ -74,6 +78,11 @@ class RegraspPlanner {
   /// The sequence with the fewest steps; among those of equal length about the one of the best grasps. ConfigError when start or goal name
   /// an arm or a grasp that is not there.
   RegraspPlan plan(const RegraspTask& task, const std::function<bool()>& cancelled = {});
+
+  /// Two hands that take it at once where it stands and put it down together: pick, join, place. The postures are those at the start, that
+  /// lifted by `lift` above start and goal are found from the one before; the way between is not looked at. ConfigError when there is one
+  /// arm.
+  RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled = {});
 
  private:
   struct Impl;

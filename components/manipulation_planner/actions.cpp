@@ -105,9 +105,8 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   reach_object.allowed = {object_id};
   reach_object.speed = settings_.approach_speed();
 
-  const Group* hand_group = robot_->group("hand");
   Vector opened = set_point_;
-  if (hand_group != nullptr) opened = RobotModel::with(opened, *hand_group, grasp.pregrasp_joints);
+  if (!fingers_.axes.empty()) opened = RobotModel::with(opened, fingers_, grasp.pregrasp_joints);
   Vector before = RobotModel::with(opened, arm_, grasp.approach_joints);
   PlannedPath last_part = co_await plan_path(before, reach_object);
   if (!last_part.outcome.good) co_return Outcome::failure("last part of the approach: " + last_part.outcome.reason);
@@ -247,11 +246,11 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   status_.phase = "offer";
   status_.exchange_point = (T_world_tool() * attachment_.T_tool_object).translation();
   status_.exchange_engaged = true;
-  Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), robot_->require_group("hand"));
+  Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
   HandResult released = co_await hand(HandAction::release_on_pull, opening, settings_.offer_timeout());
   if (!released.outcome.good || released.state != HandState::released) {
     status_.exchange_engaged = false;
-    const Vector grip = RobotModel::part(set_point_, robot_->require_group("hand"));
+    const Vector grip = RobotModel::part(set_point_, fingers_);
     HandResult kept = co_await hand(HandAction::grasp, grip, settings_.hand_timeout());
     if (!kept.outcome.good) refuse("keeping the object", kept.outcome.reason);
     co_return Outcome::failure(released.outcome.good ? receiver + " did not take " + object_id + " within " +

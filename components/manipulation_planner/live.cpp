@@ -129,7 +129,7 @@ Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
   const Vector3 torso = whom->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   if ((torso - motion.receiver_at).norm() < kStepAside) co_return false;
   const Pose T_world_object =
-      scene_.T_world_base * robot_->link_pose(RobotModel::with(posture(), arm_, goal), robot_->tool_link()) * attachment_.T_tool_object;
+      scene_.T_world_base * robot_->link_pose(RobotModel::with(posture(), arm_, goal), palm_) * attachment_.T_tool_object;
   ExchangeChoice choice = co_await choose_exchange(motion.receiver, &T_world_object);
   whom = person(motion.receiver);
   if (!choice.outcome.good || whom == nullptr) co_return false;

@@ -21,11 +21,15 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
     : settings_(settings),
       robot_(std::move(robot)),
       objects_(std::move(objects)),
+      hands_(hands_of(*robot_)),
       arm_(robot_->require_group("arm")),
+      palm_(robot_->tool_link()),
       way_out_(*robot_, arm_),
       client_(client),
       commands_(client),
-      cost_(std::make_shared<HumanCost>(*robot_, cost)) {}
+      cost_(std::make_shared<HumanCost>(*robot_, cost)) {
+  if (const Group* fingers = robot_->group("hand")) fingers_ = *fingers;
+}
 
 void ManipulationPlanner::on(const ActionGoal& goal) {
   if (goal.cancel) {
@@ -67,6 +71,9 @@ void ManipulationPlanner::on(const ActiveTrajectory& active) {
 
 void ManipulationPlanner::on(const GraspReply& reply) {
   if (reply.id == RequestId{client_, requests_}) grasp_reply_ = reply;
+}
+void ManipulationPlanner::on(const RegraspReply& reply) {
+  if (reply.id == RequestId{client_, requests_}) regrasp_reply_ = reply;
 }
 void ManipulationPlanner::on(const PathReply& reply) {
   if (reply.id != RequestId{client_, requests_}) return;
@@ -130,6 +137,9 @@ bool ManipulationPlanner::at_rest() const { return set_point_.size() == robot_->
 Vector ManipulationPlanner::posture() const {
   Vector q = scene_.robot_position;
   for (const int axis : arm_.axes) q[axis] = set_point_[axis];
+  for (const Manipulator& other : hands_)
+    if (other.arm != nullptr)
+      for (const int axis : other.arm->axes) q[axis] = set_point_[axis];
   return q;
 }
 
@@ -160,7 +170,7 @@ const Person* ManipulationPlanner::person(const std::string& id) const {
   return best;
 }
 
-Pose ManipulationPlanner::T_world_tool() const { return scene_.T_world_base * robot_->link_pose(set_point_, robot_->tool_link()); }
+Pose ManipulationPlanner::T_world_tool() const { return scene_.T_world_base * robot_->link_pose(set_point_, palm_); }
 
 std::optional<Vector> ManipulationPlanner::reach(const Pose& T_world_tool) const {
   IkOptions options;
@@ -170,6 +180,7 @@ std::optional<Vector> ManipulationPlanner::reach(const Pose& T_world_tool) const
 
 void ManipulationPlanner::hold(const SceneObject& held) {
   attachment_.object = held.id;
+  attachment_.hand = hand_name();
   attachment_.T_tool_object = T_world_tool().inverse() * held.T_world_object;
   status_.holding = true;
 }
@@ -443,16 +454,17 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
 }
 
 Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout,
-                                                                   const Vector* effort) {
+                                                                   const Vector* effort, double share_of_mass) {
   HandCommand command;
   command.id = ++commands_;
   command.robot = robot_->name();
+  command.group = hand_name();
   command.action = action;
   command.position = position;
   if (effort != nullptr) command.effort = *effort;
   command.pull_force = settings_.pull_force();
   if (const ObjectModel* grasped = model_of(status_.object); action == HandAction::grasp && grasped != nullptr)
-    command.payload = grasped->mass;
+    command.payload = share_of_mass * grasped->mass;
   HandResult result;
   const std::uint64_t id = command.id;
   bool heard = false;
@@ -461,20 +473,20 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
     if (!ready) break;
     command.epoch = execution_->epoch;
     out_->hand_commands.push_back(command);
-    heard = co_await waiting_.until([this, id] { return execution_->hand_command == id && execution_->hand != HandState::refused; }, 0.3);
+    heard = co_await waiting_.until([this, id] { return execution_->hand_command == id && hand_state() != HandState::refused; }, 0.3);
   }
   if (!heard) {
     result.outcome = Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
     co_return result;
   }
   const bool ended =
-      co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand != HandState::moving; }, timeout);
+      co_await waiting_.until([this, id] { return execution_->hand_command != id || hand_state() != HandState::moving; }, timeout);
   const bool waits_for_pull = action == HandAction::release_on_pull;
   if (ended && waits_for_pull)
-    co_await waiting_.until([this, id] { return execution_->hand_command != id || execution_->hand == HandState::released; }, timeout);
+    co_await waiting_.until([this, id] { return execution_->hand_command != id || hand_state() == HandState::released; }, timeout);
   if (execution_->hand_command != id) result.outcome = Outcome::failure("the controller lost the hand command");
   if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
-  result.state = execution_->hand;
+  result.state = hand_state();
   co_return result;
 }
 
@@ -482,8 +494,8 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
   const Pose T_now = T_world_tool();
   Vector3 back = -Vector3::UnitZ();  // tool frame
   if (grasp_) {
-    const Pose T_root_grasp = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->arm_joints), robot_->tool_link());
-    const Pose T_root_standoff = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->approach_joints), robot_->tool_link());
+    const Pose T_root_grasp = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->arm_joints), palm_);
+    const Pose T_root_standoff = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->approach_joints), palm_);
     back = (T_root_grasp.inverse() * T_root_standoff).translation();
   } else if (const SceneObject* left = object(object_id)) {
     back = -(T_now.inverse() * left->T_world_object.translation());
@@ -523,12 +535,21 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       co_await waiting_.until([this] { return scene_.robot_known && execution_ && set_point_.size() == robot_->dof(); }, 10.0);
   if (!known) co_return Outcome::failure("no scene or no controller state has come");
   if (const SceneObject* held = object(goal.object); held != nullptr && held->holder == Holder::robot) {
+    const int by = hand_index(hands_, held->holder_id);
+    Outcome ready = co_await use_arm(by < 0 ? arm_.name : hands_[static_cast<std::size_t>(by)].name);
+    if (!ready.good) co_return ready;
+    held = object(goal.object);
+    if (held == nullptr) co_return Outcome::failure("object " + goal.object + " left the scene");
     if (attachment_.object != held->id) {
       grasp_.reset();
       hold(*held);
     }
   } else if (attachment_.object == goal.object) {
     release_object();
+  }
+  if (attachment_.object.empty() && hand_ != 0) {
+    Outcome ready = co_await use_arm(hands_.front().name);
+    if (!ready.good) co_return ready;
   }
   Outcome outcome;
   switch (goal.kind) {
@@ -542,14 +563,19 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       outcome = co_await place(goal.object, goal.surface);
       break;
     case ActionKind::go_to:
-      outcome = co_await go_to_rest();
+      outcome = co_await rest_all();
       break;
     case ActionKind::receive:
       outcome = co_await receive(goal.object, goal.human);
       break;
     case ActionKind::regrasp:
     case ActionKind::carry:
-      outcome = Outcome::failure(std::string(name(goal.kind)) + " needs two hands, robot " + robot_->name() + " has one");
+      if (hands_.size() < 2)
+        outcome = Outcome::failure(std::string(name(goal.kind)) + " needs two hands, robot " + robot_->name() + " has one");
+      else if (goal.kind == ActionKind::regrasp)
+        outcome = co_await regrasp(goal);
+      else
+        outcome = co_await carry(goal);
       break;
   }
   co_return outcome;

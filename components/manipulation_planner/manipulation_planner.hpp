@@ -16,9 +16,11 @@
 #include "common/messages/planning.hpp"
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/manipulator.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/switch.hpp"
 #include "components/manipulation_planner/exchange.hpp"
+#include "components/manipulation_planner/placing.hpp"
 #include "components/manipulation_planner/routine.hpp"
 #include "components/manipulation_planner/way_out.hpp"
 
@@ -27,6 +29,7 @@ namespace handsel::manipulation_planner {
 /// What the core wants sent; the node empties it after each step.
 struct Outbox {
   std::vector<GraspRequest> grasp_requests;
+  std::vector<RegraspRequest> regrasp_requests;
   std::vector<PathRequest> path_requests;
   std::vector<TrajectoryRequest> trajectory_requests;
   std::vector<TrajectoryCommand> trajectories;
@@ -58,6 +61,7 @@ class ManipulationPlanner {
   void on(const ExecutionStatus& status);
   void on(const ActiveTrajectory& active);
   void on(const GraspReply& reply);
+  void on(const RegraspReply& reply);
   void on(const PathReply& reply);
   void on(const TrajectoryReply& reply);
   void job_done() { ++jobs_done_; }
@@ -136,6 +140,8 @@ class ManipulationPlanner {
   Routine<Outcome> lift(const std::string& object);
   Routine<Outcome> give(const std::string& object, const std::string& human);
   Routine<Outcome> place(const std::string& object, const std::string& surface);
+  /// What is held, to above its place and down to it.
+  Routine<Outcome> lower(const std::string& object, const PuttingPosture& posture);
   /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
   Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp);
@@ -161,6 +167,35 @@ class ManipulationPlanner {
   /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or the arm does not reach there.
   std::optional<Vector3> follow_offer(Motion& motion);
   Routine<Outcome> go_to_rest();
+
+  // Two hands (two_hands.cpp).
+  struct RegraspSteps {
+    Outcome outcome;
+    std::vector<RegraspStep> steps;
+  };
+  /// What follows is done with that arm and its hand, as what they hold now.
+  Routine<Outcome> use_arm(const std::string& arm);
+  Routine<RegraspSteps> ask_regrasp(const std::string& object, const Pose& T_world_goal, bool both);
+  Routine<Outcome> regrasp(const ActionGoal& goal);
+  /// Where the object can stand: where the goal says, else free places on its surface, the nearest to an arm first.
+  std::vector<Pose> places_for(const ActionGoal& goal, const SceneObject& object, const ObjectModel& model) const;
+  Routine<Outcome> pass(const std::string& object, const RegraspStep& step);
+  Routine<Outcome> put_down(const std::string& object, const RegraspStep& step);
+  Routine<Outcome> let_go(const std::string& object, const Vector& closed, const Vector& after);
+  Routine<Outcome> others_to_rest();
+  Routine<Outcome> rest_all();
+  Routine<Outcome> take_over(const std::string& object, const Grasp& grasp);
+  Routine<Outcome> make_room();
+  Vector3 p_world_shoulder() const;  // of the arm in use
+  /// Both hands on it, up, over and down in a closed chain (carry.cpp).
+  Routine<Outcome> carry(const ActionGoal& goal);
+  Routine<Outcome> take_together(const std::string& object, const RegraspStep& first, const RegraspStep& second);
+  Routine<Outcome> grip(const Grasp& grasp, double share_of_mass);
+  Routine<Outcome> move_together(const std::string& object, const std::string& follower, const std::vector<Pose>& T_world_object);
+  Routine<Outcome> run_to_end(const TrajectoryCommand& command);
+  HandState hand_state() const;
+  std::string hand_name() const { return hand_ == 0 ? "" : fingers_.name; }  // as messages have it
+  bool holds(const std::string& object) const;                               // the hand in use holds it, as the scene has it
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
   Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human, std::uint32_t most);
@@ -203,7 +238,9 @@ class ManipulationPlanner {
   double cost_along(const Trajectory& trajectory, const Vector& posture, double level) const;
   Switched join(const MotionState3& from, const Trajectory& to, const Ways& ways) const;
   std::optional<Trajectory> lead_over(CollisionWorld& world, const Around& around, const MotionState3& from, const Ways& ways) const;
-  Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr);
+  /// `share_of_mass`: of what is grasped, that this hand bears.
+  Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr,
+                           double share_of_mass = 1.0);
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);
@@ -230,7 +267,10 @@ class ManipulationPlanner {
   config::ManipulationPlannerSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   ObjectLibrary objects_;
-  const Group& arm_;
+  std::vector<Manipulator> hands_;  // of the robot; the one in use:
+  std::size_t hand_{0};
+  Group arm_, fingers_;
+  int palm_;
   WayOut way_out_;
   std::uint64_t client_, requests_{0}, commands_;
   std::uint64_t jobs_started_{0}, jobs_done_{0};
@@ -252,6 +292,7 @@ class ManipulationPlanner {
   double blocked_for_{0};  // how long the forecast, or a person too near, has held the robot back [s]
   bool too_near_{false};
   std::optional<GraspReply> grasp_reply_;
+  std::optional<RegraspReply> regrasp_reply_;
   std::optional<PathReply> path_reply_;
   std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
   RequestId comparison_;      // for the time that the path which runs would take from now on

@@ -21,6 +21,7 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   positive("carry_speed", s.carry_speed());
   positive("approach_speed", s.approach_speed());
   positive("status_period", s.status_period());
+  positive("regrasp_timeout", s.regrasp_timeout());
   if (s.live_period() < 0) throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
   if (s.live_period() > 0) {
     positive("live_time", s.live_time());
@@ -45,6 +46,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       settings_(load_settings(context)),
       core_(settings_, context.robot, context.objects, client_id(bus), load_cost_settings(context.settings)),
       grasp_out_(bus.advertise<GraspRequest>()),
+      regrasp_out_(bus.advertise<RegraspRequest>()),
       path_out_(bus.advertise<PathRequest>()),
       trajectory_request_out_(bus.advertise<TrajectoryRequest>()),
       trajectory_out_(bus.advertise<TrajectoryCommand>()),
@@ -59,6 +61,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   feed<ExecutionStatus>();
   feed<ActiveTrajectory>();
   feed<GraspReply>();
+  feed<RegraspReply>();
   feed<PathReply>();
   feed<TrajectoryReply>();
   bus.every(from_seconds(0.02), [this](TimePoint now) { step(now); });
@@ -73,6 +76,7 @@ void Node::step(TimePoint now) {
   Outbox out;
   core_.step(now, out);
   for (auto& m : out.grasp_requests) grasp_out_->publish(m);
+  for (auto& m : out.regrasp_requests) regrasp_out_->publish(m);
   for (auto& m : out.path_requests) path_out_->publish(m);
   for (auto& m : out.trajectory_requests) trajectory_request_out_->publish(m);
   for (auto& m : out.trajectories) trajectory_out_->publish(m);

@@ -23,6 +23,7 @@ class Node {
   config::ManipulationPlannerSettings settings_;
   ManipulationPlanner core_;
   std::unique_ptr<Publisher<GraspRequest>> grasp_out_;
+  std::unique_ptr<Publisher<RegraspRequest>> regrasp_out_;
   std::unique_ptr<Publisher<PathRequest>> path_out_;
   std::unique_ptr<Publisher<TrajectoryRequest>> trajectory_request_out_;
   std::unique_ptr<Publisher<TrajectoryCommand>> trajectory_out_;

@@ -34,11 +34,12 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(con
   const std::function<void()> job = [this, found, world = world_, scene = scene_, people = people_, box = *box, object_id,
                                      grasps = list.grasps, q = posture(), T_now = thing->T_world_object] {
     place_world(*world, scene, people);
-    Putting putting(*world, *robot_, scene.T_world_base, free_places(*robot_, scene, people, objects_, object_id, box, T_now, kPlaces),
-                    settings_.lift_height());
-    const Group& fingers = robot_->require_group("hand");
+    PlacingSettings placing;
+    placing.reach = arm_reach(*robot_, &arm_, palm_);
+    Putting putting(*world, *robot_, arm_, scene.T_world_base,
+                    free_places(*robot_, scene, people, objects_, object_id, box, T_now, kPlaces, placing), settings_.lift_height());
     for (std::size_t i = 0; i < grasps.size() && found->places.size() < settings_.max_grasps(); ++i) {
-      const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers, grasps[i].hand_joints);
+      const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers_, grasps[i].hand_joints);
       const auto posture = putting.anywhere(closed, {object_id, grasps[i].T_object_hand.inverse()}, 1);
       if (!posture.empty()) found->places[i] = posture.front().T_world_object;
     }
@@ -63,6 +64,23 @@ void ManipulationPlanner::place_world(CollisionWorld& world, const Scene& scene,
   world.set_moving_axes({});
 }
 
+Routine<Outcome> ManipulationPlanner::lower(const std::string& object_id, const PuttingPosture& posture) {
+  Motion above;
+  above.phase = "carry";
+  above.goals = {posture.arm_above};
+  above.allowed = {object_id};
+  above.speed = settings_.carry_speed();
+  Outcome last = co_await move(above);
+  if (!last.good) co_return last;
+  Motion down = above;
+  down.phase = "put down";
+  down.goals = {posture.arm_at};
+  down.straight = true;
+  down.speed = settings_.approach_speed();
+  last = co_await move(down);
+  co_return last;
+}
+
 Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const std::string& onto) {
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
   const SceneBox* box = surface(onto);
@@ -83,9 +101,11 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   const std::function<void()> job = [this, found, T_chosen, world = world_, scene = scene_, people = people_, box = *box,
                                      held = attachment_, q = posture(), T_now = T_world_tool() * attachment_.T_tool_object] {
     place_world(*world, scene, people);
-    std::vector<Pose> places = free_places(*robot_, scene, people, objects_, held.object, box, T_now, kPlaces);
+    PlacingSettings placing;
+    placing.reach = arm_reach(*robot_, &arm_, palm_);
+    std::vector<Pose> places = free_places(*robot_, scene, people, objects_, held.object, box, T_now, kPlaces, placing);
     if (T_chosen) places.insert(places.begin(), *T_chosen);
-    Putting putting(*world, *robot_, scene.T_world_base, std::move(places), settings_.lift_height());
+    Putting putting(*world, *robot_, arm_, scene.T_world_base, std::move(places), settings_.lift_height());
     found->postures = putting.anywhere(q, held, kPostures);
     found->objections = putting.objections();
   };
@@ -93,22 +113,10 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   if (!last.good) co_return last;
   if (found->postures.empty()) co_return Outcome::failure("no free place on " + onto + " within the arm's reach: " + found->objections);
   for (const PuttingPosture& posture : found->postures) {
-    Motion above;
-    above.phase = "carry";
-    above.goals = {posture.arm_above};
-    above.allowed = {object_id};
-    above.speed = settings_.carry_speed();
-    last = co_await move(above);
-    if (!last.good) continue;
-    Motion down = above;
-    down.phase = "put down";
-    down.goals = {posture.arm_at};
-    down.straight = true;
-    down.speed = settings_.approach_speed();
-    last = co_await move(down);
+    last = co_await lower(object_id, posture);
     if (!last.good) continue;
     destinations_.clear();
-    Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), robot_->require_group("hand"));
+    Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
     HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
     if (!released.outcome.good) co_return released.outcome;
     release_object();

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/model/arm_reach.hpp"
 #include "common/model/human_body.hpp"
 #include "common/model/object_extent.hpp"
 
@@ -30,7 +29,7 @@ std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const
                               const PlacingSettings& settings) {
   const auto thing = std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == object; });
   const ObjectModel* model = thing == scene.objects.end() ? nullptr : library(thing->model);
-  const ArmReach reach = arm_reach(robot);
+  const ArmReach reach = settings.reach ? *settings.reach : arm_reach(robot);
   if (model == nullptr || reach.shoulder < 0) return {};
   const double radius = footprint(model, {});
   const Vector& q = scene.robot_position.size() == robot.dof() ? scene.robot_position : robot.rest_posture();
@@ -85,13 +84,9 @@ std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const
   return out;
 }
 
-Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Pose& T_world_base, std::vector<Pose> places, double from_above)
-    : world_(world),
-      robot_(robot),
-      arm_(robot.require_group("arm")),
-      T_base_world_(T_world_base.inverse()),
-      places_(std::move(places)),
-      from_above_(from_above) {}
+Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm, const Pose& T_world_base, std::vector<Pose> places,
+                 double from_above)
+    : world_(world), robot_(robot), arm_(arm), T_base_world_(T_world_base.inverse()), places_(std::move(places)), from_above_(from_above) {}
 
 std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, const Attachment& held) {
   IkOptions options;

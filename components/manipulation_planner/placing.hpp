@@ -8,18 +8,23 @@
 
 #include "common/collision/collision_world.hpp"
 #include "common/messages/world.hpp"
+#include "common/model/arm_reach.hpp"
 #include "common/model/object_model.hpp"
 #include "common/model/robot_model.hpp"
 
 namespace handsel::manipulation_planner {
 
+/// What is put down is let go this far above the surface [m].
+inline constexpr double kAbovePlace = 0.004;
+
 struct PlacingSettings {
-  double beside{0.05};   ///< left free around it, for the hand [m]
-  double edge{0.03};     ///< of the surface that is kept free [m]
-  double grid{0.04};     ///< places are tried so far apart [m]
-  double apart{0.12};    ///< those that are given are at least so far apart [m]
-  double at_reach{0.6};  ///< share of the arm's reach at which it works best
-  double above{0.004};   ///< lowered to this above the surface [m]
+  double beside{0.05};              ///< left free around it, for the hand [m]
+  double edge{0.03};                ///< of the surface that is kept free [m]
+  double grid{0.04};                ///< places are tried so far apart [m]
+  double apart{0.12};               ///< those that are given are at least so far apart [m]
+  double at_reach{0.6};             ///< share of the arm's reach at which it works best
+  double above{kAbovePlace};        ///< lowered to this above the surface [m]
+  std::optional<ArmReach> reach{};  ///< of the arm that puts it down; left out: of the group "arm"
 };
 
 /// Free places for an object that stands upright there, T_world_object each, the best first: where the arm reaches well, away from other
@@ -38,7 +43,8 @@ struct PuttingPosture {
 class Putting {
  public:
   /// `world` knows scene and people; its attachment is changed. `places` as from free_places().
-  Putting(CollisionWorld& world, const RobotModel& robot, const Pose& T_world_base, std::vector<Pose> places, double from_above);
+  Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm, const Pose& T_world_base, std::vector<Pose> places,
+          double from_above);
 
   /// At this place, its object turned about the vertical as is best for the arm; nullopt: what stands in the way is counted. `q`: all axes,
   /// the hand closed on the object.

@@ -66,7 +66,7 @@ std::optional<Grasp> ManipulationPlanner::aimed(const std::string& object_id, co
   const SceneObject* held = object(object_id);
   if (held == nullptr) return std::nullopt;
   const auto hand_in_root = [this](const Vector& arm_joints) {
-    return robot_->link_pose(RobotModel::with(set_point_, arm_, arm_joints), robot_->tool_link());
+    return robot_->link_pose(RobotModel::with(set_point_, arm_, arm_joints), palm_);
   };
   const Pose T_grasp_standoff = hand_in_root(grasp.arm_joints).inverse() * hand_in_root(grasp.approach_joints);
   const Pose T_root_hand = scene_.T_world_base.inverse() * held->T_world_object * grasp.T_object_hand;
@@ -180,7 +180,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   std::optional<Grasp> grasp = aimed(object_id, chosen);
   if (!grasp) co_return out_of_reach;
   Motion approach = approach_to(object_id, giver, *grasp);
-  const Vector opened = RobotModel::with(set_point_, robot_->require_group("hand"), chosen.pregrasp_joints);
+  const Vector opened = RobotModel::with(set_point_, fingers_, chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
   if (!way.outcome.good) co_return Outcome::failure("approach: " + way.outcome.reason);
   status_.phase = "opening the hand";
@@ -291,7 +291,7 @@ Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object
     world->set_people(around);
     world->set_attachment({}, {object_id});
     world->set_moving_axes(arm_.axes);
-    const Group& fingers = robot_->require_group("hand");
+    const Group& fingers = fingers_;
     const auto free = [&](const Vector& arm, const Vector& hand) {
       return world->check_people(RobotModel::with(RobotModel::with(q, arm_, arm), fingers, hand)).free;
     };

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/model/human_body.hpp"
+#include "common/model/manipulator.hpp"
 #include "common/model/object_extent.hpp"
 #include "components/spark/directed.hpp"
 
@@ -74,12 +75,16 @@ SceneModel::SceneModel(const config::SparkSettings& settings, std::shared_ptr<co
                        std::vector<SceneBox> boxes)
     : settings_(settings), robot_(std::move(robot)), library_(std::move(objects)), boxes_(std::move(boxes)) {
   arm_length_ = arm_length(*robot_);
+  for (const Manipulator& hand : hands_of(*robot_))
+    hands_.push_back({hands_.empty() || hand.fingers == nullptr ? "" : hand.fingers->name, hand.palm});
+  if (hands_.empty()) hands_.emplace_back();
 }
 
-void SceneModel::locate_tool() {
-  if (!robot_known_ || robot_->tool_link() < 0) return;
+void SceneModel::locate_hands() {
+  if (!robot_known_) return;
   robot_->forward(position_, links_);
-  T_world_tool_ = T_world_base_ * links_[static_cast<std::size_t>(robot_->tool_link())];
+  for (Hand& hand : hands_)
+    if (hand.palm >= 0) hand.T_world_palm = T_world_base_ * links_[static_cast<std::size_t>(hand.palm)];
 }
 
 /// A described model counts more than a primitive.
@@ -125,7 +130,7 @@ bool SceneModel::believes(Known& known, const ObservedObject& observed, const st
 }
 
 void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
-  locate_tool();
+  locate_hands();
   std::vector<ObservedObject> looks;
   for (ObservedObject observed : observation.objects) {
     if (known_shape(observed)) {
@@ -157,7 +162,7 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
     known.looks = std::max(known.looks, 1);
     known.seen = seen;
     known.wandered = 0;
-    if (robot_known_) known.T_tool_object = T_world_tool_.inverse() * observed.T_world_object;
+    if (robot_known_) known.T_palm_object = hands_[known.by].T_world_palm.inverse() * observed.T_world_object;
   }
 }
 
@@ -182,7 +187,8 @@ void SceneModel::follow(Known& known, const ObservedObject& observed, TimePoint 
 void SceneModel::update(const RobotState& state) {
   robot_known_ = true;
   position_ = state.position;
-  payload_ = state.payload;
+  hands_.front().payload = state.payload;
+  for (std::size_t i = 1; i < hands_.size(); ++i) hands_[i].payload = i <= state.other_hands.size() ? state.other_hands[i - 1].payload : 0;
   T_world_base_ = state.T_world_base;
 }
 
@@ -221,7 +227,8 @@ void SceneModel::attribute_grips(Known& known, const HumanState& people) const {
     for (const Person& person : people.people)
       for (const char* hand : {"l_hand", "r_hand"})
         claim(person.id, person.joints[static_cast<std::size_t>(body_joint_index(hand))].position);
-    if (robot_known_) claim(kRobotName, T_world_tool_.translation());
+    for (const Hand& hand : hands_)
+      if (robot_known_) claim(kRobotName, hand.T_world_palm.translation());
     known.object.grips.push_back(std::move(grip));
   }
 }
@@ -242,13 +249,36 @@ bool SceneModel::keep_gripped(SceneObject& object) const {
   return true;
 }
 
+std::optional<std::size_t> SceneModel::loaded_hand(const Known& known) const {
+  constexpr double kReach = 0.35;  // [m] from the palm
+  constexpr double kShare = 0.4;   // of its weight that is felt when it is held
+  constexpr double kSome = 0.2;    // and that whoever had it feels at least
+  const ObjectModel* model = library_ ? library_(known.object.model) : nullptr;
+  if (model == nullptr || !robot_known_) return std::nullopt;
+  std::optional<std::size_t> most;
+  double together = 0;
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    const Hand& hand = hands_[i];
+    if (!((known.object.T_world_object.translation() - hand.T_world_palm.translation()).norm() < kReach)) continue;
+    together += hand.payload;
+    if (!most || hand.payload > hands_[*most].payload) most = i;
+  }
+  if (!most || !(together > kShare * model->mass)) return std::nullopt;
+  const Hand& before = hands_[known.by];
+  const bool kept = known.object.holder == Holder::robot && before.payload > kSome * model->mass;
+  return kept ? known.by : *most;
+}
+
 void SceneModel::assign_holder(Known& known, const HumanState& people) const {
   SceneObject& object = known.object;
   if (keep_gripped(object)) return;
-  const ObjectModel* model = library_ ? library_(object.model) : nullptr;
-  const bool loaded = model != nullptr && payload_ > 0.4 * model->mass;
   const Vector3 where = object.T_world_object.translation();
-  const bool robot_may = robot_known_ && loaded && (where - T_world_tool_.translation()).norm() < 0.35;
+  const std::optional<std::size_t> by = loaded_hand(known);
+  const bool robot_may = by.has_value();
+  if (robot_may && *by != known.by) {
+    known.by = *by;
+    known.T_palm_object = hands_[*by].T_world_palm.inverse() * object.T_world_object;
+  }
   if (const SceneBox* box = support_under(object, robot_may ? kClearOfSupport : settings_.support_gap())) {
     object.holder = Holder::surface;
     object.holder_id = box->id;
@@ -256,7 +286,7 @@ void SceneModel::assign_holder(Known& known, const HumanState& people) const {
   }
   if (robot_may) {
     object.holder = Holder::robot;
-    object.holder_id.clear();
+    object.holder_id = hands_[*by].name;
     return;
   }
   double nearest = settings_.near_distance();
@@ -324,7 +354,7 @@ bool SceneModel::carry(Known& known, const HumanState& people) const {
 }
 
 Scene SceneModel::scene(TimePoint now, const HumanState& people) {
-  locate_tool();
+  locate_hands();
   std::erase_if(objects_, [&](const auto& entry) {
     const Known& known = entry.second;
     return known.looks > 0 && known.object.holder == Holder::human && to_seconds(now - known.seen) > settings_.unseen_after() &&
@@ -342,7 +372,7 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
     if (!carry(known, people)) assign_holder(known, people);
     mislay(known, people, now);
     SceneObject object = known.object;
-    if (object.holder == Holder::robot && object.age > kMissed) object.T_world_object = T_world_tool_ * known.T_tool_object;
+    if (object.holder == Holder::robot && object.age > kMissed) object.T_world_object = hands_[known.by].T_world_palm * known.T_palm_object;
     out.objects.push_back(std::move(object));
   }
   if (revision_ == 0 || differs(out, last_)) {
@@ -358,7 +388,7 @@ Coverage SceneModel::reach() const { return around(T_world_base_.translation(), 
 Coverage reach_of(const RobotModel& robot, const Vector3& base) { return around(base, arm_length(robot)); }
 
 const Obstacles& SceneModel::obstacles() {
-  locate_tool();
+  locate_hands();
   if (capsules_.empty()) {
     capsules_ = robot_capsules(*robot_);
     for (const SceneBox& box : boxes_) obstacles_.boxes.push_back({box.T_world_box, box.size});

@@ -42,7 +42,7 @@ class SceneModel {
 
   bool robot_known() const { return robot_known_; }
   const Pose& T_world_base() const { return T_world_base_; }
-  const Pose& T_world_tool() const { return T_world_tool_; }
+  const Pose& T_world_tool() const { return hands_.front().T_world_palm; }
   /// The box around everything the robot can reach: what must be covered for "nobody" to be a fact.
   Coverage reach() const;
   /// What hides people from a source: the robot as it stands and the fixed boxes.
@@ -51,7 +51,8 @@ class SceneModel {
  private:
   struct Known {
     SceneObject object;
-    Pose T_tool_object{Pose::Identity()};
+    std::size_t by{};                      ///< the robot's hand it is with, or was last
+    Pose T_palm_object{Pose::Identity()};  ///< of that hand
     TimePoint seen{};
     int looks{};  ///< that make up the estimate
     Vector3 last_seen_at{Vector3::Zero()};
@@ -67,7 +68,16 @@ class SceneModel {
     double wandered{};                       ///< how far it may have gone since it was seen [m]
     TimePoint judged{};                      ///< when that was
   };
-  void locate_tool();
+  /// A hand of the robot.
+  struct Hand {
+    std::string name;  ///< as SceneObject::holder_id has it: empty for the first
+    int palm{-1};      ///< link
+    double payload{};  ///< felt [kg]
+    Pose T_world_palm{Pose::Identity()};
+  };
+  void locate_hands();
+  /// Of the hands that feel it together, the one that has it: whoever had it, while it feels some of the load; else who feels most of it.
+  std::optional<std::size_t> loaded_hand(const Known& known) const;
   void follow(Known& known, const ObservedObject& observed, TimePoint seen) const;
   bool known_shape(ObservedObject& observed) const;
   void unswap(std::vector<ObservedObject>& seen, TimePoint at) const;
@@ -88,8 +98,8 @@ class SceneModel {
   std::map<std::string, Known> objects_;
   bool robot_known_{false};
   Vector position_;
-  double payload_{0};
-  Pose T_world_base_{Pose::Identity()}, T_world_tool_{Pose::Identity()};
+  std::vector<Hand> hands_;  ///< never empty; the first is that of the tool link
+  Pose T_world_base_{Pose::Identity()};
   double arm_length_{1.0};
   std::vector<Pose> links_;
   std::vector<LinkCapsule> capsules_;

@@ -2,6 +2,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
+#include "common/model/manipulator.hpp"
 
 namespace handsel::supervisor {
 namespace {
@@ -49,6 +50,15 @@ Node::Node(Bus& bus, const NodeContext& context)
     const int shoulder = robot_ != nullptr ? arm_reach(*robot_).shoulder : -1;
     if (shoulder >= 0 && scene.robot_known)
       core_.set_shoulder((scene.T_world_base * robot_->link_pose(scene.robot_position, shoulder)).translation());
+    if (shoulder >= 0 && scene.robot_known) {
+      std::vector<Ability::Arm> others;
+      const std::vector<Manipulator> hands = hands_of(*robot_);
+      for (std::size_t i = 1; i < hands.size(); ++i) {
+        const ArmReach other = arm_reach(*robot_, hands[i].arm, hands[i].palm);
+        others.push_back({(scene.T_world_base * robot_->link_pose(scene.robot_position, other.shoulder)).translation(), other.length});
+      }
+      core_.set_other_arms(others);
+    }
     core_.on(scene, receipt.arrival);
   });
   feed<ActionStatus>();

@@ -21,6 +21,7 @@ class Situation {
   void on(const ActionStatus& status);
   /// Of the arm, world [m].
   void set_shoulder(const Vector3& shoulder);
+  void set_other_arms(const std::vector<Ability::Arm>& arms) { ability_.other_arms = arms; }
 
   bool known() const { return facts_.has_value() && scene_.has_value(); }
   double known_for(TimePoint now) const { return known() ? to_seconds(now - known_since_) : 0.0; }  ///< [s]

@@ -37,6 +37,7 @@ class Supervisor {
   void on(const ExecutionStatus& status, TimePoint arrival) { permission_.on(status, arrival); }
   void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }
   void set_shoulder(const Vector3& shoulder) { situation_.set_shoulder(shoulder); }
+  void set_other_arms(const std::vector<Ability::Arm>& arms) { situation_.set_other_arms(arms); }
 
   /// Scene and facts have come: tasks can be judged.
   bool knows_world() const { return situation_.known(); }

@@ -51,7 +51,13 @@ std::vector<Type> types_of(FactKind kind) {
   return {};
 }
 
-double places_on(const SceneBox& box, const Scene& scene, const Ability& ability) {
+bool reaches(const Ability& ability, const Vector3& p, bool any_arm) {
+  if (!ability.reach_known || (p - ability.shoulder).norm() <= ability.reach) return true;
+  return any_arm && std::any_of(ability.other_arms.begin(), ability.other_arms.end(),
+                                [&](const Ability::Arm& arm) { return (p - arm.shoulder).norm() <= arm.reach; });
+}
+
+double places_on(const SceneBox& box, const Scene& scene, const Ability& ability, bool any_arm) {
   const double top = box.size.z() / 2;
   std::vector<Vector3> taken;  // box frame
   for (const auto& object : scene.objects)
@@ -62,7 +68,7 @@ double places_on(const SceneBox& box, const Scene& scene, const Ability& ability
   for (double x = -x_end; x <= x_end + 1e-9 && found < kMostPlaces; x += kStep)
     for (double y = -y_end; y <= y_end + 1e-9 && found < kMostPlaces; y += kStep) {
       const Vector3 p(x, y, top);
-      if (ability.reach_known && (box.T_world_box * p - ability.shoulder).norm() > ability.reach) continue;
+      if (!reaches(ability, box.T_world_box * p, any_arm)) continue;
       const bool free = std::all_of(taken.begin(), taken.end(), [&](const Vector3& t) { return (t - p).head<2>().norm() >= ability.spot; });
       if (!free) continue;
       taken.push_back(p);
@@ -92,6 +98,8 @@ const std::vector<PredicateSign>& known_predicates() {
                            {"heavy", {T::object}},
                            {"too_heavy", {T::object}},
                            {"two_hands", {}},
+                           {"near_a_hand", {T::object}},
+                           {"room_for_a_hand", {T::surface}},
                            {"model", {T::object, T::name}},
                            {"thing", {T::name}},
                            {"given", {T::name}},
@@ -201,6 +209,7 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   for (const auto& object : scene.objects) {
     const Symbol o = world.symbol(object.id);
     state.set({predicate_of(Derived::thing), {o, kNothing}});
+    if (reaches(ability, object.T_world_object.translation(), true)) state.set({predicate_of(Derived::near_a_hand), {o, kNothing}});
     if (!object.model.empty()) state.set({predicate_of(Derived::model), {o, world.symbol(object.model)}});
     const ObjectModel* model = ability.objects ? ability.objects(object.model) : nullptr;
     if (model == nullptr || ability.payload <= 0) continue;
@@ -209,8 +218,10 @@ World make_world(const Facts& facts, const Scene& scene, const Ability& ability)
   }
   for (const auto& box : scene.boxes) {
     if (!box.supports) continue;
-    const double places = places_on(box, scene, ability);
-    if (places > 0) state.set({predicate_of(Derived::room), {world.symbol(box.id), kNothing}}, places);
+    for (const auto& [kind, any_arm] : {std::pair{Derived::room, false}, std::pair{Derived::room_for_a_hand, true}}) {
+      const double places = places_on(box, scene, ability, any_arm);
+      if (places > 0) state.set({predicate_of(kind), {world.symbol(box.id), kNothing}}, places);
+    }
   }
   return world;
 }

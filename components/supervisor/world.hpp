@@ -22,15 +22,17 @@ const char* name(Type);
 
 /// What holds between names, beside SPARK's facts.
 enum class Derived : std::uint8_t {
-  hand_empty,  ///< the robot holds nothing
-  room,        ///< surface: places free on it within the robot's reach; its value is how many
-  heavy,       ///< object: too heavy for one hand
-  too_heavy,   ///< object: too heavy for all hands
-  two_hands,   ///< the robot has more than one
-  model,       ///< object, name: what kind of thing it is
-  thing,       ///< name: it is an object of the scene
-  given,       ///< anything: it is not left out
-  same,        ///< two names: they are one
+  hand_empty,       ///< the robot holds nothing
+  room,             ///< surface: places free on it within the robot's reach; its value is how many
+  heavy,            ///< object: too heavy for one hand
+  too_heavy,        ///< object: too heavy for all hands
+  two_hands,        ///< the robot has more than one
+  near_a_hand,      ///< object: within reach of one of the robot's arms, whichever
+  room_for_a_hand,  ///< surface: places free on it within reach of one of them; its value is how many
+  model,            ///< object, name: what kind of thing it is
+  thing,            ///< name: it is an object of the scene
+  given,            ///< anything: it is not left out
+  same,             ///< two names: they are one
 };
 
 struct PredicateSign {
@@ -93,8 +95,13 @@ struct Ability {
   double payload{};  ///< of one hand [kg]; 0: any weight
   int hands{1};
   bool reach_known{false};
-  Vector3 shoulder{Vector3::Zero()};                                ///< world [m]
-  double reach{};                                                   ///< [m]
+  Vector3 shoulder{Vector3::Zero()};  ///< world [m]
+  double reach{};                     ///< [m]
+  struct Arm {
+    Vector3 shoulder{Vector3::Zero()};
+    double reach{};
+  };
+  std::vector<Arm> other_arms{};                                    ///< where reach_known
   double spot{0.2};                                                 ///< a thing on a surface wants a square of this side [m]
   std::function<const ObjectModel*(const std::string&)> objects{};  ///< by name of the model; nullptr: unknown
 };

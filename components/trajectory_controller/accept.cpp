@@ -207,17 +207,24 @@ std::string Controller::go_over(const TrajectoryCommand& command) {
   return {};
 }
 
+Controller::Hand* Controller::find_hand(const std::string& group) {
+  const auto found = std::find_if(hands_.begin(), hands_.end(), [&](const Hand& h) { return h.group == group; });
+  if (found != hands_.end()) return &*found;
+  return group.empty() && !hands_.empty() ? &hands_.front() : nullptr;
+}
+
 std::string Controller::accept(const HandCommand& command, Duration age, TimePoint) {
   if (command.id != 0 && command.id == accepted_hand_) return {};
   last_hand_ = command.id;
   std::string reason = why_not_now(command.robot, command.epoch, age);
-  if (reason.empty()) reason = hand_.accept(command);
-  hand_refused_ = !reason.empty();
-  if (hand_refused_) {
+  Hand* hand = find_hand(command.group);
+  if (reason.empty()) reason = hand == nullptr ? "there is no hand \"" + command.group + "\"" : hand->executor.accept(command);
+  if (hand != nullptr) hand->refused = !reason.empty();
+  if (!reason.empty()) {
     refusal_ = "hand command " + std::to_string(command.id) + ": " + reason;
   } else {
     accepted_hand_ = command.id;
-    if (command.action == HandAction::grasp && (command.payload > 0.0 || payload_ == 0.0)) grasped_payload_ = command.payload;
+    if (command.action == HandAction::grasp && (command.payload > 0.0 || hand->payload == 0.0)) hand->grasped_payload = command.payload;
     refusal_.clear();
   }
   return reason;

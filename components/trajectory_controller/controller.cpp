@@ -19,12 +19,12 @@ constexpr double kBackward = 0.02;    // it runs back
 constexpr int kYieldEvery = 10;       // cycles
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
-HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
+HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot, const Group* fingers) {
   std::vector<int> axes;
   std::vector<double> lower, upper;
   std::vector<char> sliding;
-  if (const Group* group = robot.group("hand"))
-    for (int axis : group->axes) {
+  if (fingers != nullptr)
+    for (int axis : fingers->axes) {
       axes.push_back(axis);
       lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
       upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
@@ -34,12 +34,15 @@ HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot) {
   return {settings, axes, lower, upper, robot.comfort_limits(), robot.stop_limits(), sliding};
 }
 
-/// All axes but those of hand and head.
+/// All axes but those of hands and head.
 std::vector<int> trajectory_axes(const RobotModel& robot) {
   std::vector<char> other(static_cast<std::size_t>(robot.dof()), 0);
-  for (const char* name : {"hand", "head"})
-    if (const Group* group = robot.group(name))
-      for (int axis : group->axes) other[static_cast<std::size_t>(axis)] = 1;
+  const auto leave_out = [&](const Group* group) {
+    if (group == nullptr) return;
+    for (int axis : group->axes) other[static_cast<std::size_t>(axis)] = 1;
+  };
+  for (const Manipulator& hand : hands_of(robot)) leave_out(hand.fingers);
+  leave_out(robot.group("head"));
   std::vector<int> axes;
   for (int i = 0; i < robot.dof(); ++i)
     if (!other[static_cast<std::size_t>(i)]) axes.push_back(i);
@@ -59,7 +62,6 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       part_(static_cast<std::size_t>(robot_->dof()), Part::arm),
       runner_(settings.period),
       movers_(static_cast<std::size_t>(robot_->dof())),
-      hand_(make_hand(settings.hand, *robot_)),
       contact_(settings.contact, trajectory_axes(*robot_)),
       modes_(settings.timeouts) {
   require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
@@ -69,12 +71,16 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   require(settings.late_limit > 0, "late_limit must be above 0");
   for (const Wall& wall : settings.walls) require(std::abs(wall.normal.norm() - 1.0) < 1e-6, "the normal of a wall must have length 1");
   const int n = robot_->dof();
-  const auto mark = [&](const char* group_name, Part part) {
-    if (const Group* group = robot_->group(group_name))
-      for (int axis : group->axes) part_[static_cast<std::size_t>(axis)] = part;
+  const auto mark = [&](const Group* group, Part part) {
+    if (group == nullptr) return;
+    for (int axis : group->axes) part_[static_cast<std::size_t>(axis)] = part;
   };
-  mark("hand", Part::hand);
-  mark("head", Part::head);
+  for (const Manipulator& hand : hands_of(*robot_)) {
+    mark(hand.fingers, Part::hand);
+    hands_.push_back({hand.fingers != nullptr ? hand.fingers->name : "hand", hand.palm, make_hand(settings.hand, *robot_, hand.fingers)});
+  }
+  other_payloads_ = Vector::Zero(hands_.empty() ? 0 : static_cast<Eigen::Index>(hands_.size()) - 1);
+  mark(robot_->group("head"), Part::head);
   arm_axes_ = trajectory_axes(*robot_);
   if (const Group* head = robot_->group("head")) head_axes_ = head->axes;
   head_target_.assign(head_axes_.size(), 0.0);
@@ -110,7 +116,7 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
   next_ = set_point_;
   if (arm_ == Arm::running || rejoin_) give_up_path();
   stand_arm();
-  hand_.reset(set_point_.position);
+  for (Hand& hand : hands_) hand.executor.reset(set_point_.position);
   for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
   head_wanted_ = false;
 }
@@ -416,18 +422,44 @@ void Controller::step_arm(TimePoint now) noexcept {
   if (arm_ == Arm::stopping && resting) arm_ = Arm::standing;
 }
 
-void Controller::step_hand(TimePoint now) noexcept {
-  if (hand_.size() == 0) return;
+double Controller::felt_payload(std::size_t hand) const noexcept {
+  if (hand == 0) return state_.payload;
+  return hand <= state_.other_hands.size() ? state_.other_hands[hand - 1].payload : 0.0;
+}
+
+const Wrench* Controller::felt_wrench(std::size_t hand) const noexcept {
+  if (hand == 0) return &state_.wrist_wrench;
+  return hand <= state_.other_hands.size() ? &state_.other_hands[hand - 1].wrist_wrench : nullptr;
+}
+
+void Controller::step_hands(TimePoint now) noexcept {
+  if (new_state_ && arm_ != Arm::running) robot_->forward(set_point_.position, links_);
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    Hand& hand = hands_[i];
+    const HandState before = hand.executor.state();
+    if (hand.executor.size() > 0) step_hand(hand, now);
+    // What the arm feels changes with what the hand holds.
+    const HandState state = hand.executor.state();
+    if (state == HandState::grasped) hand.payload = hand.grasped_payload;
+    if (state == HandState::empty || state == HandState::released) hand.payload = 0.0;
+    if (state != before) contact_.reset();
+    if (i > 0) other_payloads_[static_cast<Eigen::Index>(i) - 1] = hand.payload;
+  }
+  new_state_ = false;
+}
+
+void Controller::step_hand(Hand& hand, TimePoint now) noexcept {
+  const auto index = static_cast<std::size_t>(&hand - hands_.data());
   HandInputs in;
   in.robot = &state_;
   in.new_state = new_state_;
   in.may_move = verdict_.mode < Mode::hold;
   in.stop = verdict_.mode >= Mode::stop;
   in.person_distance = std::numeric_limits<double>::infinity();
-  if (in.new_state && robot_->tool_link() >= 0) {
-    if (arm_ != Arm::running) robot_->forward(set_point_.position, links_);
-    const Pose T_world_tool = state_.T_world_base * links_[static_cast<std::size_t>(robot_->tool_link())];
-    in.force = T_world_tool.linear() * state_.wrist_wrench.force;
+  in.payload = felt_payload(index);
+  if (in.new_state && hand.palm >= 0) {
+    const Pose T_world_tool = state_.T_world_base * links_[static_cast<std::size_t>(hand.palm)];
+    if (const Wrench* felt = felt_wrench(index)) in.force = T_world_tool.linear() * felt->force;
     const Vector3 p = T_world_tool.translation();
     double torso = std::numeric_limits<double>::infinity();
     for (const PersonPoints& person : points_) {
@@ -439,17 +471,8 @@ void Controller::step_hand(TimePoint now) noexcept {
       }
     }
   }
-  new_state_ = false;
-  hand_.step(in, settings_.period, now, next_);
-  for (int i = 0; i < hand_.size(); ++i) effort_[hand_.axes()[static_cast<std::size_t>(i)]] = hand_.effort(i);
-}
-
-/// What the arm feels changes with what the hand holds.
-void Controller::note_hold(HandState before) noexcept {
-  const HandState state = hand_.state();
-  if (state == HandState::grasped) payload_ = grasped_payload_;
-  if (state == HandState::empty || state == HandState::released) payload_ = 0.0;
-  if (state != before) contact_.reset();
+  hand.executor.step(in, settings_.period, now, next_);
+  for (int i = 0; i < hand.executor.size(); ++i) effort_[hand.executor.axes()[static_cast<std::size_t>(i)]] = hand.executor.effort(i);
 }
 
 void Controller::step_head() noexcept {
@@ -491,7 +514,8 @@ void Controller::aim_away() noexcept {
 void Controller::step_yield(TimePoint now) noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
   const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && exchanging_.empty() &&
-                   state_.mode == DriveMode::enabled && hand_.state() != HandState::moving && settings_.yield_speed > 0.0;
+                   state_.mode == DriveMode::enabled && settings_.yield_speed > 0.0 &&
+                   std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
   // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.
   if (verdict_.mode >= Mode::hold && !held_before_) yield_waits_ = true;
   held_before_ = verdict_.mode >= Mode::hold;
@@ -541,7 +565,7 @@ void Controller::resync(TimePoint now) noexcept {
     if (std::abs(measured - mover.target()) > kDeadBand)
       mover.go_to(measured, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
   }
-  if (hand_.size() > 0) hand_.follow(state_.position);
+  for (Hand& hand : hands_) hand.executor.follow(state_.position);
 }
 
 void Controller::check_last() noexcept {
@@ -558,10 +582,11 @@ void Controller::check_last() noexcept {
     stop_arm();
     for (int axis : arm_axes_) write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
   }
-  if (hand) {
-    hand_.stop_from(set_point_);
-    hand_.advance(settings_.period, next_);
-  }
+  if (hand)
+    for (Hand& each : hands_) {
+      each.executor.stop_from(set_point_);
+      each.executor.advance(settings_.period, next_);
+    }
   if (head)
     for (int axis : head_axes_) {
       movers_[static_cast<std::size_t>(axis)].take_over(sent(axis), limits_of(robot_->stop_limits(), axis));
@@ -606,9 +631,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   resync(now);
   step_yield(now);
   step_arm(now);
-  const HandState held = hand_.state();
-  step_hand(now);
-  note_hold(held);
+  step_hands(now);
   step_head();
   check_last();
   measure(set_point_, next_, robot_->guard_limits(), settings_.period, shares_);
@@ -619,8 +642,9 @@ bool Controller::step(TimePoint now, bool late) noexcept {
 MotionState Controller::told_motion() const noexcept { return refused_ ? MotionState::refused : motion_; }
 
 StatusKey Controller::status_key() const {
-  return {verdict_.mode, go_.epoch,     refused_ ? refused_trajectory_ : accepted_trajectory_,
-          last_hand_,    told_motion(), hand_refused_ ? HandState::refused : hand_.state()};
+  std::uint64_t hands = 0;
+  for (const Hand& hand : hands_) hands = hands << 8 | static_cast<std::uint64_t>(told_hand(hand));
+  return {verdict_.mode, go_.epoch, refused_ ? refused_trajectory_ : accepted_trajectory_, last_hand_, told_motion(), hands};
 }
 
 ExecutionStatus Controller::status() const {
@@ -638,8 +662,11 @@ ExecutionStatus Controller::status() const {
     s.progress = std::clamp((runner_.time() - begin) / (runner_.duration() - begin), 0.0, 1.0);
   }
   s.hand_command = last_hand_;
-  s.hand = hand_refused_ ? HandState::refused : hand_.state();
-  s.pull = hand_.pull();
+  if (!hands_.empty()) {
+    s.hand = told_hand(hands_.front());
+    s.pull = hands_.front().executor.pull();
+  }
+  for (std::size_t i = 1; i < hands_.size(); ++i) s.other_hands.push_back({hands_[i].group, told_hand(hands_[i])});
   if (!refusal_.empty()) {
     s.reason = refusal_;
   } else if (verdict_.mode >= Mode::hold) {
@@ -671,7 +698,9 @@ ActiveTrajectory Controller::active() const {
   a.position = set_point_.position;
   a.velocity = set_point_.velocity;
   a.acceleration = set_point_.acceleration;
-  if (hand_.state() != HandState::released) a.attachment = piece().attachment;
+  const auto holds = std::find_if(hands_.begin(), hands_.end(), [&](const Hand& h) { return h.group == piece().attachment.hand; });
+  const Hand* holder = holds != hands_.end() ? &*holds : hands_.empty() ? nullptr : &hands_.front();
+  if (holder == nullptr || holder->executor.state() != HandState::released) a.attachment = piece().attachment;
   if (arm_ != Arm::running) return a;
   a.trajectory = piece().id;
   a.time = runner_.time();

@@ -11,6 +11,7 @@
 #include "common/messages/execution.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/task.hpp"
+#include "common/model/manipulator.hpp"
 #include "components/trajectory_controller/axis_mover.hpp"
 #include "components/trajectory_controller/contact_watch.hpp"
 #include "components/trajectory_controller/guard.hpp"
@@ -54,7 +55,7 @@ struct StatusKey {
   Mode mode{};
   std::uint64_t epoch{}, trajectory{}, hand_command{};
   MotionState motion{};
-  HandState hand{};
+  std::uint64_t hands{};  ///< HandState of each hand, a byte each
   bool operator==(const StatusKey&) const = default;
 };
 
@@ -85,7 +86,9 @@ class Controller {
 
   const MotionState3& set_point() const { return set_point_; }  ///< all axes
   const Vector& effort() const { return effort_; }              ///< likewise, what the motors give besides following it [Nm]
-  double payload() const { return payload_; }                   ///< mass of what the hand holds; 0: nothing or unknown [kg]
+  /// Mass of what the first hand holds; 0: nothing or unknown [kg].
+  double payload() const { return hands_.empty() ? 0.0 : hands_.front().payload; }
+  const Vector& other_payloads() const { return other_payloads_; }  ///< likewise of the others, in the order of hands_of()
   Mode mode() const { return verdict_.mode; }
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
@@ -117,6 +120,14 @@ class Controller {
     Vector3 torso, left_hand, right_hand;  // world
   };
 
+  struct Hand {
+    std::string group;  // of its axes
+    int palm{-1};       // link
+    HandExecutor executor;
+    bool refused{};  // the last command to it
+    double grasped_payload{}, payload{};
+  };
+
   std::string why_not(const TrajectoryCommand& command, Duration age) const;
   std::string why_not_now(const std::string& robot, std::uint64_t epoch, Duration age) const;
   std::string why_not_from_rest(const TrajectoryCommand& command) const;
@@ -145,8 +156,12 @@ class Controller {
   double cost_share() const noexcept;
   ModeInputs mode_inputs(TimePoint now, bool late) noexcept;
   void step_arm(TimePoint now) noexcept;
-  void step_hand(TimePoint now) noexcept;
-  void note_hold(HandState before) noexcept;
+  void step_hands(TimePoint now) noexcept;
+  void step_hand(Hand& hand, TimePoint now) noexcept;
+  double felt_payload(std::size_t hand) const noexcept;
+  const Wrench* felt_wrench(std::size_t hand) const noexcept;
+  HandState told_hand(const Hand& hand) const noexcept { return hand.refused ? HandState::refused : hand.executor.state(); }
+  Hand* find_hand(const std::string& group);
   void step_head() noexcept;
   void step_yield(TimePoint now) noexcept;
   void aim_away() noexcept;
@@ -202,11 +217,10 @@ class Controller {
   bool refused_{};                         // is told instead
   int refused_for_{};                      // cycles still; 0: until something is accepted
 
-  // Hand and head.
-  HandExecutor hand_;
+  // Hands and head.
+  std::vector<Hand> hands_;
+  Vector other_payloads_;
   std::uint64_t last_hand_{}, accepted_hand_{};
-  bool hand_refused_{};
-  double grasped_payload_{}, payload_{};
   std::vector<double> head_target_;
   bool head_wanted_{}, head_paused_{};
 

@@ -195,13 +195,13 @@ void HandExecutor::squeeze(const RobotState& robot, double dt) noexcept {
   phase_ = Phase::hold;
 }
 
-void HandExecutor::judge(const RobotState& robot, double dt) noexcept {
+void HandExecutor::judge(const RobotState& robot, double payload, double dt) noexcept {
   if (phase_ == Phase::closing || phase_ == Phase::seeking || phase_ == Phase::squeezing) return;
   if (phase_ == Phase::loosened) return;
   if (phase_ == Phase::hold) {
     if (state_ != HandState::grasped) return;
-    if (robot.payload > 2.0 * settings_.lost_payload) payload_felt_ = true;
-    lost_for_ = payload_felt_ && robot.payload < settings_.lost_payload ? lost_for_ + dt : 0.0;
+    if (payload > 2.0 * settings_.lost_payload) payload_felt_ = true;
+    lost_for_ = payload_felt_ && payload < settings_.lost_payload ? lost_for_ + dt : 0.0;
     if (lost_for_ >= settings_.lost_time) state_ = HandState::empty;
     return;
   }
@@ -269,7 +269,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
     if (phase_ == Phase::squeezing) squeeze(robot, dt);
     change_level(dt);
     if (release_.armed() && in.new_state) watch_release(in, now);
-    judge(robot, dt);
+    judge(robot, in.payload, dt);
   }
   advance(dt, out);
 }

@@ -35,6 +35,7 @@ struct HandSettings {
 struct HandInputs {
   const RobotState* robot{};        ///< latest, never null
   bool new_state{};                 ///< robot has come since the last step
+  double payload{};                 ///< that this hand feels [kg]
   Vector3 force{Vector3::Zero()};   ///< on the hand, world axes [N]
   Vector3 toward{Vector3::Zero()};  ///< unit vector from the hand to the exchanging person, zero if unknown
   double person_distance{};         ///< from the hand to the nearest hand of a person [m]; +inf if nobody
@@ -94,7 +95,7 @@ class HandExecutor {
   void seek(const RobotState& robot, double dt) noexcept;
   void squeeze(const RobotState& robot, double dt) noexcept;
   void change_level(double dt) noexcept;
-  void judge(const RobotState& robot, double dt) noexcept;
+  void judge(const RobotState& robot, double payload, double dt) noexcept;
   int pressing(const RobotState& robot) const noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;
 

@@ -35,6 +35,7 @@ void Node::tick(TimePoint now) {
     command_.acceleration = core_.set_point().acceleration;
     command_.effort = core_.effort();
     command_.payload = core_.payload();
+    command_.other_payloads = core_.other_payloads();
     command_out_->publish(command_);
   }
   late_before_ = late;

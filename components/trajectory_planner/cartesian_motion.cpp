@@ -122,13 +122,26 @@ class CartesianPlanning {
     if (!arm_) return refuse(ik::SrsArm::why_none(group_));
     motion_.axes = group_.axes;
     motion_.axes.insert(motion_.axes.end(), request_.also.begin(), request_.also.end());
+    if (!join()) return false;
     world_.set_moving_axes(axes_that_move());
     if (const CollisionVerdict verdict = world_.check(request_.start); !verdict.free)
       return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
     return true;
   }
 
-  /// Those of the arm, and further ones that some node has elsewhere.
+  bool join() {
+    if (!request_.joined) return true;
+    for (const int axis : request_.joined->arm->axes)
+      if (std::count(motion_.axes.begin(), motion_.axes.end(), axis) > 0)
+        return refuse("the arm " + request_.joined->arm->name + " cannot follow itself, nor axes that are active");
+    joined_.emplace(robot_, *request_.joined, request_.start);
+    if (std::string why = joined_->objection(chain_->forward(RobotModel::part(request_.start, group_), nullptr)); !why.empty())
+      return refuse(why);
+    motion_.axes.insert(motion_.axes.end(), joined_->axes().begin(), joined_->axes().end());
+    return true;
+  }
+
+  /// Those of the arm and the one that follows it, and further ones that some node has elsewhere.
   std::vector<int> axes_that_move() const {
     std::vector<int> axes = group_.axes;
     for (std::size_t i = 0; i < request_.also.size(); ++i)
@@ -136,6 +149,7 @@ class CartesianPlanning {
             return node.also[static_cast<Eigen::Index>(i)] != request_.start[request_.also[i]];
           }))
         axes.push_back(request_.also[i]);
+    if (joined_) axes.insert(axes.end(), joined_->axes().begin(), joined_->axes().end());
     return axes;
   }
 
@@ -427,13 +441,14 @@ class CartesianPlanning {
   Vector whole(const ik::Axes& q, const Vector& also) const {
     Vector all = RobotModel::with(request_.start, group_, q);
     for (std::size_t i = 0; i < request_.also.size(); ++i) all[request_.also[i]] = also[static_cast<Eigen::Index>(i)];
+    if (joined_) all(joined_->axes()) = joined_->joints();
     return all;
   }
 
   /// A corner is followed from its node's posture both ways.
   bool corner_free(const Trajectory& corner) const {
     const std::size_t node = node_of(corner);
-    if (node == 0) return false;
+    if (node == 0 || joined_) return false;
     for (std::size_t i = 0; i < request_.also.size(); ++i) {
       const Axis& axis = robot_.axes()[static_cast<std::size_t>(request_.also[i])];
       const AxisExtremes e = extremes(corner.axes[kElbow + i]);
@@ -496,6 +511,7 @@ class CartesianPlanning {
     }
     const int steps = std::max(4, static_cast<int>(std::ceil(lasts / settings_.period - 1e-9)));
     ik::Axes q = RobotModel::part(request_.start, group_);
+    if (joined_) joined_->restart();
     const SegmentTable table(path.active_);
     MotionState3 state = path.active_.at(0);
     int cursor = 0;
@@ -515,9 +531,14 @@ class CartesianPlanning {
         why = "on the way to " + of_node(ahead(t)) + " what is held leans over too far";
       } else if (!advance(T, state.position[kTool], also, q)) {
         why = why_stopped(ahead(t), T, state.position[kTool], also, q);
+      } else if (std::string arm; joined_ && !joined_->follow(T, settings_.largest_step, arm)) {
+        why = "on the way to " + of_node(ahead(t)) + " " + arm;
       } else {
         Vector sample(static_cast<Eigen::Index>(motion_.axes.size()));
-        sample << q, also;
+        if (joined_)
+          sample << q, also, joined_->joints();
+        else
+          sample << q, also;
         motion_.samples.push_back(std::move(sample));
         postures.push_back(whole(q, also));
       }
@@ -565,6 +586,21 @@ class CartesianPlanning {
       if (!motion_.executable.approximation.ok() || inside_limits(motion_.executable.approximation.trajectory)) break;
     }
     if (!motion_.executable.approximation.ok()) refuse(motion_.executable.approximation.reason);
+    if (joined_ && motion_.executable.approximation.ok()) measure_join();
+  }
+
+  void measure_join() {
+    const Trajectory& run = motion_.executable.approximation.trajectory;
+    const int looks = std::max(1, static_cast<int>(std::ceil(run.duration() / (4 * settings_.period))));
+    for (int k = 0; k <= looks; ++k) {
+      const Vector q = run.at(run.duration() * k / looks).position;
+      const JoinError e = joined_->error(chain_->forward(q.head(static_cast<Eigen::Index>(group_.axes.size())), nullptr),
+                                         q.tail(static_cast<Eigen::Index>(joined_->axes().size())));
+      motion_.joined = {std::max(motion_.joined.apart, e.apart), std::max(motion_.joined.turned, e.turned)};
+    }
+    if (motion_.joined.apart > settings_.most_apart.apart || motion_.joined.turned > settings_.most_apart.turned)
+      refuse(text("the hands would come %.2f mm and %.2f degrees apart on the way", 1e3 * motion_.joined.apart,
+                  motion_.joined.turned * 180 / M_PI));
   }
 
   bool inside_limits(const Trajectory& trajectory) const {
@@ -583,6 +619,7 @@ class CartesianPlanning {
   const CartesianSettings& settings_;
   std::optional<ik::Chain> chain_;
   std::optional<ik::SrsArm> arm_;
+  std::optional<ClosedChain> joined_;
   std::vector<std::size_t> given_;  // of each node, its number in the request; the start is 0
   std::vector<ik::Axes> postures_;  // at the nodes
   std::vector<double> times_;

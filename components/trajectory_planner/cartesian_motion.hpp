@@ -11,6 +11,7 @@
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/approximate.hpp"
 #include "common/trajectory/smooth.hpp"
+#include "components/trajectory_planner/closed_chain.hpp"
 #include "components/trajectory_planner/speed_along.hpp"
 
 namespace handsel::trajectory_planner {
@@ -35,8 +36,9 @@ struct CartesianRequest {
                                          ///< on its platform (common/model/platform.hpp) x, y, heading too
   std::vector<CartesianWaypoint> nodes;  ///< after the start
   std::optional<HeldLevel> level{};
-  double speed_scale{1};       ///< (0, 1] on all velocity limits
-  const SpeedAlong* people{};  ///< lowers those of the active axes along the way; null: nobody is there
+  std::optional<JoinedArm> joined{};  ///< follows; every node is then a stop
+  double speed_scale{1};              ///< (0, 1] on all velocity limits
+  const SpeedAlong* people{};         ///< lowers those of the active axes along the way; null: nobody is there
 };
 
 struct RateBounds {
@@ -53,6 +55,7 @@ struct CartesianSettings {
   double collision_step{0.01};             ///< postures are judged this often [rad, max norm]
   int elbows{24};                          ///< angles tried at a node that leaves its elbow open
   ApproximationTolerance tolerance{2e-4, 1e-2};
+  JoinError most_apart{1e-3, 3.5e-3};  ///< of joined tips: beyond it the motion is refused
 };
 
 /// TR: the smoothed trajectory of the active axes and how to read poses from it. The rotation vector is counted on from leg to leg: on a
@@ -91,7 +94,8 @@ struct CartesianMotion {
   std::vector<std::size_t> given;     ///< of each node of `path` the number in the request; the start is 0
   std::vector<SpeedZones> speeds;     ///< of each leg of `path`, because of people; empty: nobody is there
   double cost{};                      ///< largest human-aware cost on the way, [0, 1]
-  std::vector<int> axes;              ///< robot axes of what follows: those of the arm, then the further ones
+  std::vector<int> axes;              ///< robot axes of what follows: those of the arm, the further ones, then those of the joined arm
+  JoinError joined{};                 ///< largest on the way, of TR_app
   std::vector<Vector> samples;        ///< positions at each period of `path`
   Executable executable;              ///< TR_app, inside the comfort limits of the robot
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/model/manipulator.hpp"
 #include "common/trajectory/limits_check.hpp"
 
 namespace handsel::trajectory_planner {
@@ -36,7 +37,8 @@ double extent_of(const Link& link) {
 Vector longest_levers(const RobotModel& robot) {
   std::vector<double> extent;
   for (const Link& link : robot.links()) extent.push_back(extent_of(link));
-  if (robot.tool_link() >= 0) extent[static_cast<std::size_t>(robot.tool_link())] += kHeld;
+  for (const Manipulator& hand : hands_of(robot))
+    if (hand.palm >= 0) extent[static_cast<std::size_t>(hand.palm)] += kHeld;
   Vector levers = Vector::Zero(robot.dof());
   std::vector<double> from_joint(robot.links().size());
   for (const Joint& joint : robot.joints()) {

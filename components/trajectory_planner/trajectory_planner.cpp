@@ -19,6 +19,11 @@ std::string why_bad(const RobotModel& robot, const TrajectoryRequest& request) {
     return "the start has " + std::to_string(request.start.size()) + " axes, the robot " + std::to_string(robot.dof());
   }
   if (!request.start.allFinite()) return "the start has a number that is not finite";
+  if (!request.follower.empty()) {
+    const Group* follower = robot.group(request.follower);
+    if (follower == nullptr || follower->tip < 0) return "the robot has no arm \"" + request.follower + "\" that could follow";
+    if (request.poses.empty()) return "an arm can only follow a motion of the tool, the request is one of joints";
+  }
   if (!request.poses.empty()) return group->tip < 0 ? "the group \"" + request.group + "\" has no tip" : std::string{};
   if (request.nodes.empty()) return "there are no nodes";
   for (const Vector& node : request.nodes) {
@@ -137,6 +142,7 @@ void plan_tool(const RobotModel& robot, const Group& group, CollisionWorld& worl
   for (const TipNode& node : request.poses)
     wanted.nodes.push_back({T_base_world * node.T_world_tip, node.has_elbow ? std::optional(node.elbow) : std::nullopt, node.also});
   if (request.upright) wanted.level = HeldLevel{request.upright_axis, T_base_world.linear() * Vector3::UnitZ(), request.most_tilt};
+  if (!request.follower.empty()) wanted.joined = JoinedArm{robot.group(request.follower), request.T_tip_follower};
   CartesianMotion motion = plan_cartesian(robot, group, world, wanted, settings.tool);
   TrajectoryReply& reply = result.reply;
   reply.solved = motion.solved;

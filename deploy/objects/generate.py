@@ -158,8 +158,30 @@ def can():
              [f"cylinder {{ radius: {R} length: {H} }}"])
 
 
+def merge(mesh, other, x, y, z):
+    """Adds a body that is closed by itself; where bodies overlap they are one thing."""
+    before = len(mesh.vertices)
+    mesh.vertices += [(a + x, b + y, c + z) for a, b, c in other.vertices]
+    mesh.faces += [tuple(i + before for i in f) for f in other.faces]
+
+
+def tray():
+    length, width, thick = 0.56, 0.26, 0.02
+    apart, R, H, sunk = 0.235, 0.030, 0.16, 0.01
+    plate, post = -H / 2, thick / 2 - sunk  # middles
+    mesh = block(length, width, thick)
+    mesh.vertices = [(x, y, z + plate) for x, y, z in mesh.vertices]
+    profile = [(0, -H / 2), (R, -H / 2), (R, H / 2), (0, H / 2)]
+    for side in (1, -1):
+        merge(mesh, revolve(profile), side * apart, 0, post)
+    describe("tray", "A laden tray with a post to hold at either end, along x.", mesh, 3.0, 0.6,
+             [f"{at(0, 0, plate)} box {{ x: {length} y: {width} z: {thick} }}"] +
+             [f"{at(side * apart, 0, post)} cylinder {{ radius: {R} length: {H} }}" for side in (1, -1)], (0, 0, plate + 0.02))
+
+
 mug()
 bottle()
 can()
+tray()
 describe("box", "A small carton.", block(0.055, 0.085, 0.13), 0.25, 0.6, ["box { x: 0.055 y: 0.085 z: 0.13 }"])
 describe("ball", "A rubber ball.", ball(0.036), 0.15, 0.8, ["sphere: 0.036"])

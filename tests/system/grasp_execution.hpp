@@ -143,6 +143,7 @@ class Execution {
     if (fingers_) {
       trajectory_controller::HandInputs in;
       in.robot = &state_;
+      in.payload = state_.payload;
       in.new_state = in.may_move = true;
       in.person_distance = std::numeric_limits<double>::infinity();
       fingers_->step(in, kDt, TimePoint{} + from_seconds(world_.time()), fingers_out_);

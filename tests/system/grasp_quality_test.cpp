@@ -82,7 +82,7 @@ class Rig {
       sim::own(*body_->collider(i), sim::Owner::robot, i);
       body_->collider(i)->setContactProcessingThreshold(0.001);
     }
-    contact_ = std::make_unique<sim::RobotGrasp>(robot, *body_, settings.touch_force, settings.grasp_time, settings.lose_time);
+    contact_ = std::make_unique<sim::RobotGrasp>(robot.tool_link(), *body_, settings.touch_force, settings.grasp_time, settings.lose_time);
     object_ = std::make_unique<sim::ObjectBody>(sim::StartObject{"it", object.name, &object, base * grasp.T_object_hand.inverse()}, 0,
                                                 shapes_, dynamics_);
     body_->read();
@@ -143,6 +143,7 @@ class Rig {
   void tick(const Vector3& weight) {
     trajectory_controller::HandInputs in;
     in.robot = &state_;
+    in.payload = state_.payload;
     in.new_state = in.may_move = true;
     in.person_distance = std::numeric_limits<double>::infinity();
     fingers_->step(in, kDt, TimePoint{} + from_seconds(++ticks_ * kDt), out_);

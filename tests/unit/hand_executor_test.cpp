@@ -45,6 +45,7 @@ class HandTest : public testing::Test {
       }
       HandInputs in;
       in.robot = &robot_;
+      in.payload = robot_.payload;
       in.new_state = true;
       in.force = force_ + noise(k);
       in.toward = Vector3::UnitX();
@@ -121,6 +122,7 @@ TEST(SlidingHand, closes_until_it_presses_and_tells_metres) {
     robot.effort[0] = kSpring * (out.position[0] - robot.position[0]) + hand.effort(0);
     HandInputs in;
     in.robot = &robot;
+    in.payload = robot.payload;
     in.new_state = in.may_move = true;
     hand.step(in, kDt, now, out);
     now += from_seconds(kDt);

@@ -79,7 +79,7 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
     world.set_attachment(held, {"mug"});
     found = (p - Vector3(0.7, 0, 0.9)).cwiseAbs().maxCoeff() < 0.1 && world.is_free(q);
   }
-  Putting putting(world, robot_, scene_.T_world_base, places(), 0.1);
+  Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, places(), 0.1);
   int reached = 0;
   for (const Pose& T : places()) {
     const auto posture = putting.at(T, q, held);
@@ -95,7 +95,7 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   EXPECT_GT(reached, 3);
   Pose inside = places(1).front();
   inside.translation().z() -= 0.2;
-  Putting into(world, robot_, scene_.T_world_base, {inside}, 0.1);
+  Putting into(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {inside}, 0.1);
   EXPECT_TRUE(into.anywhere(q, held, 1).empty());
   EXPECT_FALSE(into.objections().empty());
 }

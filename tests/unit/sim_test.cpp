@@ -121,7 +121,7 @@ TEST(SimGrasp, TwoPointsDoNotHoldButTwoPatchesOrThreePointsDo) {
   btMultiBodyDynamicsWorld dynamics(&dispatcher, &broadphase, &solver, &configuration);
   ShapeStore shapes;
   RobotBody robot(jido(), Pose::Identity(), start(), ServoSettings{}, PadSettings{}, dynamics, shapes, kRobot, kObject);
-  RobotGrasp grasp(jido(), robot, 0.2, 0.02, 0.05);
+  RobotGrasp grasp(jido().tool_link(), robot, 0.2, 0.02, 0.05);
   const int palm = grasp.palm();
   const auto touch = [&](double angle, double force, double torsion) {
     const Vector3 outward(std::cos(angle), std::sin(angle), 0);

@@ -1,0 +1,181 @@
+// Two hands at once on what is too heavy for one, a closed chain: up, over and down, level on the way.
+#include <algorithm>
+
+#include "components/manipulation_planner/manipulation_planner.hpp"
+
+namespace handsel::manipulation_planner {
+
+namespace {
+
+constexpr double kMostTilt = 0.05;  // of what is carried, as planned [rad]
+constexpr double kTogether = 0.5;   // speed scale of two arms in a closed chain
+constexpr double kForever = 600;    // [s]
+
+}  // namespace
+
+Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
+  const std::string object_id = goal.object;
+  if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
+  status_.phase = "looking for the object";
+  const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
+  if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
+  const ObjectModel* model = model_of(object_id);
+  if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
+  Outcome rested = co_await others_to_rest();
+  if (!rested.good) co_return rested;
+
+  RegraspSteps plan;
+  plan.outcome = Outcome::failure("there is no free place on a surface called " + goal.surface);
+  const std::vector<Pose> places = places_for(goal, *object(object_id), *model);
+  for (const Pose& place : places) {
+    plan = co_await ask_regrasp(object_id, place, true);
+    if (plan.outcome.good) break;
+  }
+  if (!plan.outcome.good) co_return plan.outcome;
+  if (plan.steps.size() != 3) co_return Outcome::failure("the grasp planner did not say how two hands take " + object_id);
+  const RegraspStep first = plan.steps[0], second = plan.steps[1], down = plan.steps[2];
+
+  Outcome done = co_await take_together(object_id, first, second);
+  if (!done.good) co_return done;
+  done = co_await use_arm(first.to);
+  if (!done.good) co_return done;
+  status_.phase = "lift";
+  const auto raised = [this](Pose T, double by) {
+    T.translation().z() += by;
+    return T;
+  };
+  const Pose T_start = object(object_id)->T_world_object;
+  std::vector<Pose> up{raised(T_start, settings_.lift_height())};
+  done = co_await move_together(object_id, second.to, up);
+  if (done.good) {
+    status_.phase = "carry";
+    std::vector<Pose> over{raised(down.T_world_object, settings_.lift_height()), raised(down.T_world_object, kAbovePlace)};
+    done = co_await move_together(object_id, second.to, over);
+    // Where it cannot go over it goes back down.
+    if (!done.good) {
+      status_.phase = "put back";
+      refuse("carry", done.reason);
+      std::vector<Pose> back{raised(T_start, kAbovePlace)};
+      Outcome lowered = co_await move_together(object_id, second.to, back);
+      if (!lowered.good) co_return lowered;
+    }
+  }
+  // Off as they came: what each hand's stand-off is from its grasp holds wherever it was put down.
+  const Outcome carried = done;
+  const std::vector<std::string> arms{first.to, second.to};
+  for (const std::string& arm : arms) {
+    done = co_await use_arm(arm);
+    if (!done.good) co_return done;
+    status_.phase = "letting go";
+    HandResult opened = co_await hand(HandAction::release, RobotModel::part(down.after, fingers_), settings_.hand_timeout());
+    if (!opened.outcome.good) co_return opened.outcome;
+  }
+  release_object();
+  for (const std::string& arm : arms) {
+    done = co_await use_arm(arm);
+    if (done.good) done = co_await let_go(object_id, down.q, down.after);
+    if (!done.good) co_return done;
+  }
+  done = co_await rest_all();
+  if (!done.good) refuse("to rest", done.reason);
+  co_return carried;
+}
+
+/// Both hands open about their grasps, then one after the other closed.
+Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id, const RegraspStep& first, const RegraspStep& second) {
+  const std::vector<const RegraspStep*> steps{&first, &second};
+  for (const RegraspStep* step : steps) {
+    Outcome done = co_await use_arm(step->to);
+    if (!done.good) co_return done;
+    const std::optional<Grasp> grasp = aimed(object_id, step->grasp);
+    if (!grasp) co_return Outcome::failure(step->to + " does not reach " + object_id + " where it stands now");
+    status_.phase = "opening the hand";
+    HandResult open = co_await hand(HandAction::move, grasp->pregrasp_joints, settings_.hand_timeout());
+    if (!open.outcome.good) co_return open.outcome;
+    Motion approach;
+    approach.phase = "approach";
+    approach.goals = {grasp->approach_joints};
+    done = co_await move(approach);
+    if (!done.good) co_return done;
+    Motion reach_object;
+    reach_object.phase = "reaching the object";
+    reach_object.straight = true;
+    reach_object.goals = {grasp->arm_joints};
+    reach_object.allowed = {object_id};
+    reach_object.speed = settings_.approach_speed();
+    done = co_await move(reach_object);
+    if (!done.good) co_return done;
+  }
+  for (const RegraspStep* step : steps) {
+    Outcome done = co_await use_arm(step->to);
+    if (done.good) done = co_await grip(step->grasp, 0.5);
+    if (!done.good) co_return done;
+  }
+  co_await waiting_.pause(settings_.settle_time());
+  Outcome done = co_await use_arm(first.to);
+  if (!done.good) co_return done;
+  const SceneObject* held = object(object_id);
+  if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
+  hold(*held);
+  grasp_ = first.grasp;
+  co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::grip(const Grasp& grasp, double share_of_mass) {
+  status_.phase = "grasp";
+  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout(), &grasp.hand_effort, share_of_mass);
+  if (!closed.outcome.good) co_return closed.outcome;
+  if (closed.state != HandState::grasped) co_return Outcome::failure("the hand " + fingers_.name + " closed on nothing");
+  co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id, const std::string& follower,
+                                                    const std::vector<Pose>& T_world_object) {
+  const auto other = std::find_if(hands_.begin(), hands_.end(), [&](const Manipulator& m) { return m.name == follower; });
+  if (other == hands_.end()) co_return Outcome::failure("there is no arm " + follower);
+  const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
+  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+  Motion together;
+  together.allowed = {object_id};
+  together.speed = kTogether;
+  const Vector start = posture();
+  TrajectoryRequest request = trajectory_request({}, start, together);
+  for (const Pose& T : T_world_object) {
+    TipNode node;
+    node.T_world_tip = T * attachment_.T_tool_object.inverse();
+    request.poses.push_back(node);
+  }
+  request.follower = follower;
+  request.T_tip_follower = robot_->link_pose(start, palm_).inverse() * robot_->link_pose(start, other->palm);
+  request.upright = true;
+  request.upright_axis = attachment_.T_tool_object.linear() * Vector3::UnitZ();
+  request.most_tilt = kMostTilt;
+  for (double waited = 0; !trajectory_reply_ && waited < settings_.request_timeout(); waited += settings_.request_retry()) {
+    out_->trajectory_requests.push_back(request);
+    co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
+  }
+  if (!trajectory_reply_) co_return Outcome::failure("the trajectory planner does not answer");
+  if (!trajectory_reply_->solved) co_return Outcome::failure("both hands together: " + trajectory_reply_->reason);
+  TrajectoryCommand command = command_for(trajectory_reply_->trajectory, together);
+  command.axes = trajectory_reply_->axes;
+  Outcome run = co_await run_to_end(command);
+  co_return run;
+}
+
+Routine<Outcome> ManipulationPlanner::run_to_end(const TrajectoryCommand& command) {
+  Outcome heard = co_await send(command);
+  if (!heard.good) co_return heard;
+  const std::uint64_t id = command.id;
+  co_await waiting_.until(
+      [this, id] {
+        return execution_->trajectory != id || (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
+      },
+      kForever);
+  if (execution_->trajectory != id) co_return Outcome::failure("the trajectory controller lost the trajectory");
+  if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
+  if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);
+  co_await waiting_.until([this] { return at_rest(); }, 1.0);
+  co_return Outcome{};
+}
+
+}  // namespace handsel::manipulation_planner
