@@ -16,9 +16,8 @@ constexpr double kForever = 600;    // [s]
 Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   const std::string object_id = goal.object;
   if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
-  status_.phase = "looking for the object";
-  const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
-  if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
+  Outcome stands = co_await wait_standing(object_id);
+  if (!stands.good) co_return stands;
   const ObjectModel* model = model_of(object_id);
   if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   Outcome rested = co_await others_to_rest();

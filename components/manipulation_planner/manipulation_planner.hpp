@@ -177,6 +177,8 @@ class ManipulationPlanner {
   Routine<Outcome> use_arm(const std::string& arm);
   Routine<RegraspSteps> ask_regrasp(const std::string& object, const Pose& T_world_goal, bool both);
   Routine<Outcome> regrasp(const ActionGoal& goal);
+  /// Until the scene has it standing somewhere, for a moment: what was just put down may still seem to be held.
+  Routine<Outcome> wait_standing(const std::string& object);
   /// Where the object can stand: where the goal says, else free places on its surface, the nearest to an arm first.
   std::vector<Pose> places_for(const ActionGoal& goal, const SceneObject& object, const ObjectModel& model) const;
   Routine<Outcome> pass(const std::string& object, const RegraspStep& step);

@@ -148,12 +148,25 @@ std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const 
   return out;
 }
 
-Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
-  const std::string object_id = goal.object;
-  if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
+Routine<Outcome> ManipulationPlanner::wait_standing(const std::string& object_id) {
   status_.phase = "looking for the object";
   const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
+  const auto stands = [this, &object_id] {
+    const SceneObject* thing = object(object_id);
+    return thing != nullptr && thing->holder != Holder::robot && thing->holder != Holder::human;
+  };
+  const bool free = co_await waiting_.until(stands, settings_.sight_timeout());
+  if (!free) co_return Outcome::failure(object_id + " is held: it must stand first");
+  co_await waiting_.pause(settings_.settle_time());
+  co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
+  const std::string object_id = goal.object;
+  if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
+  Outcome stands = co_await wait_standing(object_id);
+  if (!stands.good) co_return stands;
   const ObjectModel* model = model_of(object_id);
   if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   RegraspSteps plan;
