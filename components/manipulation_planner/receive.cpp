@@ -44,7 +44,7 @@ std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std
 bool ManipulationPlanner::strayed(const Motion& motion) const {
   if (motion.aims_at.empty()) return false;
   const SceneObject* aim = object(motion.aims_at);
-  if (aim == nullptr) return true;
+  if (aim == nullptr || (motion.follows && aim->holder == Holder::robot)) return true;
   const double shifted = (aim->T_world_object.translation() - motion.p_world_aim).norm();
   if (!motion.follows) return shifted > motion.aim_slack;
   const double ahead = (aim->T_world_object.translation() - T_world_tool().translation()).norm() - kHandLength;
@@ -189,13 +189,22 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
 
   Outcome last;
   const auto steady = [this, &object_id, &giver] { return offered(object_id, giver).has_value(); };
+  // Who is eager puts it into the open hand.
+  const auto put_into_hand = [this, &object_id] {
+    const SceneObject* given = object(object_id);
+    return given != nullptr && given->holder == Holder::robot;
+  };
   bool there = false;
   for (int aims = 0; aims < kMostAims && !there; ++aims) {
     status_.exchange_engaged = true;
     approach = approach_to(object_id, giver, *grasp);
     last = co_await move(approach);
+    if (there = put_into_hand(); there) break;
     if (!last.good && !last.strayed) break;
-    const bool offers = co_await waiting_.until(steady, settings_.sight_timeout());
+    const bool settled =
+        co_await waiting_.until([&steady, &put_into_hand] { return steady() || put_into_hand(); }, settings_.sight_timeout());
+    if (there = put_into_hand(); there) break;
+    const bool offers = settled && steady();
     last = offers ? out_of_reach : Outcome::failure(giver + " has drawn " + object_id + " back");
     last.strayed = !offers;
     grasp = offers ? aimed(object_id, chosen) : std::nullopt;
@@ -234,7 +243,9 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   Outcome moved;
 
   status_.phase = "grasp";
-  HandResult closed = co_await hand(HandAction::grasp, grasp->hand_joints, settings_.hand_timeout(), &grasp->hand_effort);
+  // What lies in the hand otherwise than planned is pressed on where the fingers are.
+  const Vector closing = put_into_hand() ? RobotModel::part(set_point_, robot_->require_group("hand")) : grasp->hand_joints;
+  HandResult closed = co_await hand(HandAction::grasp, closing, settings_.hand_timeout(), &grasp->hand_effort);
   if (!closed.outcome.good || closed.state != HandState::grasped) {
     const Outcome why = closed.outcome.good ? Outcome::failure("the hand closed on nothing") : closed.outcome;
     moved = co_await back_off(object_id, giver, *grasp, why);

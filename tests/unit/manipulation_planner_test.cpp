@@ -501,6 +501,23 @@ TEST(ManipulationPlanner, ForeseesWhenTheObjectChangesHands) {
   EXPECT_FALSE(std::isfinite(rig.planner.status().time_to_exchange)) << "it is over";
 }
 
+TEST(ManipulationPlanner, WhatIsPutIntoTheOpenHandOnItsWayIsHeldAtOnce) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  for (int i = 0; i < 1500 && rig.planner.status().phase != "approach"; ++i) rig.cycle();
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  rig.scene.objects[0].holder = Holder::robot;
+  rig.facts.facts.clear();
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_TRUE(rig.planner.status().holding);
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0);
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "drawing back"), 0);
+}
+
 TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
   Rig rig;
   rig.moves = true;
