@@ -35,7 +35,7 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
     }
     int executed = 0;
     for (const Grasp& grasp : list.grasps) {
-      last = co_await try_grasp(object_id, grasp);
+      last = co_await try_grasp(object_id, for_human, grasp);
       if (last.good) co_return last;
       refuse("grasp " + std::to_string(grasp.id), last.reason);
       if (status_.holding) co_return last;
@@ -89,7 +89,7 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
   co_return Outcome{};
 }
 
-Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, const Grasp& grasp) {
+Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, const std::string& for_human, const Grasp& grasp) {
   status_.phase = "planning";
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
   if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
@@ -136,7 +136,8 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   const SceneObject* held = object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
-  Outcome lifted = co_await lift(object_id);
+  Outcome lifted = co_await lift(object_id, for_human);
+  if (lifted.taken) co_return Outcome{};
   if (!lifted.good) co_return lifted;
   const auto came = [this, &object_id] {
     const SceneObject* taken = object(object_id);
@@ -149,11 +150,12 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   co_return Outcome::failure(object_id + " stayed behind when the hand went up");
 }
 
-Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id) {
+Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id, const std::string& for_human) {
   Motion up;
   up.phase = "lift";
   up.straight = true;
   up.allowed = {object_id};
+  up.yields_to = for_human;
   const Pose T_now = T_world_tool();
   for (const double share : {1.0, 0.85}) {
     Pose T = T_now;
@@ -161,7 +163,7 @@ Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id) {
     if (auto joints = reach(T)) {
       up.goals = {*joints};
       Outcome outcome = co_await move(up);
-      if (outcome.good) co_return outcome;
+      if (outcome.good || outcome.taken) co_return outcome;
     }
   }
   co_return Outcome::failure("the arm cannot lift " + object_id + " straight up by " + std::to_string(settings_.lift_height()) + " m");
@@ -205,7 +207,7 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   status_.human = receiver;
 
   Outcome last;
-  bool at_exchange = false;
+  bool at_exchange = takes_hold(receiver);
   const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange;) {
     status_.phase = "choosing the exchange point";
@@ -230,12 +232,14 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     carry.phase = "carry";
     carry.speed = settings_.carry_speed();
     carry.allowed = {object_id};
+    carry.yields_to = receiver;
     whom = person(receiver);
     if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
     lead_to(search, *whom, carry);
     status_.exchange_point = search.poses.front().T_world_object.translation();
     last = co_await move(carry);
-    at_exchange = last.good;
+    at_exchange = last.good || last.taken;
+    if (last.taken) break;
     if (!at_exchange || settings_.live_period() <= 0 || attempt >= settings_.motion_attempts()) continue;
     const Vector here = RobotModel::part(posture(), arm_);
     const bool elsewhere = co_await follow(carry, here);

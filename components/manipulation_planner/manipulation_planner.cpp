@@ -10,6 +10,7 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kSameGoal = 1e-6;  // [rad]
+constexpr double kAtHand = 0.15;    // [m] from the middle of a hand to that of what it takes hold of
 constexpr double kForever = 600;    // [s] a motion this long has been forgotten by everybody
 constexpr std::uint32_t kBlocked = 1U << static_cast<unsigned>(Cause::forecast_collision);
 constexpr std::uint32_t kTooNear = 1U << static_cast<unsigned>(Cause::separation);
@@ -319,7 +320,9 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
            (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
   };
   const Motion* moving = &motion;
-  const auto over = [this, ended, moving] { return ended() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving); };
+  const auto over = [this, ended, moving] {
+    return ended() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving) || takes_hold(moving->yields_to);
+  };
   const bool live = settings_.live_period() > 0 && !motion.straight;
   for (bool done = false; !done;) {
     done = co_await waiting_.until(over, live ? settings_.live_period() : kForever);
@@ -331,9 +334,13 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
       motion.p_world_aim = status_.exchange_point = *shifted_to;
   }
   if (!ended()) {
-    Outcome blocked = Outcome::failure(strayed(motion) ? motion.aims_at + " was moved away" : "the way is blocked: " + execution_->reason);
+    const bool taken = takes_hold(motion.yields_to);
+    Outcome blocked = Outcome::failure(taken             ? motion.yields_to + " takes hold of " + attachment_.object
+                                       : strayed(motion) ? motion.aims_at + " was moved away"
+                                                         : "the way is blocked: " + execution_->reason);
     blocked.too_near = too_near_;
     blocked.strayed = strayed(motion);
+    blocked.taken = taken;
     TrajectoryCommand stop;
     stop.id = ++commands_;
     stop.epoch = execution_->epoch;
@@ -362,7 +369,7 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
     PlannedPath planned = co_await plan_path(start, motion);
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
-      if (last.good || last.strayed) co_return last;
+      if (last.good || last.strayed || last.taken) co_return last;
       const Person* in_the_way = last.too_near ? person("") : nullptr;
       if (in_the_way != nullptr) {
         refuse(motion.phase, last.reason);
@@ -390,6 +397,17 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
     co_await waiting_.pause(0.3);
   }
   co_return last;
+}
+
+bool ManipulationPlanner::takes_hold(const std::string& who) const {
+  const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : object(attachment_.object);
+  const Person* them = held == nullptr ? nullptr : person(who);
+  if (them == nullptr || held->holder == Holder::surface) return false;
+  for (const char* hand : {"l_hand", "r_hand"}) {
+    const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
+    if ((p - held->T_world_object.translation()).norm() < kAtHand) return true;
+  }
+  return false;
 }
 
 bool ManipulationPlanner::lost(const std::string& id) const {

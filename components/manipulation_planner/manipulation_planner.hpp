@@ -43,7 +43,8 @@ struct Outcome {
   std::string reason;    ///< why not, one sentence
   bool too_near{false};  ///< because a person is so near that the controller lets it go no further
   bool strayed{false};   ///< because what it aimed at was moved
-  static Outcome failure(std::string why) { return {false, std::move(why), false, false}; }
+  bool taken{false};     ///< because who is to have it takes hold of it already
+  static Outcome failure(std::string why) { return {false, std::move(why), false, false, false}; }
 };
 
 class ManipulationPlanner {
@@ -89,6 +90,7 @@ class ManipulationPlanner {
     double longest{kAnyLength};            // a path that is longer is none, sum of the legs' max norms [rad]
     std::string receiver;                  // the goals are exchange postures for this person, chosen anew as they move; empty: they stay
     Vector3 receiver_at{Vector3::Zero()};  // their torso when the goals were chosen, world [m]
+    std::string yields_to;                 // who takes hold of what is held ends the motion; empty: nobody
     std::string aims_at;                   // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
     Vector3 p_world_aim{Vector3::Zero()};
     double aim_slack{};
@@ -136,8 +138,8 @@ class ManipulationPlanner {
   Routine<Outcome> pick(const std::string& object, const std::string& for_human, const std::string& onto);
   /// Who is out of reach is waited for until `patience`.
   Routine<Outcome> keep_givable(std::vector<Grasp>& grasps, const std::string& object, const std::string& human, TimePoint patience);
-  Routine<Outcome> try_grasp(const std::string& object, const Grasp& grasp);
-  Routine<Outcome> lift(const std::string& object);
+  Routine<Outcome> try_grasp(const std::string& object, const std::string& for_human, const Grasp& grasp);
+  Routine<Outcome> lift(const std::string& object, const std::string& for_human);
   Routine<Outcome> give(const std::string& object, const std::string& human);
   Routine<Outcome> place(const std::string& object, const std::string& surface);
   /// What is held, to above its place and down to it.
@@ -164,6 +166,8 @@ class ManipulationPlanner {
   /// The grasp for where the object is now; nullopt: the arm does not reach it there.
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
   bool strayed(const Motion& motion) const;
+  /// A hand of that person has come to what the robot holds.
+  bool takes_hold(const std::string& who) const;
   /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or the arm does not reach there.
   std::optional<Vector3> follow_offer(Motion& motion);
   Routine<Outcome> go_to_rest();

@@ -254,6 +254,17 @@ void HandExecutor::change_level(double dt) noexcept {
   if (phase_ == Phase::releasing || phase_ == Phase::moving) level_ = std::max(0.0, level_ - change);
 }
 
+/// What was released may still be hooked on a finger while it is drawn away.
+void HandExecutor::give_way(const RobotState& robot, double dt) noexcept {
+  if (phase_ != Phase::hold || state_ != HandState::released || settings_.yield_speed <= 0) return;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    const Finger& f = fingers_[i];
+    const double push = -pressed(robot, i);
+    if (std::abs(push) > settings_.yield_effort / f.lever)
+      retarget(i, f.target + std::copysign(dt * settings_.yield_speed * f.lever, push));
+  }
+}
+
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
   const RobotState& robot = *in.robot;
   if (!in.may_move && !paused_) {
@@ -270,6 +281,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
     change_level(dt);
     if (release_.armed() && in.new_state) watch_release(in, now);
     judge(robot, in.payload, dt);
+    give_way(robot, dt);
   }
   advance(dt, out);
 }

@@ -27,6 +27,8 @@ struct HandSettings {
   double lost_time{0.3};       ///< for this long [s]
   double person_range{0.6};    ///< a pull counts only with a person's hand this near the tool frame: a mug between, 0.25 m of error [m]
   double loosen_share{0.8};    ///< of the squeeze's efforts that is left then: it must still bear the load
+  double yield_effort{0.15};   ///< an axis of the hand that has released gives way to what presses it more than this [Nm] ...
+  double yield_speed{1.0};     ///< ... this fast [rad/s]; 0: never
   double lever{0.05};          ///< [m]
   PullSettings pull;
 };
@@ -95,6 +97,7 @@ class HandExecutor {
   void seek(const RobotState& robot, double dt) noexcept;
   void squeeze(const RobotState& robot, double dt) noexcept;
   void change_level(double dt) noexcept;
+  void give_way(const RobotState& robot, double dt) noexcept;
   void judge(const RobotState& robot, double payload, double dt) noexcept;
   int pressing(const RobotState& robot) const noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;

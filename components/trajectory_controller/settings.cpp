@@ -93,6 +93,8 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.lost_payload = read(h.lost_payload(), "lost_payload", 0, 100);
   s.hand.lost_time = read(h.lost_time(), "lost_time", 0, 10);
   s.hand.loosen_share = read(h.loosen_share(), "loosen_share", 0, 1);
+  s.hand.yield_effort = read(h.yield_effort(), "yield_effort", 1e-3, 100);
+  s.hand.yield_speed = read(h.yield_speed(), "yield_speed", 0, 10);
   s.hand.person_range = read(h.person_range(), "person_range", 0, 10);
   s.hand.lever = read(h.lever(), "lever", 1e-3, 1);
   s.hand.pull.baseline_time = read(h.pull_baseline(), "pull_baseline", 0, 10);

@@ -97,6 +97,24 @@ TEST_F(HandTest, finds_contact_a_little_beyond_the_commanded_position) {
   EXPECT_EQ(hand_.state(), HandState::grasped);
 }
 
+TEST_F(HandTest, once_it_has_released_a_finger_gives_way_to_what_is_drawn_past_it) {
+  block_ = {0.5, 0.5, 0.5, 0.5};
+  command(HandAction::grasp, 0.7);
+  run(3.0);
+  ASSERT_EQ(hand_.state(), HandState::grasped);
+  block_[0] = 0.45;
+  run(1.0);
+  EXPECT_GT(out_.position[0], 0.45) << "what it holds presses it, and it holds on";
+  command(HandAction::release, 0.3);
+  run(1.5);
+  ASSERT_EQ(hand_.state(), HandState::released);
+  block_[0] = 0.1;
+  run(0.5);
+  EXPECT_LT(out_.position[0], 0.1 + 1.1 * HandSettings{}.yield_effort / kStiffness);
+  EXPECT_NEAR(out_.position[1], 0.3, 1e-9) << "nothing presses it";
+  EXPECT_EQ(hand_.state(), HandState::released);
+}
+
 /// One axis that slides, as a parallel gripper has: the same settings, at the lever of a finger.
 TEST(SlidingHand, closes_until_it_presses_and_tells_metres) {
   const HandSettings settings;
