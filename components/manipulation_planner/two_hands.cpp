@@ -185,7 +185,7 @@ Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
     if (!done.good) co_return done;
     switch (step.kind) {
       case RegraspKind::pick:
-        done = co_await try_grasp(object_id, step.grasp);
+        done = co_await try_grasp(object_id, "", step.grasp);
         break;
       case RegraspKind::pass:
         if (&step != &plan.steps[1]) done = co_await make_room();
