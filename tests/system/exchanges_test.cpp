@@ -75,6 +75,11 @@ std::string told(const Json& report) {
          std::to_string(task["duration_s"].get<double>()) + " s";
 }
 
+void print_timeline(const Json& report) {
+  for (const Json& event : report["timeline"])
+    std::printf("%9.3f s  %s\n", event["t_s"].get<double>(), event["event"].get<std::string>().c_str());
+}
+
 void expect_harmless(const Json& report, const std::string& what) {
   EXPECT_EQ(report["ssm_violations"], 0) << what;
   EXPECT_EQ(report["oracle"]["limit_violations"], 0) << what;
@@ -126,6 +131,7 @@ TEST(AnyDeath, ends_in_a_finished_task_or_one_given_up_in_order) {
     done += trial.report["success"].get<bool>();
     expect_harmless(trial.report, what);
     EXPECT_TRUE(trial.at_rest) << what;
+    if (!trial.at_rest) print_timeline(trial.report);
     const std::string state = trial.report["tasks"].back()["state"];
     EXPECT_TRUE(state == "succeeded" || state == "failed" || state == "refused") << what << ", left " << state;
     EXPECT_TRUE(trial.report["success"].get<bool>() || !trial.report["failure"].get<std::string>().empty()) << what;
