@@ -286,6 +286,10 @@ struct RegraspPlanner::Impl {
         reason = "the arms would collide wherever both reach it";
         continue;
       }
+      if (!world.is_free(with(rest, from, *q_from, g.hand_joints))) {  // it is brought there while the other arm rests
+        reason = "the other arm, at rest, would be in the way";
+        continue;
+      }
       auto before = straight(to, k, e.T_world_object, step.q, *q_to, way_to);
       auto after = before ? straight(from, i, e.T_world_object, step.q, *q_from, way_from) : std::nullopt;
       if (!after) {

@@ -6,8 +6,9 @@
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kFirm = 1.0;        // [N] of Grasp::margin: those with less are taken only where there are not
-constexpr std::size_t kEnough = 60;  // of the others
+constexpr double kFirm = 1.0;          // [N] of Grasp::margin: those with less are taken only where there are not
+constexpr double kLeastEffort = 0.05;  // [Nm]
+constexpr std::size_t kEnough = 30;    // of the others
 
 RegraspKind kind_of(RegraspStepKind kind) {
   switch (kind) {
@@ -41,6 +42,8 @@ void share_load(const HandKit& kit, const ObjectModel& model, const GripForceSet
     const std::size_t finger = g.contacts[k].finger;
     kit.chains[finger].add_effort(T_hand_step[finger], T_hand_object, g.contacts[k].position, grip.forces[k], g.hand_effort);
   }
+  // Where nothing bears it for sure the hand squeezes as it does when it is told no efforts.
+  if (!g.hand_effort.allFinite() || g.hand_effort.cwiseAbs().maxCoeff() < kLeastEffort) g.hand_effort.resize(0);
 }
 
 handsel::RegraspStep told(const RegraspStep& step, const std::vector<RegraspArm>& arms) {

@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kMostTilt = 0.05;  // of what is carried, as planned [rad]
 constexpr double kTogether = 0.5;   // speed scale of two arms in a closed chain
+constexpr double kSame = 0.004;     // what moved less stands where it was planned to be taken [m]
+constexpr int kTries = 2;           // to take hold of it
 constexpr double kForever = 600;    // [s]
 
 }  // namespace
@@ -20,7 +22,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   if (!stands.good) co_return stands;
   const ObjectModel* model = model_of(object_id);
   if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
-  Outcome rested = co_await others_to_rest();
+  Outcome rested = co_await rest_all();
   if (!rested.good) co_return rested;
 
   RegraspSteps plan;
@@ -34,7 +36,26 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   if (plan.steps.size() != 3) co_return Outcome::failure("the grasp planner did not say how two hands take " + object_id);
   const RegraspStep first = plan.steps[0], second = plan.steps[1], down = plan.steps[2];
 
-  Outcome done = co_await take_together(object_id, first, second);
+  Outcome done;
+  const std::vector<const RegraspStep*> backwards{&second, &first};
+  for (int tries = 0; tries < kTries; ++tries) {
+    done = co_await take_together(object_id, first, second);
+    if (done.good) break;
+    refuse("grasp with both hands", done.reason);
+    for (const RegraspStep* step : backwards) {
+      Outcome off = co_await use_arm(step->to);
+      HandResult opened = co_await hand(HandAction::move, step->grasp.pregrasp_joints, settings_.hand_timeout());
+      if (off.good && opened.outcome.good) {
+        Motion back;
+        back.phase = "backing off";
+        back.straight = true;
+        back.goals = {step->grasp.approach_joints};
+        back.allowed = {object_id};
+        off = co_await move(back);
+      }
+      if (!off.good) refuse("backing off", off.reason);
+    }
+  }
   if (!done.good) co_return done;
   done = co_await use_arm(first.to);
   if (!done.good) co_return done;
@@ -86,7 +107,10 @@ Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id
   for (const RegraspStep* step : steps) {
     Outcome done = co_await use_arm(step->to);
     if (!done.good) co_return done;
-    const std::optional<Grasp> grasp = aimed(object_id, step->grasp);
+    std::optional<Grasp> grasp = aimed(object_id, step->grasp);
+    const SceneObject* thing = object(object_id);
+    const bool as_planned = thing != nullptr && (thing->T_world_object.translation() - step->T_world_object.translation()).norm() < kSame;
+    if (!grasp && as_planned) grasp = step->grasp;  // at the end of a joint's range only the place as it was seen then is reached
     if (!grasp) co_return Outcome::failure(step->to + " does not reach " + object_id + " where it stands now");
     status_.phase = "opening the hand";
     HandResult open = co_await hand(HandAction::move, grasp->pregrasp_joints, settings_.hand_timeout());
@@ -122,7 +146,7 @@ Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id
 
 Routine<Outcome> ManipulationPlanner::grip(const Grasp& grasp, double share_of_mass) {
   status_.phase = "grasp";
-  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout(), &grasp.hand_effort, share_of_mass);
+  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, 2 * settings_.hand_timeout(), &grasp.hand_effort, share_of_mass);
   if (!closed.outcome.good) co_return closed.outcome;
   if (closed.state != HandState::grasped) co_return Outcome::failure("the hand " + fingers_.name + " closed on nothing");
   co_return Outcome{};

@@ -178,7 +178,7 @@ Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
     if (plan.outcome.good) break;
   }
   if (!plan.outcome.good) co_return plan.outcome;
-  Outcome alone = co_await others_to_rest();
+  Outcome alone = co_await rest_all();  // where the steps begin
   if (!alone.good) co_return alone;
   for (const RegraspStep& step : plan.steps) {
     Outcome done = co_await use_arm(step.kind == RegraspKind::pick ? step.to : step.from);
