@@ -24,7 +24,7 @@ struct SceneObject {
   std::string model;  ///< name in deploy/objects; empty: unknown, its primitive is what is known
   Pose T_world_object{Pose::Identity()};
   Holder holder{Holder::nobody};
-  std::string holder_id;              ///< surface or person; empty for nobody and robot
+  std::string holder_id;              ///< surface, person, or group of the robot's hand; empty for nobody and the first hand
   double age{};                       ///< since last seen [s]
   Vector3 velocity{Vector3::Zero()};  ///< of the object frame's origin, world [m/s]
   std::vector<ObjectGrip> grips{};    ///< felt by the object's own sensors; empty where it has none

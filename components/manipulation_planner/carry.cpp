@@ -71,14 +71,16 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
     status_.phase = "carry";
     std::vector<Pose> over{raised(down.T_world_object, settings_.lift_height()), raised(down.T_world_object, kAbovePlace)};
     done = co_await move_together(object_id, second.to, over);
-    // Where it cannot go over it goes back down.
-    if (!done.good) {
-      status_.phase = "put back";
-      refuse("carry", done.reason);
-      std::vector<Pose> back{raised(T_start, kAbovePlace)};
-      Outcome lowered = co_await move_together(object_id, second.to, back);
-      if (!lowered.good) co_return lowered;
-    }
+  }
+  // Where it cannot go up or over it goes back down; hands that cannot bring it down keep it.
+  const SceneObject* now = object(object_id);
+  const bool off_the_ground = now == nullptr || now->T_world_object.translation().z() > T_start.translation().z() + kSame;
+  if (!done.good && off_the_ground) {
+    refuse(status_.phase, done.reason);
+    status_.phase = "put back";
+    std::vector<Pose> back{raised(T_start, kAbovePlace)};
+    Outcome lowered = co_await move_together(object_id, second.to, back);
+    if (!lowered.good) co_return lowered;
   }
   // Off as they came: what each hand's stand-off is from its grasp holds wherever it was put down.
   const Outcome carried = done;

@@ -165,8 +165,8 @@ TEST(Wire, SaysWhatIsWrongInOneSentence) {
   state.velocity = Vector::Zero(21);
   EXPECT_EQ(refusal_of(state), "RobotState.velocity has not as many values as position");
   state = good_state();
-  state.position = state.velocity = Vector::Zero(33);
-  EXPECT_EQ(refusal_of(state), "RobotState.position has 33 elements, at most 32 are allowed");
+  state.position = state.velocity = Vector::Zero(65);
+  EXPECT_EQ(refusal_of(state), "RobotState.position has 65 elements, at most 64 are allowed");
   state = good_state();
   state.T_world_base.linear() *= 2;
   EXPECT_EQ(refusal_of(state), "RobotState.T_world_base.orientation is not a rotation");
