@@ -17,17 +17,14 @@ constexpr double kForever = 600;    // [s]
 
 Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   const std::string object_id = goal.object;
-  if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
   Outcome stands = co_await wait_standing(object_id);
   if (!stands.good) co_return stands;
-  const ObjectModel* model = model_of(object_id);
-  if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   Outcome rested = co_await rest_all();
   if (!rested.good) co_return rested;
 
   RegraspSteps plan;
   plan.outcome = Outcome::failure("there is no free place on a surface called " + goal.surface);
-  const std::vector<Pose> places = places_for(goal, *object(object_id), *model);
+  const std::vector<Pose> places = places_for(goal, *object(object_id), *model_of(object_id));
   for (const Pose& place : places) {
     plan = co_await ask_regrasp(object_id, place, true);
     if (plan.outcome.good) break;

@@ -149,6 +149,7 @@ std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const 
 }
 
 Routine<Outcome> ManipulationPlanner::wait_standing(const std::string& object_id) {
+  if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
   status_.phase = "looking for the object";
   const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
@@ -158,21 +159,19 @@ Routine<Outcome> ManipulationPlanner::wait_standing(const std::string& object_id
   };
   const bool free = co_await waiting_.until(stands, settings_.sight_timeout());
   if (!free) co_return Outcome::failure(object_id + " is held: it must stand first");
+  if (model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   co_await waiting_.pause(settings_.settle_time());
   co_return Outcome{};
 }
 
 Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
   const std::string object_id = goal.object;
-  if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
   Outcome stands = co_await wait_standing(object_id);
   if (!stands.good) co_return stands;
-  const ObjectModel* model = model_of(object_id);
-  if (model == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   RegraspSteps plan;
   plan.outcome = Outcome::failure(goal.surface.empty() ? "it was not said where " + object_id + " is to stand"
                                                        : "there is no free place on a surface called " + goal.surface);
-  const std::vector<Pose> places = places_for(goal, *object(object_id), *model);
+  const std::vector<Pose> places = places_for(goal, *object(object_id), *model_of(object_id));
   for (const Pose& place : places) {
     plan = co_await ask_regrasp(object_id, place, false);
     if (plan.outcome.good) break;
