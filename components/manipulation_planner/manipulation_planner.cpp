@@ -212,20 +212,16 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const st
   request.for_human = for_human;
   request.max_grasps = most;
   request.seed = goal_.id;
-  grasp_reply_.reset();
-  for (double waited = 0; waited < settings_.request_timeout(); waited += settings_.request_retry()) {
-    out_->grasp_requests.push_back(request);
-    const bool come = co_await waiting_.until([this] { return grasp_reply_.has_value(); }, settings_.request_retry());
-    if (!come) continue;
-    GraspList list;
-    list.grasps = grasp_reply_->grasps;
-    for (const auto& rejected : grasp_reply_->rejected) refuse("grasps: " + rejected.what, rejected.reason);
-    if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object_id + ": " + grasp_reply_->reason);
+  const bool answered = co_await ask(&Outbox::grasp_requests, request, grasp_reply_, settings_.request_timeout());
+  GraspList list;
+  if (!answered) {
+    list.outcome = Outcome::failure("the grasp planner does not answer");
     co_return list;
   }
-  GraspList none;
-  none.outcome = Outcome::failure("the grasp planner does not answer");
-  co_return none;
+  list.grasps = grasp_reply_->grasps;
+  for (const auto& rejected : grasp_reply_->rejected) refuse("grasps: " + rejected.what, rejected.reason);
+  if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object_id + ": " + grasp_reply_->reason);
+  co_return list;
 }
 
 PathRequest ManipulationPlanner::path_request(const Vector& start, const Motion& motion) {

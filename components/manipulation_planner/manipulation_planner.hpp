@@ -204,6 +204,17 @@ class ManipulationPlanner {
   bool holds(const std::string& object) const;                               // the hand in use holds it, as the scene has it
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
+  /// Until `reply` has come: asks again each request_retry, since asking twice is harmless; false: it has not come within `patience` [s].
+  template <class Request, class Reply>
+  Routine<bool> ask(std::vector<Request> Outbox::*desk, const Request& request, std::optional<Reply>& reply, double patience) {
+    reply.reset();
+    const auto come = [&reply] { return reply.has_value(); };
+    for (double waited = 0; !reply && waited < patience; waited += settings_.request_retry()) {
+      (out_->*desk).push_back(request);
+      co_await waiting_.until(come, settings_.request_retry());
+    }
+    co_return reply.has_value();
+  }
   Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human, std::uint32_t most);
   /// Grasps that serve at a free place of that surface too, which place() then tries first; if there is none, any.
   Routine<GraspList> ask_grasps_onto(const std::string& object, const std::string& surface);

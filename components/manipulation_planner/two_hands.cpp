@@ -72,20 +72,16 @@ Routine<ManipulationPlanner::RegraspSteps> ManipulationPlanner::ask_regrasp(cons
   request.T_world_goal = T_world_goal;
   request.both = both;
   request.seed = goal_.id;
-  regrasp_reply_.reset();
-  for (double waited = 0; waited < settings_.regrasp_timeout(); waited += settings_.request_retry()) {
-    out_->regrasp_requests.push_back(request);
-    const bool come = co_await waiting_.until([this] { return regrasp_reply_.has_value(); }, settings_.request_retry());
-    if (!come) continue;
-    RegraspSteps plan;
-    plan.steps = regrasp_reply_->steps;
-    for (const auto& rejected : regrasp_reply_->rejected) refuse(rejected.what, rejected.reason);
-    if (!regrasp_reply_->solved) plan.outcome = Outcome::failure(regrasp_reply_->reason);
+  const bool answered = co_await ask(&Outbox::regrasp_requests, request, regrasp_reply_, settings_.regrasp_timeout());
+  RegraspSteps plan;
+  if (!answered) {
+    plan.outcome = Outcome::failure("the grasp planner does not answer");
     co_return plan;
   }
-  RegraspSteps none;
-  none.outcome = Outcome::failure("the grasp planner does not answer");
-  co_return none;
+  plan.steps = regrasp_reply_->steps;
+  for (const auto& rejected : regrasp_reply_->rejected) refuse(rejected.what, rejected.reason);
+  if (!regrasp_reply_->solved) plan.outcome = Outcome::failure(regrasp_reply_->reason);
+  co_return plan;
 }
 
 std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const SceneObject& seen, const ObjectModel& model) const {

@@ -53,6 +53,10 @@ class Rig {
     for (double t = 0; t < duration && (t < 0.1 || planner.status().state == ActionState::running); t += 0.02) cycle();
   }
 
+  void run_until(const std::string& phase) {
+    for (int i = 0; i < 1500 && planner.status().phase != phase; ++i) cycle();
+  }
+
   void cycle() {
     now += from_seconds(0.02);
     scene.robot_position = q;
@@ -467,7 +471,7 @@ TEST(ManipulationPlanner, AnOfferThatIsShiftedIsFollowedWhileTheArmMoves) {
   rig.share = 0.15;
   rig.hold_out();
   rig.start(ActionKind::receive);
-  for (int i = 0; i < 1500 && rig.planner.status().phase != "approach"; ++i) rig.cycle();
+  rig.run_until("approach");
   ASSERT_EQ(rig.planner.status().phase, "approach");
   for (int i = 0; i < 5; ++i) rig.cycle();
   rig.scene.objects[0].T_world_object.translation().y() += 0.03;
@@ -507,7 +511,7 @@ TEST(ManipulationPlanner, WhatIsPutIntoTheOpenHandOnItsWayIsHeldAtOnce) {
   rig.share = 0.15;
   rig.hold_out();
   rig.start(ActionKind::receive);
-  for (int i = 0; i < 1500 && rig.planner.status().phase != "approach"; ++i) rig.cycle();
+  rig.run_until("approach");
   for (int i = 0; i < 5; ++i) rig.cycle();
   rig.scene.objects[0].holder = Holder::robot;
   rig.facts.facts.clear();
@@ -523,10 +527,10 @@ TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
   rig.moves = true;
   rig.hold_out();
   rig.start(ActionKind::receive);
-  for (int i = 0; i < 1500 && rig.planner.status().phase != "approach"; ++i) rig.cycle();
+  rig.run_until("approach");
   for (int i = 0; i < 5; ++i) rig.cycle();
   rig.facts.facts.clear();
-  for (int i = 0; i < 1500 && rig.planner.status().phase != "watching for an offer"; ++i) rig.cycle();
+  rig.run_until("watching for an offer");
   EXPECT_EQ(rig.planner.status().phase, "watching for an offer");
   ASSERT_FALSE(rig.planner.status().refusals.empty());
   EXPECT_EQ(rig.planner.status().refusals.back().reason, "anna has drawn mug back");
@@ -552,12 +556,12 @@ TEST(ManipulationPlanner, FromAnOfferThatIsMovedAwayItBacksOffWithTheHandOpened)
   rig.moves = true;
   rig.hold_out();
   rig.start(ActionKind::receive);
-  for (int i = 0; i < 1500 && rig.planner.status().phase != "reaching the object"; ++i) rig.cycle();
+  rig.run_until("reaching the object");
   ASSERT_EQ(rig.planner.status().phase, "reaching the object");
   for (int i = 0; i < 10; ++i) rig.cycle();
   rig.scene.objects[0].T_world_object.translation().x() += 0.1;
   rig.facts.facts.clear();
-  for (int i = 0; i < 1000 && rig.planner.status().phase != "watching for an offer"; ++i) rig.cycle();
+  rig.run_until("watching for an offer");
   EXPECT_EQ(rig.planner.status().phase, "watching for an offer");
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 1);
   EXPECT_FALSE(rig.planner.status().exchange_engaged);
