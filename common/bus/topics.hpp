@@ -62,9 +62,10 @@ struct TopicRow {
   X(ExecutionStatus, "execution_status", state, 50, 0.06, 896, "trajectory_controller", "manipulation_planner supervisor ros2_lane") \
   X(ActiveTrajectory, "active_trajectory", advice, 50, 0.06, 5242880, "trajectory_controller", \
     "collision_checker attention manipulation_planner ros2_lane") \
-  X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.06, 512, "collision_checker", "trajectory_controller attention") \
-  X(AttentionState, "attention_state", state, 10, 0.3, 3584, "attention", "bridge") \
-  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 640, "attention", "spark trajectory_controller supervisor") \
+  X(TrajectoryForecast, "trajectory_forecast", advice, 50, 0.1, 512, "collision_checker", "trajectory_controller attention") \
+  X(AttentionState, "attention_state", state, 10, 0.3, 4608, "attention", "bridge") \
+  X(AttentionAdvice, "attention_advice", advice, 50, 0.06, 704, "attention", \
+    "spark costmap collision_checker manipulation_planner trajectory_controller supervisor") \
   X(PathRequest, "path_request", request, 0, 0, 2686976, "manipulation_planner", "path_planner") \
   X(PathReply, "path_reply", reply, 0, 0, 2621440, "path_planner", "manipulation_planner") \
   X(TrajectoryRequest, "trajectory_request", request, 0, 0, 2621440, "manipulation_planner ros2_lane", "trajectory_planner") \
@@ -81,6 +82,7 @@ struct TopicRow {
     "manipulation_planner attention trajectory_controller bridge sim driver ros2_lane", \
     "supervisor handsel") \
   X(SimControl, "sim_control", goal, 0, 0, 160, "handsel", "sim") \
+  X(StudyMark, "study_mark", goal, 0, 0, 448, "handsel", "bridge") \
   X(GroundTruth, "ground_truth", state, 50, 0.06, 8192, "sim", "handsel")
 // clang-format on
 

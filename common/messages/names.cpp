@@ -13,7 +13,7 @@ template <class Enum, std::size_t n>
 constexpr bool ends_with(const char* const (&)[n], Enum last) {
   return n == static_cast<std::size_t>(last) + 1;
 }
-static_assert(ends_with(kBehaviourNames, Behaviour::receive));
+static_assert(ends_with(kBehaviourNames, Behaviour::watch));
 static_assert(ends_with(kCauseNames, Cause::cost_ahead));
 static_assert(ends_with(kModeNames, Mode::fault));
 static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));

@@ -15,7 +15,7 @@
 
 namespace handsel {
 
-inline constexpr const char* kBehaviourNames[] = {"search", "track", "avoid", "pick", "place", "give", "receive"};
+inline constexpr const char* kBehaviourNames[] = {"search", "track", "avoid", "pick", "place", "give", "receive", "watch"};
 inline constexpr const char* kCauseNames[] = {"none",
                                               "no_go",
                                               "supervisor_silent",

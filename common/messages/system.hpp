@@ -61,6 +61,15 @@ struct SimControl {
   double value{};       ///< dart: speed [m/s]; silence: duration [s]
 };
 
+/// A note of whoever runs a study, for the record; nothing in the system heeds it. Topic StudyMark, profile goal, on demand.
+struct StudyMark {
+  Stamp stamp{};
+  std::string condition;    ///< of the study; empty: none
+  std::string participant;  ///< pseudonym; empty: none
+  std::uint64_t trial{};    ///< number in the order in which trials are done, from 1; 0: none
+  std::string text;         ///< the mark, e.g. "begin"
+};
+
 /// The simulator's own truth, for tests and reports only. Topic GroundTruth, profile state, 50 Hz.
 struct GroundTruth {
   Stamp stamp{};

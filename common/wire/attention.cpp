@@ -6,6 +6,7 @@
 
 namespace handsel {
 void describe(WireIo& io, BehaviourState& m, handsel_BehaviourState& w) {
+  io.text("name", m.name, w.name, Text::name);
   io.choice("behaviour", m.behaviour, w.behaviour, kBehaviourNames);
   io.number("period", m.period, w.period, kPeriod);
   io.integer("activations", m.activations, w.activations);
@@ -25,14 +26,18 @@ void describe(WireIo& io, AttentionState& m, handsel_AttentionState& w) {
 void describe(WireIo& io, AttentionAdvice& m, handsel_AttentionAdvice& w) {
   io.stamp(m.stamp, w.stamp);
   io.number("speed_factor", m.speed_factor, w.speed_factor, kSigned);
-  io.choice("limiting", m.limiting, w.limiting, kBehaviourNames);
+  io.text("limiting", m.limiting, w.limiting, Text::maybe_empty);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.flag("has_gaze_target", m.has_gaze_target, w.has_gaze_target);
   io.point("gaze_target", m.gaze_target, w.gaze_target);
   io.flag("has_target_shift", m.has_target_shift, w.has_target_shift);
   io.point("target_shift", m.target_shift, w.target_shift);
   io.number("cost_gain", m.cost_gain, w.cost_gain, {0, 1e3});
-  io.number("human_period", m.human_period, w.human_period, kPeriod);
+  io.number("people_period", m.people_period, w.people_period, kPeriod);
+  io.number("objects_period", m.objects_period, w.objects_period, kPeriod);
+  io.number("forecast_period", m.forecast_period, w.forecast_period, kPeriod);
+  io.number("cost_map_period", m.cost_map_period, w.cost_map_period, kPeriod);
+  io.number("replan_period", m.replan_period, w.replan_period, kPeriod);
   io.choice("change", m.change, w.change, kTaskChangeNames);
   io.text("person", m.person, w.person, Text::maybe_empty);
 }

@@ -39,6 +39,14 @@ void describe(WireIo& io, SimControl& m, handsel_SimControl& w) {
   io.number("value", m.value, w.value, {-1e9, 1e9});
 }
 
+void describe(WireIo& io, StudyMark& m, handsel_StudyMark& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.text("condition", m.condition, w.condition, Text::maybe_empty);
+  io.text("participant", m.participant, w.participant, Text::maybe_empty);
+  io.integer("trial", m.trial, w.trial);
+  io.text("text", m.text, w.text, Text::sentence);
+}
+
 void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.stamp(m.stamp, w.stamp);
   io.number("sim_time", m.sim_time, w.sim_time, kTime);
@@ -75,6 +83,7 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
 
 HANDSEL_WIRE_KEYED(ComponentHealth, component)
 HANDSEL_WIRE(SimControl)
+HANDSEL_WIRE(StudyMark)
 HANDSEL_WIRE(GroundTruth)
 
 }  // namespace handsel

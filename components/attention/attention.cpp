@@ -16,7 +16,7 @@ Attention::Attention(const AttentionSettings& settings, const Body& body) : sett
   for (const BehaviourSettings& b : settings.behaviours) {
     if (!seen.insert(b.behaviour).second)
       throw ConfigError(std::string("attention: behaviour ") + name(b.behaviour) + " is described twice");
-    entries_.push_back({make_schema(b.behaviour, body, settings.motor, settings.zones),
+    entries_.push_back({name(b.behaviour), make_schema(b.behaviour, body, settings.motor, settings.zones),
                         AdaptiveClock(b.clock, from_seconds(0.5 * settings.tick), name(b.behaviour)), b.clock});
   }
 }
@@ -65,7 +65,7 @@ AttentionAdvice Attention::advice() const {
     const double factor = std::clamp(e.schema->speed_factor(), -1.0, 1.0);
     if (factor < advice.speed_factor) {
       advice.speed_factor = factor;
-      advice.limiting = kind;
+      advice.limiting = e.name;
       advice.reason = e.schema->reason();
     }
     if (kind == Behaviour::avoid) {
@@ -77,7 +77,7 @@ AttentionAdvice Attention::advice() const {
       advice.target_shift = *shift;
     }
   }
-  advice.human_period = shortest;
+  advice.people_period = shortest;
   if (gaze_ >= 0) {
     if (const auto target = entries_[static_cast<std::size_t>(gaze_)].schema->gaze()) {
       advice.has_gaze_target = true;
@@ -93,6 +93,7 @@ AttentionState Attention::state() const {
   for (std::size_t i = 0; i < entries_.size(); ++i) {
     const Entry& e = entries_[i];
     BehaviourState& b = state.behaviours.emplace_back();
+    b.name = e.name;
     b.behaviour = e.schema->kind();
     b.period = e.clock.period();
     b.activations = e.clock.activations();
@@ -100,7 +101,7 @@ AttentionState Attention::state() const {
     b.released = e.released;
     b.stimulus = std::isfinite(e.stimulus) ? e.stimulus : e.settings.far;
     b.speed_factor = std::clamp(e.schema->speed_factor(), -1.0, 1.0);
-    b.winner = gaze_ == static_cast<int>(i) || (now.speed_factor < 1 && now.limiting == b.behaviour);
+    b.winner = gaze_ == static_cast<int>(i) || (now.speed_factor < 1 && now.limiting == b.name);
     if (b.speed_factor < 1) b.reason = e.schema->reason();
   }
   return state;

@@ -38,6 +38,7 @@ class Attention {
 
  private:
   struct Entry {
+    std::string name;
     std::unique_ptr<Schema> schema;
     AdaptiveClock clock;
     ClockSettings settings;

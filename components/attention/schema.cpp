@@ -372,6 +372,8 @@ std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const Moto
     case Behaviour::give:
     case Behaviour::receive:
       return std::make_unique<Exchange>(kind, body, motor);
+    case Behaviour::watch:
+      break;
   }
   return nullptr;
 }

@@ -12,8 +12,9 @@ constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 config::CollisionCheckerSettings load(const NodeContext& context) {
   config::CollisionCheckerSettings s;
   load_text_proto(context.settings / "collision_checker.txtpb", s);
-  for (double positive : {s.period(), s.horizon(), s.least_speed(), s.spacing(), s.max_age(), s.check_time()})
+  for (double positive : {s.period(), s.longest_period(), s.horizon(), s.least_speed(), s.spacing(), s.max_age(), s.check_time()})
     if (!(positive > 0)) throw ConfigError("collision_checker.txtpb: every setting must be > 0");
+  if (s.longest_period() < s.period()) throw ConfigError("collision_checker.txtpb: longest_period must not be below period");
   if (s.least_speed() > 1) throw ConfigError("collision_checker.txtpb: least_speed must be at most 1");
   return s;
 }
@@ -27,13 +28,18 @@ Node::Node(Bus& bus, const NodeContext& context)
       robot_(context.robot),
       forecaster_(*context.robot, context.objects, load_cost_settings(context.settings), core_settings(load(context))),
       query_world_(*context.robot, context.objects),
+      pace_(load(context).period(), load(context).longest_period(), load(context).period()),
       forecast_out_(bus.advertise<TrajectoryForecast>()),
       verdict_out_(bus.advertise<StateVerdict>()) {
   const config::CollisionCheckerSettings settings = load(context);
   check_time_ = settings.check_time();
   max_age_ = from_seconds(settings.max_age());
-  bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt&) { active_ = active; });
+  bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt&) {
+    if (active.trajectory != active_.trajectory) news_ = true;
+    active_ = active;
+  });
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
+    if (!scene_ || scene.revision != scene_->revision) news_ = true;
     scene_ = std::make_shared<Scene>(scene);
     forecaster_.set_scene(scene);
   });
@@ -45,18 +51,23 @@ Node::Node(Bus& bus, const NodeContext& context)
     layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
     forecaster_.set_layers(layers_.at(receipt.arrival));
   });
+  bus.subscribe<AttentionAdvice>(
+      [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.forecast_period, r.arrival); });
   bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
-  bus.every(from_seconds(settings.period()), [this](TimePoint) { forecast(); });
+  bus.every(from_seconds(settings.period()), [this](TimePoint now) { forecast(now); });
 }
 
-void Node::forecast() {
+void Node::forecast(TimePoint now) {
+  if (!news_ && !pace_.due(now)) return;
   const std::string missing = bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
                               : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
                               : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
                                                                       : "";
-  bus_.set_degraded(missing.empty() ? layers_.complaint(bus_.now()) : missing);
+  bus_.set_degraded(missing.empty() ? layers_.complaint(now) : missing);
   if (!missing.empty()) return;
+  news_ = false;
+  pace_.done(now);
   forecast_out_->publish(forecaster_.forecast(active_));
 }
 

@@ -3,8 +3,10 @@
 
 #include <memory>
 
+#include "common/base/pace.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
+#include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
@@ -17,7 +19,7 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
-  void forecast();
+  void forecast(TimePoint now);
   void answer(const StateQuery& query);
 
   Bus& bus_;
@@ -26,6 +28,8 @@ class Node {
   Duration max_age_{};
   Forecaster forecaster_;
   CollisionWorld query_world_;  // used by jobs only, which run one after the other
+  Pace pace_;
+  bool news_{true};  // another trajectory, or another scene: not to be waited with
   std::unique_ptr<Publisher<TrajectoryForecast>> forecast_out_;
   std::unique_ptr<Publisher<StateVerdict>> verdict_out_;
   ActiveTrajectory active_;

@@ -17,7 +17,9 @@ config::CostmapSettings load(const NodeContext& context) {
   if (s.clearance() < 0) throw ConfigError("costmap.txtpb: clearance must be >= 0");
   if (s.reach() / s.resolution() > 49)
     throw ConfigError("costmap.txtpb: reach / resolution must be at most 49, else the map outgrows its message");
-  if (s.repeat() > 0.8) throw ConfigError("costmap.txtpb: repeat must be at most 0.8, readers leave out layers older than a second");
+  if (s.longest_period() < s.period() || s.longest_period() > 0.4)
+    throw ConfigError("costmap.txtpb: longest_period must be from period to 0.4, readers leave out layers older than a second");
+  if (s.repeat() > 0.5) throw ConfigError("costmap.txtpb: repeat must be at most 0.5, readers leave out layers older than a second");
   return s;
 }
 
@@ -29,16 +31,20 @@ Node::Node(Bus& bus, const NodeContext& context)
       cell_time_(load(context).cell_time()),
       maker_({load(context).resolution(), load(context).reach(), load(context).clearance(), load_cost_settings(context.settings)}),
       watch_(load(context).moved(), load(context).turned()),
+      pace_(load(context).period(), load(context).longest_period(), load(context).period()),
       map_out_(bus.advertise<Costmap>()) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene; });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
+  bus.subscribe<AttentionAdvice>(
+      [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.cost_map_period, r.arrival); });
   bus.every(from_seconds(load(context).period()), [this](TimePoint now) { step(now); });
 }
 
 void Node::step(TimePoint now) {
   const bool current = scene_ && bus_.lag<Scene>() < kStale && bus_.lag<HumanState>() < kStale;
   bus_.set_degraded(current ? "" : "no current Scene or HumanState: no cost map");
-  if (!current || making_) return;
+  if (!current || making_ || !pace_.due(now)) return;
+  pace_.done(now);
   const Person* person = nearest_person(people_, scene_->T_world_base.translation());
   if (person == nullptr) {
     made_ = nullptr;

@@ -4,8 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "common/base/pace.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
+#include "common/messages/attention.hpp"
 #include "common/messages/world.hpp"
 #include "components/costmap/layers.hpp"
 
@@ -25,6 +27,7 @@ class Node {
   double cell_time_{};
   MapMaker maker_;  // used by jobs only
   Watch watch_;
+  Pace pace_;
   std::unique_ptr<Publisher<Costmap>> map_out_;
   std::optional<Scene> scene_;
   HumanState people_;

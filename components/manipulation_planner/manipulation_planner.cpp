@@ -26,6 +26,7 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
       arm_(robot_->require_group("arm")),
       palm_(robot_->tool_link()),
       way_out_(*robot_, arm_),
+      live_pace_(settings.live_period(), settings.live_longest(), 0.0),
       client_(client),
       commands_(client),
       cost_(std::make_shared<HumanCost>(*robot_, cost)) {
@@ -321,7 +322,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   };
   const bool live = settings_.live_period() > 0 && !motion.straight;
   for (bool done = false; !done;) {
-    done = co_await waiting_.until(over, live ? settings_.live_period() : kForever);
+    done = co_await waiting_.until(over, live ? live_pace_.period(waiting_.now()) : kForever);
     if (done || !live) break;
     if (!motion.receiver.empty()) co_await follow(motion, running.nodes.back());
     const std::optional<Vector3> shifted_to = motion.follows ? follow_offer(motion) : std::nullopt;

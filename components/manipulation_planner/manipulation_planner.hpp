@@ -9,9 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "common/base/pace.hpp"
 #include "common/collision/collision_world.hpp"
 #include "common/config/manipulation_planner.pb.h"
 #include "common/cost/human_cost.hpp"
+#include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/task.hpp"
@@ -59,6 +61,7 @@ class ManipulationPlanner {
   void on(const Facts& facts) { facts_ = facts; }
   /// `sent`: when its writer sent the layer.
   void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
+  void on(const AttentionAdvice& advice, TimePoint now) { live_pace_.advise(advice.replan_period, now); }
   void on(const ExecutionStatus& status);
   void on(const ActiveTrajectory& active);
   void on(const GraspReply& reply);
@@ -289,6 +292,7 @@ class ManipulationPlanner {
   Group arm_, fingers_;
   int palm_;
   WayOut way_out_;
+  Pace live_pace_;  // of looking at the motion that runs
   std::uint64_t client_, requests_{0}, commands_;
   std::uint64_t jobs_started_{0}, jobs_done_{0};
 

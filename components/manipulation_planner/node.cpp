@@ -24,6 +24,7 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   positive("regrasp_timeout", s.regrasp_timeout());
   if (s.live_period() < 0) throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
   if (s.live_period() > 0) {
+    if (s.live_longest() < s.live_period()) throw ConfigError("manipulation_planner.txtpb: live_longest must not be below live_period");
     positive("live_time", s.live_time());
     positive("replan_time", s.replan_time());
     positive("live_reach", s.live_reach());
@@ -58,6 +59,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   feed<Facts>();
   bus.subscribe<Costmap>(
       [this](const Costmap& layer, const Receipt& receipt) { core_.on(layer, receipt.arrival - receipt.age, receipt.arrival); });
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt& r) { core_.on(advice, r.arrival); });
   feed<ExecutionStatus>();
   feed<ActiveTrajectory>();
   feed<GraspReply>();

@@ -13,6 +13,8 @@ config::SparkSettings load_settings(const NodeContext& context) {
   load_text_proto(context.settings / "spark.txtpb", settings);
   if (settings.publish_period() <= 0 || settings.human_period() <= 0)
     throw ConfigError("spark.txtpb: publish_period and human_period must be > 0");
+  if (!(settings.news_period() > 0) || settings.longest_period() < std::max(settings.human_period(), settings.publish_period()))
+    throw ConfigError("spark.txtpb: news_period must be > 0 and longest_period not below human_period and publish_period");
   return settings;
 }
 
@@ -58,6 +60,9 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       tracker_(settings_, eyes_),
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot, context.objects),
+      facts_pace_(settings_.human_period(), settings_.longest_period(), settings_.human_period()),
+      scene_pace_(settings_.publish_period(), settings_.longest_period(), settings_.human_period()),
+      news_pace_(settings_.news_period(), settings_.longest_period(), settings_.news_period()),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()) {
@@ -78,10 +83,14 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
   bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
     if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0) publish_people(bus_.now());
   });
-  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt&) { wanted_period_ = advice.human_period; });
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt& r) {
+    facts_pace_.advise(advice.people_period, r.arrival);
+    scene_pace_.advise(advice.objects_period, r.arrival);
+    news_pace_.advise(advice.objects_period, r.arrival);
+  });
   bus.every(from_seconds(std::min(settings_.human_period(), settings_.publish_period())), [this](TimePoint now) {
     if (to_seconds(now - people_published_) >= 0.99 * settings_.human_period()) publish_people(now);
-    publish_world(now);
+    interpret(now);
   });
 }
 
@@ -92,23 +101,29 @@ void Node::publish_people(TimePoint now) {
 
 void Node::publish(const Scene& scene, TimePoint now) {
   scene_out_->publish(scene);
-  scene_published_ = now;
+  scene_pace_.done(now);
   revision_published_ = scene.revision;
 }
 
 void Node::publish_news(TimePoint now) {
+  if (!news_pace_.due(now)) return;
+  news_pace_.done(now);
   const Scene scene = scene_.scene(now, tracker_.state(now, scene_.reach()));
   if (scene.revision != revision_published_) publish(scene, now);
 }
 
-void Node::publish_world(TimePoint now) {
-  const HumanState people = tracker_.state(now, scene_.reach());
-  const Scene scene = scene_.scene(now, people);
-  facts_out_->publish(facts_.find(scene, people, now));
+void Node::interpret(TimePoint now) {
   const std::string people_trouble = tracker_.trouble(now), things_trouble = scene_.trouble(now);
   bus_.set_degraded(people_trouble + (people_trouble.empty() || things_trouble.empty() ? "" : "; ") + things_trouble);
-  const double wanted = wanted_period_ > 0 ? std::clamp(wanted_period_, 0.02, settings_.publish_period()) : settings_.publish_period();
-  if (to_seconds(now - scene_published_) >= 0.99 * wanted) publish(scene, now);
+  const bool facts_due = facts_pace_.due(now), scene_due = scene_pace_.due(now);
+  if (!facts_due && !scene_due) return;
+  const HumanState people = tracker_.state(now, scene_.reach());
+  const Scene scene = scene_.scene(now, people);
+  if (facts_due) {
+    facts_out_->publish(facts_.find(scene, people, now));
+    facts_pace_.done(now);
+  }
+  if (scene_due || scene.revision != revision_published_) publish(scene, now);
 }
 
 }  // namespace handsel::spark

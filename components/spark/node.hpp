@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "common/base/pace.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/config/scenario.pb.h"
@@ -23,8 +24,8 @@ class Node {
   Node(Bus& bus, const NodeContext& context, const config::Scenario& place);
   void publish_people(TimePoint now);
   void publish(const Scene& scene, TimePoint now);
-  void publish_news(TimePoint now);   // the scene, when it has changed in a way that matters to a planner
-  void publish_world(TimePoint now);  // facts always, the scene at its period
+  void publish_news(TimePoint now);  // the scene, when it has changed in a way that matters to a planner
+  void interpret(TimePoint now);     // facts and scene, each when it is due
 
   Bus& bus_;
   config::SparkSettings settings_;
@@ -33,13 +34,12 @@ class Node {
   PeopleTracker tracker_;
   SceneModel scene_;
   FactFinder facts_;
+  Pace facts_pace_, scene_pace_, news_pace_;
   std::unique_ptr<Publisher<HumanState>> human_out_;
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<Facts>> facts_out_;
   TimePoint people_published_{};
-  TimePoint scene_published_{};
   std::uint64_t revision_published_{0};
-  double wanted_period_{0};
 };
 
 }  // namespace handsel::spark

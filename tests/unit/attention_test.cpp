@@ -201,7 +201,7 @@ TEST_F(AttentionTest, recoils_only_when_running_back_leads_away) {
   active_.time = 0.6;
   run(attention, 0.5, 1.0);
   EXPECT_LT(attention.advice().speed_factor, 0.0);
-  EXPECT_EQ(attention.advice().limiting, Behaviour::avoid);
+  EXPECT_EQ(attention.advice().limiting, "avoid");
 }
 
 TEST_F(AttentionTest, an_arm_that_leads_away_keeps_moving) {
@@ -267,7 +267,7 @@ TEST_F(AttentionTest, picking_eases_over_the_last_ten_centimetres) {
   Attention near(settings(), body_);
   run(near, 0, 0.5);
   EXPECT_NEAR(near.advice().speed_factor, 0.4 + 0.6 * 0.5, 1e-6);
-  EXPECT_EQ(near.advice().limiting, Behaviour::pick);
+  EXPECT_EQ(near.advice().limiting, "pick");
   action_.holding = true;
   run(near, 0.5, 0.6);
   EXPECT_EQ(near.advice().speed_factor, 1.0);

@@ -65,9 +65,9 @@ export interface ExecutionStatus {
 }
 
 export interface AttentionState {
-  behaviours: { behaviour: number; period: number; activations: bigint; activations_at_fastest: bigint; released: boolean; speed_factor: number }[];
+  behaviours: { name: string; period: number; activations: bigint; activations_at_fastest: bigint; released: boolean; stimulus: number; speed_factor: number; winner: boolean; reason: string }[];
 }
-export interface AttentionAdvice { speed_factor: number; limiting: number; reason: string }
+export interface AttentionAdvice { speed_factor: number; limiting: string; reason: string }
 
 export interface TaskStatus { id: bigint; kind: number; state: number; plan: string[]; step: number; reason: string }
 export interface ActionStatus {

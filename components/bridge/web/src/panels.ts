@@ -147,11 +147,11 @@ export class Panels {
 
   private attention(): void {
     const attention = this.link.newest("handsel/attention_state"), advice = this.link.newest("handsel/attention_advice");
-    const limiting = advice && advice.speed_factor < 0.999 ? advice.limiting : -1;
+    const limiting = advice && advice.speed_factor < 0.999 ? advice.limiting : "";
     rows("clocks", (attention?.behaviours ?? []).map((b) => {
       const fastest = Number(b.activations_at_fastest), share = fastest > 0 ? Number(b.activations) / fastest : 0;
-      const kind = !b.released ? "quiet" : b.behaviour === limiting ? "limiting" : "";
-      return [{ text: this.link.word("Behaviour", b.behaviour), kind }, { text: `${(1 / Math.max(b.period, 1e-3)).toFixed(1)} Hz`, kind: `number ${kind}` },
+      const kind = !b.released ? "quiet" : b.name === limiting ? "limiting" : "";
+      return [{ text: b.name, kind }, { text: `${(1 / Math.max(b.period, 1e-3)).toFixed(1)} Hz`, kind: `number ${kind}` },
         { text: `${(100 * share).toFixed(0)} % of the looks a fixed clock at its fastest would have taken`, share },
         { text: b.released ? `${(100 * b.speed_factor).toFixed(0)} %` : "–", kind: `number ${kind}` }];
     }));
