@@ -1,7 +1,10 @@
 #include "common/bus/local_bus.hpp"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <deque>
 #include <map>
 #include <stdexcept>
@@ -20,6 +23,7 @@ namespace {
 constexpr Stamp kVirtualEpoch = 1'700'000'000'000'000'000;  // where the virtual system clock starts [ns]
 constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
 constexpr std::size_t kKeepAllBound = 64;
+constexpr std::uint64_t kHashBasis = 0xcbf29ce484222325;
 
 bool transient_local(Profile p) { return p == Profile::state || p == Profile::latch; }
 bool exclusive(Profile p) { return p == Profile::command || p == Profile::latch || p == Profile::setpoint; }
@@ -36,6 +40,17 @@ std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+std::uint64_t hashed(std::uint64_t hash, const void* bytes, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 0x100000001b3;
+  return hash;
+}
+
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 using Sample = std::shared_ptr<void>;
 
 struct Writer {
@@ -46,6 +61,7 @@ struct Writer {
   bool alive{true};
   std::map<std::string, Sample, std::less<>> kept;  // last sample a key, for late joiners
   int readers{};
+  std::uint64_t sent{};
 };
 
 struct Owner {
@@ -102,6 +118,8 @@ struct LocalNetwork::Impl {
   std::deque<std::vector<Subscription*>> subscriptions{std::size(kTopics)};  // in the order of the table, then foreign ones
   std::deque<std::vector<Sample>> pools{std::size(kTopics)};
   std::map<std::string, std::size_t, std::less<>> foreign;  // topic -> index
+  bool metered{false}, hashed{false}, at_work{false};
+  std::uint64_t outputs{kHashBasis};
 
   explicit Impl(const LocalNetworkSettings& s) : settings(s), random(mix(s.seed)) {}
 
@@ -138,7 +156,26 @@ struct LocalNetwork::Impl {
   void arrive(Subscription& to, std::uint64_t writer, int strength, const Sample& sample);
   void hand_over(Subscription& to);
   void lose(Writer& writer, Duration after);
+  void take_down(const MessageType& type, void* wire);
 };
+
+namespace {
+
+/// Counts the thread's CPU time of a callback for its component. It is looked at by whoever reports, and decides nothing.
+class Meter {
+ public:
+  Meter(LocalNetwork::Impl& network, LocalBus* bus);
+  ~Meter();
+  Meter(const Meter&) = delete;
+  Meter& operator=(const Meter&) = delete;
+
+ private:
+  LocalNetwork::Impl& net_;
+  LocalBus* bus_;  // null: nothing is counted
+  double begin_{};
+};
+
+}  // namespace
 
 class LocalBus final : public Bus {
  public:
@@ -192,6 +229,7 @@ class LocalBus final : public Bus {
   bool killed_{false}, paused_{false}, isolated_{false};
   std::string degraded_, refusal_;
   TimePoint worker_free_{};
+  double cpu_{0};
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
   std::vector<std::unique_ptr<Timer>> timers_;
   std::vector<Event> held_;  // other events while paused
@@ -215,6 +253,8 @@ class LocalPublisher final : public AnyPublisher {
       bus.refused(why);
       return false;
     }
+    ++writer_->sent;
+    if (net_.hashed) net_.take_down(*writer_->type, sample.get());
     net_.send(*writer_, sample);
     return true;
   }
@@ -225,7 +265,29 @@ class LocalPublisher final : public AnyPublisher {
   std::shared_ptr<Writer> writer_;
 };
 
+Meter::Meter(LocalNetwork::Impl& network, LocalBus* bus) : net_(network), bus_(network.metered && !network.at_work ? bus : nullptr) {
+  if (bus_ == nullptr) return;
+  net_.at_work = true;
+  begin_ = thread_seconds();
+}
+
+Meter::~Meter() {
+  if (bus_ == nullptr) return;
+  bus_->cpu_ += thread_seconds() - begin_;
+  net_.at_work = false;
+}
+
 }  // namespace
+
+void LocalNetwork::Impl::take_down(const MessageType& type, void* wire) {
+  const std::int64_t at = now.time_since_epoch().count();
+  outputs = handsel::hashed(outputs, &at, sizeof at);
+  outputs = handsel::hashed(outputs, type.row().topic, std::strlen(type.row().topic));
+  type.leaves(wire, [this](const WireLeaf& leaf) {
+    const auto* text = static_cast<const char*>(leaf.value);
+    outputs = handsel::hashed(outputs, leaf.value, leaf.kind == WireLeaf::Kind::text ? std::strlen(text) : leaf.size);
+  });
+}
 
 bool LocalNetwork::Impl::step(TimePoint limit) {
   if (events.empty() || events.front().at > limit) return false;
@@ -239,6 +301,7 @@ bool LocalNetwork::Impl::step(TimePoint limit) {
     event.owner->held_.push_back(std::move(event));
     return true;
   }
+  const Meter meter(*this, event.owner);
   event.run();
   return true;
 }
@@ -301,6 +364,7 @@ void LocalNetwork::Impl::hand_over(Subscription& to) {
   while (!to.waiting.empty() && !to.bus->killed_ && !to.bus->paused_) {
     const Waiting next = std::move(to.waiting.front());
     to.waiting.pop_front();
+    const Meter meter(*this, to.bus);
     to.intake.deliver(next.sample.get(), next.writer, now);
   }
 }
@@ -401,11 +465,18 @@ std::uint64_t LocalNetwork::events() const { return impl_->handled; }
 
 std::vector<LocalNetwork::Endpoint> LocalNetwork::endpoints() const {
   std::vector<Endpoint> out;
-  for (const auto& writer : impl_->writers) out.push_back({writer->bus->component_, writer->type->row().type, true});
+  for (const auto& writer : impl_->writers) out.push_back({writer->bus->component_, writer->type->row().type, true, writer->sent});
   for (const auto& bus : impl_->buses)
-    for (const auto& s : bus->subscriptions_) out.push_back({bus->component_, s->intake.type().row().type, false});
+    for (const auto& s : bus->subscriptions_)
+      out.push_back({bus->component_, s->intake.type().row().type, false, s->intake.status().received});
   return out;
 }
+
+void LocalNetwork::meter() { impl_->metered = true; }
+void LocalNetwork::hash_outputs() { impl_->hashed = true; }
+std::uint64_t LocalNetwork::output_hash() const { return impl_->outputs; }
+
+double LocalNetwork::cpu(const std::string& component) const { return impl_->find(component).cpu_; }
 
 void LocalNetwork::run_until(TimePoint t) {
   if (t < impl_->now) throw std::logic_error("LocalNetwork: time does not run backwards");

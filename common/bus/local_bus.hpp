@@ -45,8 +45,17 @@ class LocalNetwork {
     std::string component;
     std::string type;  ///< message type, as in the table of topics
     bool writes{};
+    std::uint64_t samples{};  ///< sent, or received and valid
   };
   std::vector<Endpoint> endpoints() const;
+
+  /// From now on the CPU time of each component's callbacks and jobs is counted. It enters nothing that is computed here.
+  void meter();
+  /// CPU time counted so far [s].
+  double cpu(const std::string& component) const;
+  /// From now on every value that is sent, and when, goes into one number: equal numbers, equal runs.
+  void hash_outputs();
+  std::uint64_t output_hash() const;
 
   /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after the lease.
   void kill(const std::string& component);

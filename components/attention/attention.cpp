@@ -1,6 +1,7 @@
 #include "components/attention/attention.hpp"
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 #include "common/base/errors.hpp"
@@ -12,24 +13,60 @@ Attention::Attention(const AttentionSettings& settings, const Body& body) : sett
   if (!(settings.motor.avoid_slow > settings.motor.avoid_stop)) throw ConfigError("attention: avoid_slow must be above avoid_stop");
   if (!(settings.near_cost_gain >= 1)) throw ConfigError("attention: near_cost_gain must not be below 1");
   if (settings.behaviours.empty()) throw ConfigError("attention: no behaviour is described");
-  std::set<Behaviour> seen;
+  std::vector<Releaser> releasers;
   for (const BehaviourSettings& b : settings.behaviours) {
-    if (!seen.insert(b.behaviour).second)
-      throw ConfigError(std::string("attention: behaviour ") + name(b.behaviour) + " is described twice");
-    entries_.push_back({name(b.behaviour), make_schema(b.behaviour, body, settings.motor, settings.zones),
-                        AdaptiveClock(b.clock, from_seconds(0.5 * settings.tick), name(b.behaviour)), b.clock});
+    const std::string called = b.name.empty() ? name(b.behaviour) : b.name;
+    if (find(called) != nullptr) throw ConfigError("attention: behaviour " + called + " is described twice");
+    entries_.push_back({called, make_schema(b.behaviour, body, settings.motor, settings.zones, b.watch),
+                        AdaptiveClock(b.clock, from_seconds(0.5 * settings.tick), called), b.clock, b.conditions});
+    releasers.push_back({called, b.conditions});
   }
+  order_ = releaser_order(releasers);
+  std::set<Work> seen;
+  for (const WorkSettings& w : settings.works) {
+    const std::string what = std::string("attention: work ") + kWorkNames[static_cast<std::size_t>(w.work)];
+    if (!seen.insert(w.work).second) throw ConfigError(what + " is described twice");
+    if (!(w.p_min > 0)) throw ConfigError(what + ": p_min must be above 0 s");
+    if (!(w.p_max >= w.p_min)) throw ConfigError(what + ": p_max must not be below p_min");
+    if (w.serves.empty()) throw ConfigError(what + " serves nobody");
+    for (const std::string& behaviour : w.serves)
+      if (find(behaviour) == nullptr) throw ConfigError(what + " serves \"" + behaviour + "\", which is not described");
+  }
+}
+
+const Attention::Entry* Attention::find(const std::string& behaviour) const {
+  for (const Entry& e : entries_)
+    if (e.name == behaviour) return &e;
+  return nullptr;
+}
+
+bool Attention::conditions_met(const Entry& entry, const World& world) const {
+  return std::all_of(entry.conditions.begin(), entry.conditions.end(), [&](const Condition& condition) {
+    return met(condition, world, condition.kind == Condition::Kind::behaviour && find(condition.behaviour)->released);
+  });
+}
+
+double Attention::period(const WorkSettings& work) const {
+  if (work.period > 0) return work.period;
+  double ease = 1.0;
+  for (const std::string& behaviour : work.serves) {
+    const Entry& e = *find(behaviour);
+    if (e.clock.activations() == 0) return work.p_min;
+    ease = std::min(ease, (e.clock.period() - e.settings.p_min) / std::max(1e-9, e.settings.p_max - e.settings.p_min));
+  }
+  return work.p_min + (work.p_max - work.p_min) * std::clamp(ease, 0.0, 1.0);
 }
 
 void Attention::step(const World& world, TimePoint now) {
   now_ = now;
   if (settings_.off) return;
-  for (Entry& e : entries_) {
+  for (const std::size_t index : order_) {
+    Entry& e = entries_[index];
     if (e.clock.due(now)) {
       e.stimulus = e.schema->perceive(world, now);
       e.clock.fire(e.stimulus, now);
     }
-    e.released = e.schema->released(world);
+    e.released = e.schema->released(world) && conditions_met(e, world);
   }
   choose_gaze(now);
 }
@@ -52,11 +89,8 @@ void Attention::choose_gaze(TimePoint now) {
 AttentionAdvice Attention::advice() const {
   AttentionAdvice advice;
   if (settings_.off) return advice;
-  double shortest = 0.0;
   for (const Entry& e : entries_) {
     const Behaviour kind = e.schema->kind();
-    const bool about_people = kind != Behaviour::pick && kind != Behaviour::place && kind != Behaviour::search;
-    if (about_people && (shortest == 0.0 || e.clock.period() < shortest)) shortest = e.clock.period();
     if (const auto wish = e.schema->wish()) {
       advice.change = wish->change;
       advice.person = wish->person;
@@ -77,7 +111,9 @@ AttentionAdvice Attention::advice() const {
       advice.target_shift = *shift;
     }
   }
-  advice.people_period = shortest;
+  const std::array<double*, std::size(kWorkNames)> periods{&advice.people_period, &advice.objects_period, &advice.forecast_period,
+                                                           &advice.cost_map_period, &advice.replan_period};
+  for (const WorkSettings& work : settings_.works) *periods[static_cast<std::size_t>(work.work)] = period(work);
   if (gaze_ >= 0) {
     if (const auto target = entries_[static_cast<std::size_t>(gaze_)].schema->gaze()) {
       advice.has_gaze_target = true;

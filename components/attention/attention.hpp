@@ -6,13 +6,36 @@
 #include <vector>
 
 #include "components/attention/adaptive_clock.hpp"
+#include "components/attention/releaser.hpp"
 #include "components/attention/schema.hpp"
 
 namespace handsel::attention {
 
 struct BehaviourSettings {
-  Behaviour behaviour{};
+  Behaviour behaviour{};  ///< its kind
   ClockSettings clock;
+  std::string name{};                   ///< empty: that of the kind
+  std::vector<Condition> conditions{};  ///< of its releaser, beside those of its kind
+  WatchSettings watch{};                ///< where the kind is watch
+};
+
+/// Work that others do as often as attention wants.
+enum class Work {
+  people,    ///< what they do, in facts
+  objects,   ///< where they are and who has them, in the scene
+  forecast,  ///< of the running trajectory
+  cost_map,
+  replan,  ///< a better path for the running motion
+};
+inline constexpr const char* kWorkNames[] = {"people", "objects", "forecast", "cost_map", "replan"};
+
+/// A period between p_min and p_max, as urgent as the most urgent of the behaviours it serves: p_min + (p_max - p_min) times the least
+/// share by which one of their clocks has left its own p_min. Ours.
+struct WorkSettings {
+  Work work{};
+  double p_min{}, p_max{};          ///< [s] 0 < p_min <= p_max
+  double period{};                  ///< > 0: always this [s]
+  std::vector<std::string> serves;  ///< behaviours, at least one
 };
 
 struct AttentionSettings {
@@ -23,7 +46,8 @@ struct AttentionSettings {
   double near_cost_gain{2.0};  ///< gain on the human-aware costs when AVOID is at its most urgent, >= 1
   ZoneSettings zones;
   MotorSettings motor;
-  std::vector<BehaviourSettings> behaviours;  ///< at least one; each behaviour at most once
+  std::vector<BehaviourSettings> behaviours;  ///< at least one; each name at most once
+  std::vector<WorkSettings> works;            ///< each at most once; the others are done as it comes
 };
 
 class Attention {
@@ -42,13 +66,18 @@ class Attention {
     std::unique_ptr<Schema> schema;
     AdaptiveClock clock;
     ClockSettings settings;
+    std::vector<Condition> conditions{};
     double stimulus{};
     bool released{};
   };
   void choose_gaze(TimePoint now);
+  const Entry* find(const std::string& behaviour) const;
+  bool conditions_met(const Entry& entry, const World& world) const;
+  double period(const WorkSettings& work) const;
 
   AttentionSettings settings_;
   std::vector<Entry> entries_;
+  std::vector<std::size_t> order_;  // in which releasers are looked at
   TimePoint now_{}, gaze_since_{};
   int gaze_{-1};
 };

@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "common/model/body_motion.hpp"
+#include "components/attention/looks.hpp"
+#include "components/attention/watch.hpp"
 
 namespace handsel::attention {
 
@@ -23,57 +25,6 @@ Vector3 Body::grasp_point(const Vector& q, const Pose& T_world_base) const {
 }
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-bool robot_known(const World& w, const Body& body) { return w.active && w.active->position.size() == body.dof(); }
-bool doing(const World& w, ActionKind kind) { return w.action && w.action->state == ActionState::running && w.action->kind == kind; }
-
-/// The person who matters: the partner of the action if seen, else the one whose torso is nearest to `p`.
-const Person* person_of_interest(const World& w, const Vector3& p, double lost_after) {
-  if (!w.people) return nullptr;
-  const Person* best = nullptr;
-  double nearest = kInfinity;
-  for (const Person& person : w.people->people) {
-    if (person.joints.size() != kBodyJoints.size() || person.age > lost_after) continue;
-    if (w.action && !w.action->human.empty() && w.action->human == person.id) return &person;
-    const double d = (person.joints[2].position - p).norm();
-    if (d < nearest) {
-      nearest = d;
-      best = &person;
-    }
-  }
-  return best;
-}
-
-/// Does the person attend to the robot? Yes as long as no facts say otherwise.
-bool attentive(const World& w, const std::string& person) {
-  if (!w.facts) return true;
-  return std::any_of(w.facts->facts.begin(), w.facts->facts.end(),
-                     [&](const Fact& f) { return f.kind == FactKind::attentive && f.subject == person; });
-}
-
-struct NearHand {
-  double distance{kInfinity};
-  Vector3 position{Vector3::Zero()}, velocity{Vector3::Zero()};
-};
-
-NearHand nearest_hand(const Person& person, const Vector3& p) {
-  NearHand near;
-  for (std::size_t j : {std::size_t{7}, std::size_t{11}}) {
-    const double d = (person.joints[j].position - p).norm();
-    if (d < near.distance) near = {d, person.joints[j].position, person.joints[j].velocity};
-  }
-  return near;
-}
-
-/// Distance, or the time to contact at reference speed 0.5 m/s when that is less: what urgency is judged by.
-double urgency(double distance, double closing) {
-  constexpr double kReference = 0.5;
-  return std::max(0.0, closing > kReference ? distance * kReference / closing : distance);
-}
-
-double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
 
 class Search : public Schema {
  public:
@@ -140,11 +91,7 @@ class Avoid : public Schema {
     factor_ = 1.0;
     near_ = false;
     if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
-    Exception exception;
-    if (w.action && w.action->exchange_engaged) {
-      exception.person = w.action->human;
-      if (exception.person.empty() && w.people->people.size() == 1) exception.person = w.people->people.front().id;
-    }
+    const Exception exception = exchange_exception(w);
     const ActiveTrajectory& active = *w.active;
     const Separation s = body_.separation_at(active.position, active.T_world_base, *w.people, exception);
     near_ = zone_.update(s.distance, now) <= Zone::interaction;
@@ -357,7 +304,8 @@ class Exchange : public Schema {
 
 }  // namespace
 
-std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones) {
+std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones,
+                                    const WatchSettings& watch) {
   switch (kind) {
     case Behaviour::search:
       return std::make_unique<Search>(body, motor);
@@ -373,7 +321,7 @@ std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const Moto
     case Behaviour::receive:
       return std::make_unique<Exchange>(kind, body, motor);
     case Behaviour::watch:
-      break;
+      return std::make_unique<Watch>(body, motor, watch);
   }
   return nullptr;
 }

@@ -62,6 +62,30 @@ struct MotorSettings {
   double reach_hold{0.2};          ///< ... for this long [s]
 };
 
+/// What a behaviour that is described, not programmed, can watch.
+enum class Input {
+  human_distance,    ///< least distance between robot and a person, the exchanging hand left out [m]
+  hand_distance,     ///< between the robot's hand and the nearest hand of the person of interest [m]
+  object_distance,   ///< between the robot's hand and the object of the action [m]
+  clearance,         ///< least distance foreseen on the running trajectory [m]
+  forecast_contact,  ///< time until a contact that is foreseen on the running trajectory [s]
+  unseen_time,       ///< since the person of interest was last seen [s]
+};
+inline constexpr const char* kInputNames[] = {"human_distance", "hand_distance",    "object_distance",
+                                              "clearance",      "forecast_contact", "unseen_time"};
+
+enum class GazeAt { nothing, head, hand, object };
+
+/// A behaviour of kind WATCH.
+struct WatchSettings {
+  Input input{};
+  double slow_from{};       ///< input below which it asks for less than full speed (unit of the input); 0: never
+  double slow_at{};         ///< input at which it asks for slow_factor, < slow_from
+  double slow_factor{1.0};  ///< [0, 1]
+  GazeAt gaze{};
+  std::string reason;  ///< one phrase for people
+};
+
 /// That another task should take the place of the one that runs.
 struct TaskWish {
   TaskChange change{};
@@ -83,6 +107,7 @@ class Schema {
   virtual std::optional<TaskWish> wish() const { return std::nullopt; }         ///< only of the behaviour that owns the task
 };
 
-std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones);
+std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones,
+                                    const WatchSettings& watch = {});
 
 }  // namespace handsel::attention

@@ -1,18 +1,92 @@
 #include "components/attention/settings.hpp"
 
+#include <algorithm>
+#include <span>
+
 #include "common/config/attention.pb.h"
+#include "common/config/located.hpp"
 #include "common/config/resources.hpp"
+#include "common/messages/names.hpp"
 
 namespace handsel::attention {
 
 namespace {
 
-Behaviour behaviour_named(const std::string& text, const std::filesystem::path& file) {
-  for (Behaviour b :
-       {Behaviour::search, Behaviour::track, Behaviour::avoid, Behaviour::pick, Behaviour::place, Behaviour::give, Behaviour::receive})
-    if (text == name(b)) return b;
-  throw ConfigError(locate(file, '"' + text + '"') + ": behaviours.name: \"" + text +
-                    "\" is none of search, track, avoid, pick, place, give, receive");
+template <class E>
+E one_of(const std::string& text, std::span<const char* const> names, const std::string& place) {
+  const auto at = std::find(names.begin(), names.end(), text);
+  if (at != names.end()) return static_cast<E>(at - names.begin());
+  std::string list;
+  for (const char* name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  throw ConfigError(place + ": \"" + text + "\" is none of " + list);
+}
+
+/// With the place before what is wrong.
+template <class F>
+void at(const std::string& place, const F& check) {
+  try {
+    check();
+  } catch (const ConfigError& error) {
+    throw ConfigError(place + ": " + error.what());
+  }
+}
+
+BehaviourSettings behaviour_of(const config::AttentionBehaviour& b, const TextPlace& place) {
+  BehaviourSettings s;
+  s.name = b.name();
+  constexpr std::span<const char* const> kProgrammed(kBehaviourNames, static_cast<std::size_t>(Behaviour::watch));
+  if (b.name().empty() || b.name().size() > 32) throw ConfigError(place.of("name") + ": a name has 1 to 32 characters");
+  s.behaviour = b.kind() == config::BY_NAME ? one_of<Behaviour>(b.name(), kProgrammed, place.of("name"))
+                                            : static_cast<Behaviour>(static_cast<int>(b.kind()) - 1);
+  const ClockLaw law = b.law() == config::WEBER ? ClockLaw::weber : b.law() == config::FIXED ? ClockLaw::fixed : ClockLaw::linear;
+  s.clock = {law, b.p_min(), b.p_max(), b.near(), b.far(), b.weber_gain(), b.period()};
+  at(place.of("p_max"), [&] { AdaptiveClock(s.clock, {}, b.name()); });
+  for (int i = 0; i < b.released_when_size(); ++i)
+    at(place.of("released_when", i), [&] { s.conditions.push_back(parse_condition(b.released_when(i))); });
+  if (s.behaviour != Behaviour::watch) {
+    if (!b.input().empty()) throw ConfigError(place.of("input") + ": only a behaviour of kind WATCH has an input of its own");
+    return s;
+  }
+  s.watch = {one_of<Input>(b.input(), kInputNames, place.of("input")),
+             b.slow_from(),
+             b.slow_at(),
+             b.slow_factor(),
+             static_cast<GazeAt>(b.gaze()),
+             b.reason()};
+  if (b.slow_from() > 0 && !(b.slow_at() >= 0 && b.slow_at() < b.slow_from()))
+    throw ConfigError(place.of("slow_at") + ": slow_at must be in [0, slow_from)");
+  if (b.slow_from() > 0 && !(b.slow_factor() >= 0 && b.slow_factor() <= 1))
+    throw ConfigError(place.of("slow_factor") + ": slow_factor must be in [0, 1]");
+  if (b.slow_from() > 0 && b.reason().empty()) throw ConfigError(place.of("name") + ": what slows the arm needs a reason");
+  return s;
+}
+
+WorkSettings work_of(const config::AttentionWork& w, const TextPlace& place) {
+  if (!(w.p_min() > 0)) throw ConfigError(place.of("p_min") + ": p_min must be above 0 s");
+  if (!(w.p_max() >= w.p_min())) throw ConfigError(place.of("p_max") + ": p_max must not be below p_min");
+  return {one_of<Work>(w.name(), kWorkNames, place.of("name")), w.p_min(), w.p_max(), w.period(), {w.serves().begin(), w.serves().end()}};
+}
+
+/// Whether behaviours and works fit each other.
+void check_together(const AttentionSettings& s, const TextPlace& root) {
+  std::vector<Releaser> before;
+  for (std::size_t i = 0; i < s.behaviours.size(); ++i) {
+    const std::string place = root.inside("behaviours", static_cast<int>(i)).of("name");
+    for (const Releaser& other : before)
+      if (other.behaviour == s.behaviours[i].name) throw ConfigError(place + ": behaviour " + other.behaviour + " is described twice");
+    before.push_back({s.behaviours[i].name, s.behaviours[i].conditions});
+  }
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    if (std::none_of(before[i].conditions.begin(), before[i].conditions.end(),
+                     [](const Condition& c) { return c.kind == Condition::Kind::behaviour; }))
+      continue;
+    at(root.inside("behaviours", static_cast<int>(i)).of("released_when"), [&] { releaser_order(before); });
+  }
+  for (std::size_t i = 0; i < s.works.size(); ++i)
+    for (std::size_t k = 0; k < s.works[i].serves.size(); ++k)
+      if (std::none_of(before.begin(), before.end(), [&](const Releaser& r) { return r.behaviour == s.works[i].serves[k]; }))
+        throw ConfigError(root.inside("works", static_cast<int>(i)).of("serves", static_cast<int>(k)) + ": behaviour \"" +
+                          s.works[i].serves[k] + "\" is not described");
 }
 
 double share(double value, double low, double high, const char* key, const std::filesystem::path& file) {
@@ -26,7 +100,8 @@ double share(double value, double low, double high, const char* key, const std::
 
 AttentionSettings load_settings(const std::filesystem::path& file) {
   config::AttentionSettings read;
-  load_text_proto(file, read);
+  google::protobuf::TextFormat::ParseInfoTree tree;
+  load_text_proto(file, read, tree);
   AttentionSettings s;
   s.off = read.off();
   s.tick = share(read.tick(), 0.001, 0.1, "tick", file);
@@ -56,17 +131,10 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
   m.lost_after = share(read.lost_after(), 0, 60, "lost_after", file);
   m.reach_near = share(read.reach_near(), 1e-3, 10, "reach_near", file);
   m.reach_hold = share(read.reach_hold(), 0, 10, "reach_hold", file);
-  for (const auto& b : read.behaviours()) {
-    const ClockLaw law = b.law() == config::WEBER ? ClockLaw::weber : b.law() == config::FIXED ? ClockLaw::fixed : ClockLaw::linear;
-    const Behaviour behaviour = behaviour_named(b.name(), file);
-    const ClockSettings clock{law, b.p_min(), b.p_max(), b.near(), b.far(), b.weber_gain(), b.period()};
-    try {
-      AdaptiveClock(clock, {}, b.name());
-    } catch (const ConfigError& error) {
-      throw ConfigError(locate(file, '"' + b.name() + '"') + ": " + error.what());
-    }
-    s.behaviours.push_back({behaviour, clock});
-  }
+  const TextPlace root(file.string(), &tree, config::AttentionSettings::descriptor());
+  for (int i = 0; i < read.behaviours_size(); ++i) s.behaviours.push_back(behaviour_of(read.behaviours(i), root.inside("behaviours", i)));
+  for (int i = 0; i < read.works_size(); ++i) s.works.push_back(work_of(read.works(i), root.inside("works", i)));
+  check_together(s, root);
   return s;
 }
 

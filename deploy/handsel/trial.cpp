@@ -12,6 +12,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
+#include "deploy/handsel/criteria.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "deploy/handsel/performer.hpp"
 #include "deploy/handsel/report.hpp"
@@ -94,6 +95,8 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   config::Scenario scenario;
   load_text_proto(context.scenario, scenario);
   LockstepSystem system(context);
+  const Criteria criteria(system.seat(), system.network());
+  if (options.hash_outputs) system.network().hash_outputs();
   bool is_ready = false;
   const auto ready = [&] {
     is_ready = is_ready || not_ready(system.snapshot(), false).empty();
@@ -116,7 +119,7 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   Json activations_of = Json::object();
   for (const BehaviourState& behaviour : system.snapshot().attention.sample.behaviours) {
     activations += behaviour.activations;
-    activations_of[name(behaviour.behaviour)] = behaviour.activations;
+    activations_of[behaviour.name] = behaviour.activations;
     fastest += behaviour.activations_at_fastest;
   }
   char hash[32];
@@ -139,11 +142,14 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                {"activations", activations},
                {"activations_of", activations_of},
                {"activations_at_pmin", fastest},
-               {"reaction_p50_s", nullptr},
-               {"reaction_p99_s", nullptr},
                {"tasks", report["tasks"]},
                {"events", system.network().events()},
                {"hash", hash}});
+  line.update(criteria.fields());
+  if (options.hash_outputs) {
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(system.network().output_hash()));
+    line["output_hash"] = hash;
+  }
   return line;
 }
 

@@ -49,6 +49,20 @@ TEST(Lockstep, the_same_seed_gives_the_same_bits) {
   EXPECT_EQ(first.object, second.object);
 }
 
+TEST(Lockstep, all_that_is_sent_is_one_number_and_looking_at_the_work_does_not_change_it) {
+  const auto run = [](std::uint64_t seed, bool metered) {
+    LockstepSystem system("give_mug", "", seed);
+    system.network().hash_outputs();
+    if (metered) system.network().meter();
+    system.network().run_for(std::chrono::seconds(1));
+    EXPECT_EQ(system.network().cpu("collision_checker") > 0, metered);
+    return system.network().output_hash();
+  };
+  const std::uint64_t first = run(7, false);
+  EXPECT_EQ(first, run(7, true));
+  EXPECT_NE(first, run(8, false));
+}
+
 TEST(Lockstep, another_seed_gives_another_world) {
   const Trace first = play(7, 1.0), second = play(8, 1.0);
   EXPECT_NE(first.hash, second.hash);

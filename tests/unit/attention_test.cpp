@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/base/errors.hpp"
+#include "common/base/pace.hpp"
 #include "common/config/resources.hpp"
 #include "components/attention/settings.hpp"
 #include "tests/support/small_robot.hpp"
@@ -359,6 +360,48 @@ TEST_F(AttentionTest, off_it_looks_at_nothing_and_asks_for_nothing) {
   for (const BehaviourState& state : attention.state().behaviours) EXPECT_EQ(state.activations, 0u);
 }
 
+TEST_F(AttentionTest, work_is_as_urgent_as_the_most_urgent_behaviour_it_serves) {
+  AttentionSettings s = settings();
+  s.works = {{Work::forecast, 0.02, 0.06, 0, {"avoid"}},
+             {Work::cost_map, 0.08, 0.4, 0, {"pick", "avoid"}},
+             {Work::replan, 0.2, 0.8, 0.5, {"give"}}};
+  Attention attention(s, body_);
+  run(attention, 0, 2);
+  EXPECT_NEAR(attention.advice().forecast_period, 0.06, 1e-9);
+  EXPECT_NEAR(attention.advice().cost_map_period, 0.4, 1e-9);
+  EXPECT_EQ(attention.advice().people_period, 0.0) << "not described: as it comes";
+  people_.people = {standing(0.6, 0.1)};
+  run(attention, 2, 4);
+  const double ease = (of(attention.state(), Behaviour::avoid).period - 0.04) / 0.16;
+  EXPECT_LT(ease, 0.5);
+  EXPECT_NEAR(attention.advice().forecast_period, 0.02 + 0.04 * ease, 1e-9);
+  EXPECT_NEAR(attention.advice().cost_map_period, 0.08 + 0.32 * ease, 1e-9);
+  EXPECT_EQ(attention.advice().replan_period, 0.5) << "fixed";
+}
+
+TEST_F(AttentionTest, a_behaviour_that_is_only_described_watches_slows_and_waits_for_what_it_names) {
+  AttentionSettings s = settings();
+  BehaviourSettings mind{Behaviour::watch, {ClockLaw::linear, 0.04, 0.3, 0.1, 1.0, 1.0}, "mind_the_hand"};
+  mind.watch = {Input::hand_distance, 0.6, 0.1, 0.2, GazeAt::hand, "a hand is near"};
+  mind.conditions = {parse_condition("behaviour track"), parse_condition("not holding")};
+  std::erase_if(s.behaviours, [](const BehaviourSettings& b) { return b.behaviour == Behaviour::avoid; });
+  s.behaviours.insert(s.behaviours.begin(), mind);
+  Attention attention(s, body_);
+  Person anna = standing(3, 0);
+  anna.joints[11].position = body_.grasp_point(active_.position, active_.T_world_base) + Vector3(0.35, 0, 0);
+  people_.people = {anna};
+  run(attention, 0, 1);
+  EXPECT_EQ(attention.advice().limiting, "mind_the_hand");
+  EXPECT_NEAR(attention.advice().speed_factor, 0.6, 1e-6);
+  EXPECT_EQ(attention.advice().reason, "a hand is near");
+  EXPECT_EQ(attention.state().behaviours.front().name, "mind_the_hand");
+  EXPECT_TRUE(attention.state().behaviours.front().winner);
+  action_.holding = true;
+  run(attention, 1, 2);
+  EXPECT_EQ(attention.advice().speed_factor, 1.0);
+  EXPECT_EQ(attention.advice().limiting, "");
+}
+
 std::string refusal_of(std::string settings, const std::string& part, const std::string& instead) {
   settings.replace(settings.find(part), part.size(), instead);
   const test::TemporaryFolder folder;
@@ -377,6 +420,51 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   EXPECT_THAT(stranger, HasSubstr("attention.txtpb:31"));
   EXPECT_THAT(stranger, HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
   EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"), HasSubstr("behaviour search: period must be from p_min to p_max"));
+}
+
+TEST(AttentionSettingsFile, what_a_user_adds_is_refused_where_it_is_wrong) {
+  std::ifstream in(resource("config/attention.txtpb"));
+  const std::string shipped((std::istreambuf_iterator<char>(in)), {});
+  const auto added = [&](const std::string& text) {
+    const test::TemporaryFolder folder;
+    const std::string file = folder.write("attention.txtpb", shipped + text);
+    return test::message_of<ConfigError>([&] { load_settings(file); });
+  };
+  const std::string line = std::to_string(std::count(shipped.begin(), shipped.end(), '\n') + 2);
+  const std::string begin = "behaviours {\n";
+  const std::string clock = "p_min: 0.04 p_max: 0.3 near: 0.1 far: 1 weber_gain: 1 kind: WATCH ";
+  EXPECT_EQ(added(begin + "name: \"mind\" input: \"hand_distance\" " + clock + "}"), "no error");
+  const std::string input = added(begin + "name: \"mind\" input: \"mood\" " + clock + "}");
+  EXPECT_THAT(input, HasSubstr("attention.txtpb:" + line + ":input"));
+  EXPECT_THAT(input, HasSubstr("\"mood\" is none of human_distance, hand_distance"));
+  EXPECT_THAT(added(begin + "name: \"mind\" input: \"hand_distance\" released_when: \"fact bored\" " + clock + "}"),
+              HasSubstr("attention.txtpb:" + line + ":released_when: \"bored\" is no fact"));
+  EXPECT_THAT(added(begin + "name: \"mind\" input: \"hand_distance\" released_when: \"behaviour other\" " + clock + "}\n" + begin +
+                    "name: \"other\" input: \"hand_distance\" released_when: \"not behaviour mind\" " + clock + "}"),
+              testing::AllOf(HasSubstr("attention.txtpb:" + line + ":released_when"), HasSubstr("mind -> other -> mind")));
+  EXPECT_THAT(added(begin + "name: \"mind\" released_when: \"behaviour nobody\" input: \"clearance\" " + clock + "}"),
+              HasSubstr("\"nobody\", which is not described"));
+  EXPECT_THAT(added("works {\nname: \"weather\" p_min: 1 p_max: 2 serves: \"avoid\" }"),
+              HasSubstr("attention.txtpb:" + line + ":name: \"weather\" is none of people, objects, forecast, cost_map, replan"));
+  EXPECT_THAT(added("works {\nname: \"people\" p_min: 3 p_max: 2 serves: \"avoid\" }"),
+              HasSubstr("attention.txtpb:" + line + ":p_max: p_max must not be below p_min"));
+}
+
+TEST(Pace, keeps_to_what_is_advised_within_its_limits_and_forgets_old_advice) {
+  Pace pace(0.02, 0.06, 0.02);
+  EXPECT_TRUE(pace.due(at(0)));
+  pace.done(at(0));
+  EXPECT_FALSE(pace.due(at(0.005)));
+  EXPECT_TRUE(pace.due(at(0.02)));
+  pace.advise(1.0, at(0));
+  EXPECT_EQ(pace.period(at(0.1)), 0.06);
+  EXPECT_FALSE(pace.due(at(0.04)));
+  EXPECT_TRUE(pace.due(at(0.06)));
+  pace.advise(0.0, at(0.1));
+  EXPECT_EQ(pace.period(at(0.1)), 0.02);
+  pace.advise(0.05, at(0.2));
+  EXPECT_EQ(pace.period(at(0.4)), 0.05);
+  EXPECT_EQ(pace.period(at(0.6)), 0.02) << "attention is silent";
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+// A behaviour that is described, not programmed: one input, a factor that falls with it, something to look at.
+#pragma once
+
+#include "components/attention/schema.hpp"
+
+namespace handsel::attention {
+
+class Watch : public Schema {
+ public:
+  Watch(const Body& body, const MotorSettings& motor, const WatchSettings& settings) : body_(body), motor_(motor), settings_(settings) {}
+  Behaviour kind() const override { return Behaviour::watch; }
+  double perceive(const World& world, TimePoint now) override;
+  bool released(const World&) const override { return known_; }
+  double speed_factor() const override;
+  const char* reason() const override { return settings_.reason.c_str(); }
+  std::optional<Vector3> gaze() const override { return gaze_; }
+
+ private:
+  double look(const World& world, TimePoint now);
+
+  const Body& body_;
+  MotorSettings motor_;
+  WatchSettings settings_;
+  bool known_{};  // the input is there to be watched
+  double input_{};
+  std::optional<Vector3> gaze_;
+  std::optional<TimePoint> seen_;
+};
+
+}  // namespace handsel::attention
