@@ -21,14 +21,16 @@ class Criteria {
   Criteria& operator=(const Criteria&) = delete;
 
   /// Fields of the trial's line:
-  /// `reactions_s`: a person came nearer than 0.40 m to a moving arm, themselves moving toward it (> 0.1 m/s): time until the speed factor
-  ///   had fallen by a tenth of what it had been at most in the half second before [s]; `reaction_p50_s`, `reaction_p99_s` of these;
-  ///   `late_reactions`: those above 0.2 s.
-  /// `interventions`: times the guard began to limit the speed of a running motion because of the separation; `intervention_s`: for how
-  /// long. `below_separation_s`: a moving arm was nearer than the separation rule asks for at its speed [s]. `robot_idle_s`,
-  /// `person_idle_s`, `concurrent_s`: neither axis nor person moved, both did [s]. `cpu_s`: of each component's handlers and jobs, thread
-  /// CPU time; `cpu_chain_s`: of perception and planning. `runs`: how often each piece of work was done; `work_period_s`: mean period that
-  /// was advised.
+  /// - `reactions_s`: a person came nearer than 0.40 m to a moving arm, themselves moving toward it (> 0.1 m/s): time until the speed
+  /// factor
+  ///   had fallen by a tenth of what it had been at most in the half second before [s]
+  /// - `reaction_p50_s`, `reaction_p99_s` of these; `late_reactions`: those above 0.2 s
+  /// - `interventions`: times the guard began to limit the speed of a running motion because of the separation
+  /// - `intervention_s`: for how long; `below_separation_s`: a moving arm was nearer than the separation rule asks for at its speed
+  /// - `closing_speed_m_s`: the fastest by which the least separation shrank within 0.5 m, over 20 ms
+  /// - `robot_idle_s`, `person_idle_s`, `concurrent_s`: neither axis nor person moved, both did
+  /// - `cpu_s`: of each component's handlers and jobs, thread CPU time; `cpu_chain_s`: of perception and planning
+  /// - `runs`: how often each piece of work was done; `work_period_s`: mean period that was advised
   nlohmann::json fields() const;
 
  private:
@@ -53,7 +55,7 @@ class Criteria {
   ExecutionStatus status_;
   bool running_{}, limited_{};
   std::uint64_t interventions_{}, advices_{};
-  double limited_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{};
+  double closing_speed_{}, limited_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{};
   std::array<double, 5> rates_{};  // sums of advised rates [Hz]
 };
 
