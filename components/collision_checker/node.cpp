@@ -7,6 +7,7 @@
 namespace handsel::collision_checker {
 namespace {
 
+constexpr int kTicks = 4;  // of the shortest period: periods between are rounded to them
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
 config::CollisionCheckerSettings load(const NodeContext& context) {
@@ -28,7 +29,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       robot_(context.robot),
       forecaster_(*context.robot, context.objects, load_cost_settings(context.settings), core_settings(load(context))),
       query_world_(*context.robot, context.objects),
-      pace_(load(context).period(), load(context).longest_period(), load(context).period()),
+      pace_(load(context).period(), load(context).longest_period(), load(context).period() / kTicks),
       forecast_out_(bus.advertise<TrajectoryForecast>()),
       verdict_out_(bus.advertise<StateVerdict>()) {
   const config::CollisionCheckerSettings settings = load(context);
@@ -41,11 +42,11 @@ Node::Node(Bus& bus, const NodeContext& context)
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) {
     if (!scene_ || scene.revision != scene_->revision) news_ = true;
     scene_ = std::make_shared<Scene>(scene);
-    forecaster_.set_scene(scene);
+    scene_waits_ = true;
   });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) {
     people_ = std::make_shared<HumanState>(people);
-    forecaster_.set_people(people);
+    people_wait_ = true;
   });
   bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
     layers_.put(layer, receipt.arrival - receipt.age, receipt.arrival);
@@ -55,7 +56,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.forecast_period, r.arrival); });
   bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
-  bus.every(from_seconds(settings.period()), [this](TimePoint now) { forecast(now); });
+  bus.every(from_seconds(settings.period() / kTicks), [this](TimePoint now) { forecast(now); });
 }
 
 void Node::forecast(TimePoint now) {
@@ -67,6 +68,9 @@ void Node::forecast(TimePoint now) {
   bus_.set_degraded(missing.empty() ? layers_.complaint(now) : missing);
   if (!missing.empty()) return;
   news_ = false;
+  if (scene_waits_) forecaster_.set_scene(*scene_);
+  if (people_wait_) forecaster_.set_people(*people_);
+  scene_waits_ = people_wait_ = false;
   pace_.done(now);
   forecast_out_->publish(forecaster_.forecast(active_));
 }

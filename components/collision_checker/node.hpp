@@ -35,6 +35,7 @@ class Node {
   ActiveTrajectory active_;
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
+  bool scene_waits_{}, people_wait_{};  // for the next forecast
   CostLayers layers_;
 };
 

@@ -36,7 +36,11 @@ std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
 }
 
 Json base_line(const NodeContext& context, const TrialOptions& options) {
-  return {{"scenario", options.scenario}, {"seed", context.seed}, {"attention", options.attention}, {"law", options.law}};
+  Json line{{"scenario", options.scenario}, {"seed", context.seed}, {"attention", options.attention}, {"law", options.law}};
+  line["condition"] = options.condition.empty() ? options.attention : options.condition;
+  if (!options.participant.empty()) line["participant"] = options.participant;
+  if (options.order > 0) line["order"] = options.order;
+  return line;
 }
 
 struct Worker {

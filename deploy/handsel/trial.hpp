@@ -15,6 +15,8 @@ namespace handsel {
 struct TrialOptions {
   std::string scenario;
   std::string attention{"adaptive"}, law{"linear"};
+  std::string condition, participant;                        ///< of a study; empty: the attention's mode; nobody
+  std::size_t order{};                                       ///< number among the trials asked for, from 1; 0: none
   bool hash_outputs{};                                       ///< adds "output_hash": of every value every component sent, and when
   double timeout{};                                          ///< [s] of virtual time; 0: the scenario's
   std::function<void(double, const std::string&)> on_event;  ///< time [s] and text of each event; may be empty

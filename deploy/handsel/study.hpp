@@ -1,0 +1,55 @@
+// Compares conditions that were tried with the same seeds: means, paired differences with intervals, shares, and what a study hands on.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace handsel {
+
+/// Difference of two conditions over the seeds both have.
+struct PairedDifference {
+  std::size_t pairs{};
+  double first{}, second{};  ///< means
+  double difference{};       ///< mean of first - second
+  double low{}, high{};      ///< 95 % of it: bootstrap over the pairs, 4000 resamples
+  double p{1.0};             ///< two-sided, signs of the differences at random: 10 000 draws
+  bool unlike() const { return pairs > 0 && (low > 0 || high < 0); }
+};
+/// Equal lengths; seeded, so that equal data give equal numbers. Throws std::invalid_argument otherwise.
+PairedDifference paired_difference(const std::vector<double>& first, const std::vector<double>& second);
+
+/// Two-sided exact test of McNemar: pairs in which only the first, or only the second succeeded.
+double mcnemar(int only_first, int only_second);
+
+/// The lines of many trials (of `handsel eval`) by scenario, condition and seed.
+class Study {
+ public:
+  void add(const nlohmann::json& line);
+  bool empty() const { return lines_.empty(); }
+
+  /// One line a scenario, condition and measure: `scenario`, `condition`, `against`, `measure`, `mean`, `mean_against`, `difference`,
+  /// `low`, `high`, `p`, `pairs`; for `success` with the Wilson intervals `low_of`, `high_of` of both. All conditions against `reference`.
+  std::vector<nlohmann::json> comparison(const std::string& reference) const;
+  /// The same for people.
+  std::string table(const std::string& reference) const;
+  /// One row a trial: order, scenario, condition, participant, seed and the measures.
+  std::string csv() const;
+  /// Work against separation of one scenario: the fixed rates as a curve, the others as points, each with its 95 % interval.
+  std::string plot(const std::string& scenario) const;
+  std::vector<std::string> scenarios() const;
+  std::vector<std::string> conditions() const;
+
+ private:
+  using Trials = std::map<std::uint64_t, nlohmann::json>;  // by seed
+  std::map<std::string, std::map<std::string, Trials>> lines_;
+  std::vector<nlohmann::json> rows_;  // in the order they came
+};
+
+/// Writes comparison.jsonl, trials.csv, table.txt and a plot a scenario into `folder`, made when it is not there.
+void write_study(const Study& study, const std::string& reference, const std::filesystem::path& folder);
+
+}  // namespace handsel
