@@ -110,13 +110,14 @@ class Avoid : public Schema {
       reason_ = "a person comes close";
     }
     if (active.trajectory != 0 && active.rest.size() > 0) {
-      constexpr double kLook = 0.15;
-      if (distance_along(active, *w.people, exception, kLook) > s.distance + 1e-3) {
-        factor_ = std::max(factor_, motor_.avoid_recede);
-      } else if (s.distance < motor_.avoid_stop && closing > motor_.recoil_speed &&
-                 distance_along(active, *w.people, exception, -kLook) > s.distance + 1e-3) {
+      constexpr double kSame = 2e-4, kFarther = 1e-3;  // [m]
+      const double ahead = least_along(active, *w.people, exception, 1);
+      const bool closes_in = s.distance < motor_.avoid_stop && closing > motor_.recoil_speed;
+      if (closes_in && ahead < s.distance + kFarther && least_along(active, *w.people, exception, -1) > s.distance + kFarther) {
         factor_ = motor_.recoil_factor;
         reason_ = "recoil: a person closes in";
+      } else if (ahead > s.distance + (closing > motor_.recoil_speed ? kFarther : -kSame)) {
+        factor_ = std::max(factor_, motor_.avoid_recede);
       }
     } else if (s.distance < motor_.avoid_stop && closing > motor_.recoil_speed) {
       factor_ = motor_.recoil_factor;
@@ -129,6 +130,11 @@ class Avoid : public Schema {
   const char* reason() const override { return reason_; }
 
  private:
+  /// The least distance along the running trajectory before long. At first alone would not do: what begins or ends softly seems to stand.
+  double least_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, int way) {
+    constexpr double kFirst = 0.15, kSoon = 0.4;  // [s]
+    return std::min(distance_along(active, people, exception, way * kFirst), distance_along(active, people, exception, way * kSoon));
+  }
   double distance_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, double ahead) {
     sample_ = active.rest.at(active.time + ahead);
     posture_ = active.position;

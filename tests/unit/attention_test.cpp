@@ -218,6 +218,25 @@ TEST_F(AttentionTest, an_arm_that_leads_away_keeps_moving) {
   EXPECT_GE(attention.advice().speed_factor, 0.5);
 }
 
+TEST_F(AttentionTest, an_arm_that_leads_away_softly_is_not_held_where_it_begins_nor_where_it_ends) {
+  people_.people = {standing(0.8, 0.3)};
+  active_.trajectory = 1;
+  active_.axes = {0};
+  const double turn = -0.05 * 2.0;
+  AxisTrajectory axis;
+  for (const double jerk : {-1.0, 1.0, 1.0, -1.0}) axis.segments.push_back({0.45, jerk});
+  axis.start = {0.0, 0.0, 0.0};
+  active_.rest.axes = {axis};
+  EXPECT_LT(active_.rest.at(1.8).position[0], turn);
+  for (const double time : {0.0, 0.9, 1.75}) {
+    Attention attention(settings(), body_);
+    active_.time = time;
+    active_.position[0] = active_.rest.at(time).position[0];
+    run(attention, 0, 0.5);
+    EXPECT_GE(attention.advice().speed_factor, 0.5) << time;
+  }
+}
+
 TEST_F(AttentionTest, the_exchanging_hand_does_not_stop_the_robot_once_engaged) {
   people_.people = {standing(1.45, 0)};
   for (std::size_t j : {std::size_t{9}, std::size_t{10}, std::size_t{11}})
