@@ -17,9 +17,11 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr double kQualityShare = 0.01;    // of a step: grasps decide between sequences of equal length
+constexpr double kWeakShare = 0.05;       // likewise that a squeeze does not hold whichever way the load pulls
+constexpr double kWeakest = 10;           // below a margin of less than this all are alike [N]
 constexpr double kLargestApproach = 0.9;  // [rad] an arm axis moves less on a straight way
 constexpr double kMotionStep = 0.04;      // [rad]
-constexpr double kWayClearance = 0.002;   // [m] between an opened hand and the object
+constexpr double kWayClearance = 0.005;   // [m] between an opened hand and the object
 
 using Steps = std::vector<std::vector<Pose>>;
 
@@ -116,6 +118,9 @@ struct RegraspPlanner::Impl {
     if (!off || (*off - arm_q).cwiseAbs().maxCoeff() > kLargestApproach) return std::nullopt;
     const Vector opened = grasp(arm, i).pregrasp_joints, from = with(q, arm, *off, opened), to = with(q, arm, arm_q, opened);
     if (!world.check_motion(from, to, kMotionStep).free) return std::nullopt;
+    // A straight line of the joints bends in space.
+    for (const double share : {0.25, 0.5, 0.75, 0.9})
+      if (!clear_of_object(from + share * (to - from), T_world_object, 1 - arm)) return std::nullopt;
     return from;
   }
 
@@ -286,7 +291,11 @@ struct RegraspPlanner::Impl {
         reason = "the arms would collide wherever both reach it";
         continue;
       }
-      if (!world.is_free(with(rest, from, *q_from, g.hand_joints))) {  // it is brought there while the other arm rests
+      // It is brought there while the other arm rests, whose hand opens then.
+      const Vector closed = with(rest, from, *q_from, g.hand_joints);
+      const Vector opened = RobotModel::with(closed, *arms[static_cast<std::size_t>(to)].arm.fingers, h.pregrasp_joints);
+      const auto clear = [&](const Vector& q) { return world.is_free(q) && clear_of_object(q, e.T_world_object, from); };
+      if (!clear(closed) || !clear(opened)) {
         reason = "the other arm, at rest, would be in the way";
         continue;
       }
@@ -298,9 +307,34 @@ struct RegraspPlanner::Impl {
       }
       step.before = std::move(*before);
       step.after = std::move(*after);
+      if (!roomy(from, to, step)) {
+        reason = "there would be no room for the least error";
+        continue;
+      }
       return {std::move(step), ""};
     }
     return {{}, reason};
+  }
+
+  /// The hand that comes gets there and keeps off the other even where the object lies in that a little otherwise than planned.
+  bool roomy(int from, int to, const RegraspStep& step) {
+    const Manipulator &mover = arms[static_cast<std::size_t>(to)].arm, &holder = arms[static_cast<std::size_t>(from)].arm;
+    const auto arm_of = [](const Vector& q, const Manipulator& m) { return RobotModel::part(q, *m.arm); };
+    // Where a hand is open the other is closed on the object.
+    const Vector came = with(step.before, to, arm_of(step.q, mover), RobotModel::part(step.before, *mover.fingers));
+    const Vector left = with(step.after, from, arm_of(step.q, holder), RobotModel::part(step.after, *holder.fingers));
+    for (const Vector& q : {step.before, came, step.q, left, step.after}) {
+      const Pose T_world_hand = T_world_base * robot.link_pose(q, mover.palm);
+      for (int axis = 0; axis < 3; ++axis) {
+        for (const double by : {-settings.slack, settings.slack}) {
+          Pose T = T_world_hand;
+          T.translation()[axis] += by;
+          const auto off = reach(to, T, q, 0);
+          if (!off || !world.is_free(RobotModel::with(q, *mover.arm, *off))) return false;
+        }
+      }
+    }
+    return true;
   }
 
   const RobotModel& robot;
@@ -334,8 +368,10 @@ class Search {
   };
   std::map<Node, std::vector<Edge>> edges;
 
-  void add(const Node& from, const Node& to, double quality, std::size_t pair = 0) {
-    edges[from].push_back({to, 1 + kQualityShare * (1 - quality), pair});
+  /// `margin`: the least of the grasps that it leads from or to [N].
+  void add(const Node& from, const Node& to, double quality, double margin, std::size_t pair = 0) {
+    const double weak = std::clamp(-margin / kWeakest, 0.0, 1.0);
+    edges[from].push_back({to, 1 + kQualityShare * (1 - quality) + kWeakShare * weak, pair});
   }
   void remove(const Node& from, const Node& to) {
     std::erase_if(edges[from], [&](const Edge& e) { return e.to == to; });
@@ -484,9 +520,9 @@ RegraspPlan RegraspPlanner::plan(const RegraspTask& task, const std::function<bo
     sides.push_back(std::move(side));
     for (const std::size_t i : taken.back()) {
       for (std::size_t p = 0; p < places.size(); ++p) {
-        const double quality = impl.grasp(a, i).quality;
-        search.add({-1, p}, {a, i}, quality);
-        search.add({a, i}, {-1, p}, quality);
+        const Grasp& g = impl.grasp(a, i);
+        search.add({-1, p}, {a, i}, g.quality, g.margin);
+        search.add({a, i}, {-1, p}, g.quality, g.margin);
       }
     }
   }
@@ -503,8 +539,9 @@ RegraspPlan RegraspPlanner::plan(const RegraspTask& task, const std::function<bo
     doubles = list_double_grasps(sides[0], sides[1], pairs);
     for (std::size_t n = 0; n < doubles.grasps.size(); ++n) {
       const DoubleGrasp& d = doubles.grasps[n];
-      search.add({0, d.first}, {1, d.second}, d.quality, n);
-      search.add({1, d.second}, {0, d.first}, d.quality, n);
+      const double margin = std::min(impl.grasp(0, d.first).margin, impl.grasp(1, d.second).margin);
+      search.add({0, d.first}, {1, d.second}, d.quality, margin, n);
+      search.add({1, d.second}, {0, d.first}, d.quality, margin, n);
     }
   }
   out.double_grasps = doubles.grasps.size();

@@ -48,8 +48,9 @@ struct RegraspStep {
 };
 
 struct RegraspSettings {
-  std::size_t most_of_each{120};         ///< grasps of each list that are considered, spread over all orientations
+  std::size_t most_of_each{200};         ///< grasps of each list that are considered, spread over all orientations
   double clearance{0.004};               ///< between the hands [m]
+  double slack{0.005};                   ///< what is held may lie this far from where it was planned to, when the other hand comes [m]
   double stand_off{0.09};                ///< of a hand before it comes and after it went [m]
   double lift{0.08};                     ///< what is picked up or put down must be able to go this far straight up [m]
   int exchange_tries{200};               ///< places and turns of the object tried to pass it in one double grasp

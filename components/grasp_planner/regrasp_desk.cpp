@@ -1,14 +1,17 @@
 #include "components/grasp_planner/regrasp_desk.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <limits>
 
 namespace handsel::grasp_planner {
 namespace {
 
-constexpr double kFirm = 1.0;          // [N] of Grasp::margin: those with less are taken only where there are not
+// [N] of Grasp::margin: weaker grasps are taken only where firmer ones lead nowhere.
+constexpr std::array kLeastMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
+constexpr std::size_t kFewest = 3;     // steps from one hand by the other to its place
 constexpr double kLeastEffort = 0.05;  // [Nm]
-constexpr std::size_t kEnough = 30;    // of the others
 
 RegraspKind kind_of(RegraspStepKind kind) {
   switch (kind) {
@@ -78,36 +81,46 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& ro
     return answer;
   }
   std::vector<std::shared_ptr<const GraspPage>> pages;
-  std::vector<RegraspArm> sides;
-  std::vector<GraspList> whole(arms.size()), sure(arms.size());
-  for (const ArmBook& arm : arms) {
-    pages.push_back(arm.book->page(model, cancelled));
+  std::vector<GraspList> whole(arms.size());
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    pages.push_back(arms[a].book->page(model, cancelled));
     if (!pages.back()) {
       answer.reply.reason = "cancelled";
       return answer;
     }
-    GraspList& list = whole[sides.size()];
-    list.grasps = pages.back()->list.grasps;
+    whole[a].grasps = pages.back()->list.grasps;
     if (request.both)
-      for (ListedGrasp& g : list.grasps) share_load(*arm.kit, model, settings.grip, g.grasp);
-    GraspList& firm = sure[sides.size()];
-    std::copy_if(list.grasps.begin(), list.grasps.end(), std::back_inserter(firm.grasps),
-                 [](const ListedGrasp& g) { return g.grasp.margin > kFirm; });
-    sides.push_back({arm.arm, arm.kit.get(), firm.grasps.size() >= kEnough ? &firm : &list});
-    answer.listed += list.grasps.size();
+      for (ListedGrasp& g : whole[a].grasps) share_load(*arms[a].kit, model, settings.grip, g.grasp);
+    answer.listed += whole[a].grasps.size();
   }
-  RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
   RegraspTask task;
   task.start.T_world_object = object->T_world_object;
   task.goal.T_world_object = request.T_world_goal;
-  const RegraspPlan plan =
-      request.both ? planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled) : planner.plan(task, cancelled);
-  answer.judged = plan.judged;
-  answer.reply.solved = plan.solved;
-  answer.reply.reason = plan.reason;
-  answer.reply.rejected = plan.rejected;
-  if (plan.solved)
-    for (const RegraspStep& step : plan.steps) answer.reply.steps.push_back(told(step, sides));
+  for (const double least : kLeastMargins) {
+    std::vector<GraspList> firm(arms.size());
+    std::vector<RegraspArm> sides;
+    for (std::size_t a = 0; a < arms.size(); ++a) {
+      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(), std::back_inserter(firm[a].grasps),
+                   [least](const ListedGrasp& g) { return g.grasp.margin >= least; });
+      sides.push_back({arms[a].arm, arms[a].kit.get(), &firm[a]});
+    }
+    const bool any = std::all_of(firm.begin(), firm.end(), [](const GraspList& list) { return !list.grasps.empty(); });
+    if (!any && least != kLeastMargins.back()) continue;
+    RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
+    const RegraspPlan plan = request.both ? planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled)
+                                          : planner.plan(task, cancelled);
+    answer.judged += plan.judged;
+    // A firm grip is not worth handing the object to and fro.
+    if (!plan.solved ? !answer.reply.solved : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
+      answer.reply.solved = plan.solved;
+      answer.reply.reason = plan.reason;
+      answer.reply.rejected = plan.rejected;
+      answer.reply.steps.clear();
+      for (const RegraspStep& step : plan.steps) answer.reply.steps.push_back(told(step, sides));
+    }
+    const bool better_by_weaker = least >= 0 && answer.reply.steps.size() > kFewest;
+    if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;
+  }
   return answer;
 }
 

@@ -146,7 +146,7 @@ class ManipulationPlanner {
   Routine<Outcome> give(const std::string& object, const std::string& human);
   Routine<Outcome> place(const std::string& object, const std::string& surface);
   /// What is held, to above its place and down to it.
-  Routine<Outcome> lower(const std::string& object, const PuttingPosture& posture);
+  Routine<Outcome> lower(const PuttingPosture& posture);
   /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
   Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp);
@@ -189,6 +189,7 @@ class ManipulationPlanner {
   /// Where the object can stand: where the goal says, else free places on its surface, the nearest to an arm first.
   std::vector<Pose> places_for(const ActionGoal& goal, const SceneObject& object, const ObjectModel& model) const;
   Routine<Outcome> pass(const std::string& object, const RegraspStep& step);
+  std::optional<Vector> meeting_posture(const RegraspStep& step) const;
   Routine<Outcome> put_down(const std::string& object, const RegraspStep& step);
   Routine<Outcome> let_go(const std::string& object, const Vector& closed, const Vector& after);
   Routine<Outcome> others_to_rest();

@@ -64,11 +64,10 @@ void ManipulationPlanner::place_world(CollisionWorld& world, const Scene& scene,
   world.set_moving_axes({});
 }
 
-Routine<Outcome> ManipulationPlanner::lower(const std::string& object_id, const PuttingPosture& posture) {
+Routine<Outcome> ManipulationPlanner::lower(const PuttingPosture& posture) {
   Motion above;
   above.phase = "carry";
   above.goals = {posture.arm_above};
-  above.allowed = {object_id};
   above.speed = settings_.carry_speed();
   Outcome last = co_await move(above);
   if (!last.good) co_return last;
@@ -113,7 +112,7 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   if (!last.good) co_return last;
   if (found->postures.empty()) co_return Outcome::failure("no free place on " + onto + " within the arm's reach: " + found->objections);
   for (const PuttingPosture& posture : found->postures) {
-    last = co_await lower(object_id, posture);
+    last = co_await lower(posture);
     if (!last.good) continue;
     destinations_.clear();
     Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);

@@ -184,7 +184,8 @@ Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
         break;
       case RegraspKind::pass:
         if (&step != &plan.steps[1]) done = co_await make_room();
-        if (done.good) done = co_await pass(object_id, step);
+        if (!done.good) refuse("making room", done.reason);
+        done = co_await pass(object_id, step);
         break;
       case RegraspKind::place:
         done = co_await put_down(object_id, step);
@@ -249,17 +250,20 @@ Routine<Outcome> ManipulationPlanner::make_room() {
   Outcome rested = co_await others_to_rest();
   if (rested.good) co_return rested;
   const Pose T_now = T_world_tool();
-  const Vector3 aside = scene_.T_world_base.linear().col(1);
-  const double side = aside.dot(p_world_shoulder() - scene_.T_world_base.translation()) < 0 ? -1 : 1;
-  const std::vector<double> shares{0.15, 0.25, 0.35};
-  for (const double share : shares) {
-    Pose T = T_now;
-    T.translation() += share * (side * aside + 0.3 * Vector3::UnitZ());
-    const auto joints = reach(T);
-    if (!joints) continue;
+  const Eigen::Matrix3d base = scene_.T_world_base.linear();
+  const double side = base.col(1).dot(p_world_shoulder() - scene_.T_world_base.translation()) < 0 ? -1 : 1;
+  const std::vector<Vector3> ways{{0, 1, 0.3}, {0, 1, 0}, {0.5, 1, 0}, {-0.5, 1, 0}, {0, 0.3, 1}, {0, 1, -0.5}, {0.7, 0, 0.7}};
+  for (const Vector3& way : ways) {
+    std::optional<Vector> farthest;
+    for (const double share : {0.15, 0.25, 0.35}) {
+      Pose T = T_now;
+      T.translation() += share * (base * Vector3(way.x(), side * way.y(), way.z()));
+      if (auto joints = reach(T)) farthest = std::move(joints);
+    }
+    if (!farthest) continue;
     Motion draw;
     draw.phase = "making room";
-    draw.goals = {*joints};
+    draw.goals = {*farthest};
     draw.speed = settings_.carry_speed();
     Outcome drawn = co_await move(draw);
     if (!drawn.good) continue;
@@ -274,13 +278,33 @@ Vector3 ManipulationPlanner::p_world_shoulder() const {
   return (scene_.T_world_base * robot_->link_pose(set_point_, robot_->joints()[static_cast<std::size_t>(first.joint)].child)).translation();
 }
 
-Routine<Outcome> ManipulationPlanner::pass(const std::string& object_id, const RegraspStep& step) {
+/// What the hand holds does not lie in it quite as planned: it is the object that goes to its place, or where both arms reach it near that.
+std::optional<Vector> ManipulationPlanner::meeting_posture(const RegraspStep& step) const {
+  const auto taker = std::find_if(hands_.begin(), hands_.end(), [&](const Manipulator& m) { return m.name == step.to; });
+  if (taker == hands_.end() || taker->arm == nullptr) return std::nullopt;
   const Pose T_base_world = scene_.T_world_base.inverse();
+  const Pose T_grasp_standoff = robot_->link_pose(step.q, taker->palm).inverse() * robot_->link_pose(step.before, taker->palm);
   IkOptions near_by;
   near_by.restarts = 0;
-  // What the hand holds does not lie in it quite as planned: it is the object that goes to its place.
-  const auto meeting = robot_->inverse(arm_, T_base_world * step.T_world_object * attachment_.T_tool_object.inverse(), step.q, near_by);
-  if (!meeting) co_return Outcome::failure("the arm does not reach the place where " + object_id + " is to change hands");
+  for (const double off : {0.0, 0.02, 0.04}) {
+    for (const Vector3& way :
+         {Vector3(0, 0, -1), Vector3(-1, 0, 0), Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0)}) {
+      Pose T_base_object = T_base_world * step.T_world_object;
+      T_base_object.translation() += off * way;
+      auto own = robot_->inverse(arm_, T_base_object * attachment_.T_tool_object.inverse(), step.q, near_by);
+      const Pose T_base_hand = T_base_object * step.grasp.T_object_hand;
+      const bool both = own && robot_->inverse(*taker->arm, T_base_hand, step.q, near_by) &&
+                        robot_->inverse(*taker->arm, T_base_hand * T_grasp_standoff, step.before, near_by);
+      if (both) return own;
+      if (off == 0) break;
+    }
+  }
+  return std::nullopt;
+}
+
+Routine<Outcome> ManipulationPlanner::pass(const std::string& object_id, const RegraspStep& step) {
+  const std::optional<Vector> meeting = meeting_posture(step);
+  if (!meeting) co_return Outcome::failure("the arms do not reach the place where " + object_id + " is to change hands");
   Motion bring;
   bring.phase = "carry to the other hand";
   bring.goals = {*meeting};
@@ -366,7 +390,7 @@ Routine<Outcome> ManipulationPlanner::put_down(const std::string& object_id, con
   posture.T_world_object = T_world_object;
   posture.arm_above = *above;
   posture.arm_at = *at;
-  Outcome down = co_await lower(object_id, posture);
+  Outcome down = co_await lower(posture);
   if (!down.good) co_return down;
   down = co_await let_go(object_id, step.q, step.after);
   co_return down;
