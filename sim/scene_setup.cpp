@@ -205,6 +205,13 @@ class Reader {
     s.burst_length = within(sensor.burst_length(), "burst_length", s.burst_rate > 0 ? 1e-3 : 0, 100);
     s.joint_dropout = within(sensor.joint_dropout(), "joint_dropout", 0, kMost);
     if (sensor.has_pose()) s.T_world_sensor = pose_of(sensor.pose());
+    s.link = sensor.link();
+    if (!s.link.empty()) {
+      if (sensor.has_coverage_low()) fail("sensor " + s.source + " is carried by " + s.link + ": it can claim no coverage");
+      if (robot_.link_index(s.link) < 0) fail("sensor " + s.source + " is carried by " + s.link + ", which is no link of " + robot_.name());
+      s.T_link_sensor = pose_of(sensor.pose());
+      s.T_world_sensor = s.T_link_sensor;
+    }
     s.fov_horizontal = within(sensor.fov_horizontal(), "fov_horizontal", 0, M_PI);
     s.fov_vertical = within(sensor.fov_vertical(), "fov_vertical", 0, M_PI);
     s.range = within(sensor.range(), "range", 0, 100);

@@ -41,7 +41,15 @@ bool in_view(const SensorSettings& s, const Vector3& point) {
   return s.fov_vertical <= 0 || std::abs(std::atan2(p.z(), std::hypot(p.x(), p.y()))) <= s.fov_vertical / 2;
 }
 
+void carried_to(SensorSettings& s, const Pose& T_world_sensor) {
+  s.T_world_sensor = T_world_sensor;
+  s.coverage.low = s.coverage.high = T_world_sensor.translation();
+}
+
+bool in_reach(const SensorSettings& s, const Vector3& point) { return !s.link.empty() || inside(s.coverage, point); }
+
 std::string claims_too_much(const SensorSettings& s) {
+  if (!s.link.empty()) return "";
   if (s.gaze == GazeOutput::only) return "";
   for (int corner = 0; corner < 8; ++corner) {
     Vector3 p = s.coverage.low;
@@ -110,7 +118,7 @@ HumanSensor::HumanSensor(const SensorSettings& settings, std::uint64_t seed)
     : settings_(settings), random_(seed), stream_(settings, seed) {}
 
 bool HumanSensor::sees(const Sight& sight, std::size_t person, const Vector3& point) const {
-  if (settings_.gaze != GazeOutput::only && !inside(settings_.coverage, point)) return false;
+  if (settings_.gaze != GazeOutput::only && !in_reach(settings_, point)) return false;
   if (!in_view(settings_, point)) return false;
   return !settings_.occlusion || !hidden(sight, person, settings_.T_world_sensor->translation(), point);
 }
@@ -187,7 +195,7 @@ void ObjectSensor::observe(double now, const Sight& sight) {
   const bool blind = stream_.fault(now, SensorFaultKind::blind) != nullptr;
   for (const TrueObject& object : sight.objects) {
     const Vector3 where = object.T_world_object.translation();
-    if (blind || !inside(settings_.coverage, where) || !in_view(settings_, where)) continue;
+    if (blind || !in_reach(settings_, where) || !in_view(settings_, where)) continue;
     if (settings_.occlusion && hidden(sight, sight.people.size(), settings_.T_world_sensor->translation(), where)) continue;
     ObservedObject observed{object.id, object.model, object.T_world_object, 0.95};
     observed.T_world_object.translation() += noise(random_, normal_, settings_.noise);

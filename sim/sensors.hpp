@@ -38,6 +38,8 @@ struct SensorSettings {
   double dropout{}, joint_dropout{};        ///< shares
   double burst_rate{}, burst_length{};      ///< [1/s], [s]
   std::optional<Pose> T_world_sensor;       ///< looks along +x
+  std::string link;                         ///< that carries it; empty: it stands in the room
+  Pose T_link_sensor{Pose::Identity()};     ///< where a link carries it
   double fov_horizontal{}, fov_vertical{};  ///< [rad]
   double range{};                           ///< [m]
   bool occlusion{};
@@ -51,6 +53,11 @@ struct SensorSettings {
 
 /// Whether the point is inside range and field of view.
 bool in_view(const SensorSettings&, const Vector3& point);
+
+/// Moves it. What it claims to have looked at is nothing: a point where it is.
+void carried_to(SensorSettings&, const Pose& T_world_sensor);
+/// Whether a point can be seen at all: a sensor in the room sees what it claims to look at, one that is carried what is before it.
+bool in_reach(const SensorSettings&, const Vector3& point);
 
 /// Empty, or one sentence: which corner of the coverage it claims to look at lies outside its view.
 std::string claims_too_much(const SensorSettings&);
@@ -107,6 +114,8 @@ class HumanSensor {
  public:
   HumanSensor(const SensorSettings&, std::uint64_t seed);
   bool due(double now) { return stream_.due(now); }
+  /// Where it is now, for one that the robot carries.
+  void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
   /// To be called when due.
   void observe(double now, const Sight&);
   /// Moves what is due by `now` to `out`.
@@ -130,6 +139,7 @@ class ObjectSensor {
  public:
   ObjectSensor(const SensorSettings&, std::uint64_t seed);
   bool due(double now) { return stream_.due(now); }
+  void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
   void observe(double now, const Sight&);
   void collect(double now, std::vector<Delivery<ObjectObservation>>& out) { stream_.collect(now, out); }
   const SensorSettings& settings() const { return settings_; }

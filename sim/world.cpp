@@ -295,6 +295,8 @@ struct SimWorld::Impl {
       if (!sensor.due(now())) return;
       if (!looked) look();
       looked = true;
+      if (const SensorSettings& s = sensor.settings(); !s.link.empty())
+        sensor.carry_to(robot->T_world_link(model.link_index(s.link)) * s.T_link_sensor);
       sensor.observe(now(), sight);
     };
     for (HumanSensor& sensor : human_sensors) observe(sensor);

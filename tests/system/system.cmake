@@ -53,3 +53,8 @@ set_tests_properties(place_reached PROPERTIES TIMEOUT 1800)
 handsel_test(exchanges SOURCES ${CMAKE_CURRENT_LIST_DIR}/exchanges_test.cpp LINK handsel_command LABEL full)
 add_dependencies(test_exchanges product)
 set_tests_properties(exchanges PROPERTIES RUN_SERIAL TRUE TIMEOUT 14400)
+
+handsel_test(eval SOURCES ${CMAKE_CURRENT_LIST_DIR}/eval_test.cpp LINK nlohmann_json::nlohmann_json GTest::gmock LABEL system)
+target_compile_definitions(test_eval PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_eval handsel)
+set_tests_properties(eval PROPERTIES TIMEOUT 180)

@@ -231,6 +231,61 @@ TEST(Sensors, FieldOfViewAndRangeLimitWhatIsSeen) {
   EXPECT_EQ(claims_too_much(s), "");
 }
 
+TEST(Sensors, OneThatIsCarriedSeesWhatIsBeforeItAndClaimsNothing) {
+  SensorSettings s = plain();
+  s.link = "head";
+  s.fov_horizontal = 1.0;
+  s.fov_vertical = 1.2;
+  const Person anna = person_at("anna", 1.8, 0);
+  Sight sight;
+  sight.people = {&anna};
+  sight.bodies = {body_capsules(anna)};
+  const auto sees_her = [&](double yaw) {
+    HumanSensor sensor(s, 3);
+    Stream seen;
+    EXPECT_TRUE(sensor.due(0));
+    sensor.carry_to(make_pose(Vector3(0, 0, 1.4), Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3::UnitZ()))));
+    sensor.observe(0, sight);
+    sensor.collect(1, seen);
+    EXPECT_EQ(seen.at(0).message.coverage.low, seen.at(0).message.coverage.high);
+    return shows(seen.at(0).message, "head");
+  };
+  EXPECT_TRUE(sees_her(0));
+  EXPECT_TRUE(sees_her(0.3));
+  EXPECT_FALSE(sees_her(0.8));
+  EXPECT_FALSE(sees_her(M_PI));
+}
+
+TEST(Sensors, InTheWorldTheHeadSeesWhereItLooks) {
+  const auto gazes = [](double pan) {
+    config::Scenario scenario = mug_in_hand();
+    add_person(scenario, config::STILL)->set_x(in_hand().x() + 1.0);
+    (*scenario.mutable_start())["head_pan"] = pan;
+    (*scenario.mutable_start())["head_tilt"] = 0.0;
+    auto* sensor = scenario.add_human_sensors();
+    sensor->set_source("head");
+    sensor->set_link("camera");
+    sensor->set_rate(30);
+    sensor->set_gaze(config::ONLY_GAZE);
+    sensor->set_fov_horizontal(1.0);
+    SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
+    Stream seen;
+    for (int i = 0; i < 300; ++i) {
+      world.step();
+      world.human_observations(seen);
+    }
+    int count = 0;
+    for (const auto& d : seen)
+      for (const ObservedPerson& person : d.message.people) count += person.has_gaze;
+    return count;
+  };
+  const Vector3 p_camera = jido().link_pose(jido().rest_posture(), jido().link_index("camera")).translation();
+  const Vector3 to_anna = in_hand() + Vector3(1.0, 0, 0) - p_camera;
+  const double toward = std::atan2(to_anna.y(), to_anna.x());
+  EXPECT_GE(gazes(toward), 5);
+  EXPECT_EQ(gazes(toward + 1.0), 0);
+}
+
 TEST(Sensors, IdentitySwapsHappenAsOftenAsAskedAndPlacesStay) {
   SensorSettings s = plain();
   s.swap_rate = 0.5;
@@ -352,6 +407,18 @@ TEST(Sensors, SettingsThatMakeNoSenseAreRefusedInOneSentence) {
   EXPECT_EQ(refusal([](D& d) { d.set_occlusion(true); }), "scenario s: sensor camera: occlusion, range and field of view need its pose");
   EXPECT_NE(refusal([](D& d) { d.add_joints("nose"); }).find("no REP-155 joint"), std::string::npos);
   EXPECT_NE(refusal([](D& d) { d.set_swap_rate(1); }, false).find("for sensors of people"), std::string::npos);
+  EXPECT_EQ(refusal([](D& d) {
+              d.set_link("camera");
+              d.set_fov_horizontal(1);
+            }),
+            "");
+  EXPECT_NE(refusal([](D& d) { d.set_link("nose"); }).find("carried by nose, which is no link of jido"), std::string::npos);
+  EXPECT_NE(refusal([](D& d) {
+              d.set_link("camera");
+              d.mutable_coverage_low();
+              d.mutable_coverage_high();
+            }).find("it can claim no coverage"),
+            std::string::npos);
   EXPECT_NE(refusal([](D& d) {
               d.mutable_pose();
               d.set_fov_horizontal(1);

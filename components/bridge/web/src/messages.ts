@@ -67,7 +67,16 @@ export interface ExecutionStatus {
 export interface AttentionState {
   behaviours: { name: string; period: number; activations: bigint; activations_at_fastest: bigint; released: boolean; stimulus: number; speed_factor: number; winner: boolean; reason: string }[];
 }
-export interface AttentionAdvice { speed_factor: number; limiting: string; reason: string }
+export interface AttentionAdvice {
+  speed_factor: number;
+  limiting: string;
+  reason: string;
+  people_period: number;
+  objects_period: number;
+  forecast_period: number;
+  cost_map_period: number;
+  replan_period: number;
+}
 
 export interface TaskStatus { id: bigint; kind: number; state: number; plan: string[]; step: number; reason: string }
 export interface ActionStatus {

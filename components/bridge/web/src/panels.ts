@@ -151,10 +151,15 @@ export class Panels {
     rows("clocks", (attention?.behaviours ?? []).map((b) => {
       const fastest = Number(b.activations_at_fastest), share = fastest > 0 ? Number(b.activations) / fastest : 0;
       const kind = !b.released ? "quiet" : b.name === limiting ? "limiting" : "";
+      const leads = b.name === limiting ? b.reason : b.winner ? "looks" : "";
       return [{ text: b.name, kind }, { text: `${(1 / Math.max(b.period, 1e-3)).toFixed(1)} Hz`, kind: `number ${kind}` },
-        { text: `${(100 * share).toFixed(0)} % of the looks a fixed clock at its fastest would have taken`, share },
-        { text: b.released ? `${(100 * b.speed_factor).toFixed(0)} %` : "–", kind: `number ${kind}` }];
+        { text: `${b.activations} looks, ${(100 * share).toFixed(0)} % of what a fixed clock at its fastest would have taken`, share },
+        { text: b.stimulus.toFixed(2), kind: `number ${kind}` },
+        { text: b.released ? `${(100 * b.speed_factor).toFixed(0)} %` : "–", kind: `number ${kind}` }, { text: leads, kind: b.name === limiting ? "why" : "quiet" }];
     }));
+    const work: [string, number | undefined][] = [["people", advice?.people_period], ["things", advice?.objects_period],
+      ["forecast", advice?.forecast_period], ["cost map", advice?.cost_map_period], ["running path", advice?.replan_period]];
+    put("work", work.filter(([, period]) => period).map(([name, period]) => `${name} ${(1 / (period ?? 1)).toFixed(1)} Hz`).join(" · "));
   }
 
   private health(): void {

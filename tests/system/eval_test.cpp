@@ -1,0 +1,109 @@
+// handsel eval as its users call it: several conditions with the same seeds, shards that come together, and the same trial elsewhere.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/support/shell.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace handsel::test {
+namespace {
+
+using testing::HasSubstr;
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+const std::string kHandsel = HANDSEL_COMMAND;
+
+std::vector<Json> lines_of(const std::string& text) {
+  std::vector<Json> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
+  return lines;
+}
+
+TEST(Eval, a_replayed_trial_is_the_same_bit_for_bit_from_another_folder_too) {
+  const TemporaryFolder elsewhere;
+  const fs::path root = elsewhere.path();
+  fs::create_directories(root / "bin");
+  fs::copy(kHandsel, root / "bin/handsel");
+  fs::copy(HANDSEL_SOURCE_DIR "/deploy", root / "deploy", fs::copy_options::recursive);
+  fs::create_directories(root / "sim");
+  fs::copy(HANDSEL_SOURCE_DIR "/sim/scenarios", root / "sim/scenarios", fs::copy_options::recursive);
+  const std::string arguments = " eval --scenario give_mug --replay 5 --timeout 5";
+  const Outcome here = shell(kHandsel + arguments), there = shell((root / "bin/handsel").string() + arguments);
+  const Json a = lines_of(here.out).at(0), b = lines_of(there.out).at(0);
+  EXPECT_EQ(a["output_hash"], b["output_hash"]);
+  EXPECT_EQ(a["hash"], b["hash"]);
+  EXPECT_THAT(here.err, HasSubstr("hash of all outputs " + a["output_hash"].get<std::string>()));
+  EXPECT_GT(a["events"].get<int>(), 10000);
+  const Json other = lines_of(shell(kHandsel + " eval --scenario give_mug --replay 6 --timeout 5").out).at(0);
+  EXPECT_NE(other["output_hash"], a["output_hash"]);
+}
+
+TEST(Eval, conditions_share_their_seeds_and_come_in_a_drawn_order) {
+  const TemporaryFolder folder;
+  const Outcome outcome = shell(kHandsel + " eval --scenario give_mug --trials 4 --seed 3 --timeout 0.3 --jobs 2 --participant p07 " +
+                                "--attention adaptive max off fixed:0.5 --report " + (folder.path() / "study").string());
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  std::map<int, std::set<std::string>> conditions;
+  std::set<std::string> first;
+  for (const Json& line : lines_of(outcome.out)) {
+    if (conditions[line["seed"]].empty()) first.insert(line["condition"]);
+    conditions[line["seed"]].insert(line["condition"]);
+    EXPECT_EQ(line["participant"], "p07");
+    if (line["condition"] == "max") {
+      EXPECT_EQ(line["activations"], line["activations_at_pmin"]);
+      EXPECT_NEAR(line["work_period_s"]["forecast"].get<double>(), 0.02, 1e-9);
+    }
+    if (line["condition"] == "off") {
+      EXPECT_EQ(line["activations"], 0);
+    }
+  }
+  EXPECT_EQ(conditions.size(), 4u);
+  for (const auto& [seed, names] : conditions) EXPECT_EQ(names.size(), 4u) << seed;
+  EXPECT_GT(first.size(), 1u) << "always in the same order";
+  for (const char* file : {"comparison.jsonl", "trials.csv", "table.txt", "give_mug.svg"})
+    EXPECT_GT(fs::file_size(folder.path() / "study" / file), 100u) << file;
+}
+
+TEST(Eval, shards_come_together_as_if_they_had_been_one) {
+  const TemporaryFolder folder;
+  const std::string trials = kHandsel + " eval --scenario give_mug --trials 3 --seed 3 --timeout 0.3 --attention adaptive max ";
+  std::string files;
+  for (const char* shard : {"0/2", "1/2"}) {
+    const std::string file = (folder.path() / (std::string(1, shard[0]) + ".jsonl")).string();
+    EXPECT_EQ(shell(trials + "--shard " + shard + " --out " + file).exit_code, 0);
+    files += " " + file;
+  }
+  EXPECT_EQ(shell(trials + "--out /dev/null --report " + (folder.path() / "whole").string()).exit_code, 0);
+  EXPECT_EQ(shell(kHandsel + " eval --from" + files + " --report " + (folder.path() / "parts").string()).exit_code, 0);
+  const auto looks = [&](const char* name) {
+    std::ostringstream text;
+    text << std::ifstream(folder.path() / name / "comparison.jsonl").rdbuf();
+    for (const Json& row : lines_of(text.str()))
+      if (row["measure"] == "looks") return row;
+    throw std::logic_error("no row");
+  };
+  EXPECT_EQ(looks("whole"), looks("parts"));
+  EXPECT_EQ(looks("whole")["pairs"], 3);
+}
+
+TEST(Eval, a_mode_that_cannot_be_is_refused) {
+  const auto refused = [](const std::string& arguments, const std::string& says) {
+    const Outcome outcome = shell(kHandsel + " eval " + arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr(says));
+  };
+  refused("--attention some", "is none of adaptive, max, mean, off, fixed:SHARE");
+  refused("--attention fixed:2", "must be a number from 0 to 1");
+  refused("--replay 4 --attention max off", "name one mode and one law");
+}
+
+}  // namespace
+}  // namespace handsel::test
