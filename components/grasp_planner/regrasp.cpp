@@ -10,6 +10,7 @@
 #include <set>
 #include <tuple>
 
+#include "components/grasp_planner/carried_way.hpp"
 #include "components/grasp_planner/retreat.hpp"
 #include "components/grasp_planner/so3_grid.hpp"
 
@@ -20,6 +21,8 @@ constexpr double kQualityShare = 0.01;    // of a step: grasps decide between se
 constexpr double kWeakShare = 0.05;       // likewise that a squeeze does not hold whichever way the load pulls
 constexpr double kWeakest = 10;           // below a margin of less than this all are alike [N]
 constexpr double kLargestApproach = 0.9;  // [rad] an arm axis moves less on a straight way
+constexpr double kWayStep = 0.03;         // [m] between the poses at which what two hands carry is looked at
+constexpr std::size_t kWaysTried = 5;     // of each arm
 constexpr double kMotionStep = 0.04;      // [rad]
 constexpr double kWayClearance = 0.005;   // [m] between an opened hand and the object
 
@@ -164,38 +167,47 @@ struct RegraspPlanner::Impl {
     return std::nullopt;
   }
 
-  /// Both arms with their hands closed on the object there, found from `seed`.
-  std::optional<Vector> both_on(std::size_t i, std::size_t k, const Pose& T_world_object, const Vector& seed, int restarts,
-                                std::string& why) {
-    const auto first = reach(0, T_world_object * grasp(0, i).T_object_hand, seed, restarts);
-    const auto second = first ? reach(1, T_world_object * grasp(1, k).T_object_hand, seed, restarts) : std::nullopt;
-    if (!second) {
-      why = "not both arms reach it";
-      return std::nullopt;
+  /// Both arms with their hands closed on the object along the way: postures at its start and at its end.
+  std::optional<std::pair<Vector, Vector>> both_along(std::size_t i, std::size_t k, const std::vector<Pose>& T_world_way,
+                                                      const std::vector<CarriedWay>& first, const std::vector<CarriedWay>& second,
+                                                      std::string& why) {
+    why = "arms or hands would collide on the way";
+    const auto at = [&](const CarriedWay& x, const CarriedWay& y, std::size_t n) {
+      return with(with(robot.rest_posture(), 0, x.joints[n], grasp(0, i).hand_joints), 1, y.joints[n], grasp(1, k).hand_joints);
+    };
+    for (std::size_t sum = 0; sum < 2 * kWaysTried - 1; ++sum) {
+      for (std::size_t x = sum < kWaysTried ? 0 : sum - kWaysTried + 1; x <= std::min(sum, kWaysTried - 1); ++x) {
+        if (x >= first.size() || sum - x >= second.size()) continue;
+        const CarriedWay &one = first[x], &other = second[sum - x];
+        const auto free = [&](std::size_t n) {
+          const Vector q = at(one, other, n);
+          return world.is_free(q) && clear_of_object(q, T_world_way[n], 0, 1);
+        };
+        bool whole = free(0) && free(T_world_way.size() - 1);
+        for (std::size_t n = 1; whole && n + 1 < T_world_way.size(); ++n) whole = free(n);
+        if (whole) return std::pair(at(one, other, 0), at(one, other, T_world_way.size() - 1));
+      }
     }
-    Vector q = with(with(seed, 0, *first, grasp(0, i).hand_joints), 1, *second, grasp(1, k).hand_joints);
-    if (world.is_free(q) && clear_of_object(q, T_world_object, 0, 1)) return q;
-    why = "arms or hands would collide";
     return std::nullopt;
   }
 
-  /// Two hands at once, from `T_start` to `T_goal`.
-  std::optional<std::vector<RegraspStep>> judge_together(std::size_t i, std::size_t k, const Pose& T_start, const Pose& T_goal,
-                                                         std::string& why) {
-    const auto raised = [&](const Pose& T) {
-      Pose up = T;
-      up.translation().z() += settings.lift;
-      return up;
+  /// Up, over and down.
+  std::vector<Pose> carried_over(const Pose& T_start, const Pose& T_goal) const {
+    const auto raised = [&](Pose T) {
+      T.translation().z() += settings.lift;
+      return T;
     };
-    const auto at_start = both_on(i, k, T_start, robot.rest_posture(), 2, why);
-    if (!at_start) return std::nullopt;
-    const auto lifted = both_on(i, k, raised(T_start), *at_start, 0, why);
-    const auto above = lifted ? both_on(i, k, raised(T_goal), *lifted, 0, why) : std::nullopt;
-    const auto at_goal = above ? both_on(i, k, T_goal, *above, 0, why) : std::nullopt;
-    if (!at_goal) {
-      why += " lifted or at the goal";
-      return std::nullopt;
-    }
+    return way_of_object({T_start, raised(T_start), raised(T_goal), T_goal}, kWayStep);
+  }
+
+  /// Two hands at once along the way, on which each arm by itself has these postures.
+  std::optional<std::vector<RegraspStep>> judge_together(std::size_t i, std::size_t k, const std::vector<Pose>& T_world_way,
+                                                         const std::vector<CarriedWay>& first_ways,
+                                                         const std::vector<CarriedWay>& second_ways, std::string& why) {
+    const Pose &T_start = T_world_way.front(), &T_goal = T_world_way.back();
+    const auto ends = both_along(i, k, T_world_way, first_ways, second_ways, why);
+    if (!ends) return std::nullopt;
+    const Vector &at_start = ends->first, &at_goal = ends->second;
     const auto opened = [&](const Vector& q, int arm, std::size_t n) {
       return RobotModel::with(q, *arms[static_cast<std::size_t>(arm)].arm.fingers, grasp(arm, n).pregrasp_joints);
     };
@@ -204,11 +216,11 @@ struct RegraspPlanner::Impl {
     RegraspStep first, second, down;
     const Manipulator& other = arms[1].arm;
     const Vector& rest = robot.rest_posture();
-    const Vector alone = with(*at_start, 1, RobotModel::part(rest, *other.arm), RobotModel::part(rest, *other.fingers));
+    const Vector alone = with(at_start, 1, RobotModel::part(rest, *other.arm), RobotModel::part(rest, *other.fingers));
     const auto before_first = off(alone, T_start, 0, i);
-    const auto before_second = before_first ? off(opened(*at_start, 0, i), T_start, 1, k) : std::nullopt;
-    const auto after_first = before_second ? off(opened(*at_goal, 1, k), T_goal, 0, i) : std::nullopt;
-    const auto after_second = after_first ? off(opened(*at_goal, 0, i), T_goal, 1, k) : std::nullopt;
+    const auto before_second = before_first ? off(opened(at_start, 0, i), T_start, 1, k) : std::nullopt;
+    const auto after_first = before_second ? off(opened(at_goal, 1, k), T_goal, 0, i) : std::nullopt;
+    const auto after_second = after_first ? off(opened(at_goal, 0, i), T_goal, 1, k) : std::nullopt;
     if (!after_second) {
       why = "no straight way to or from it is free";
       return std::nullopt;
@@ -224,13 +236,13 @@ struct RegraspPlanner::Impl {
     second.to = 1;
     second.grasp_from = i;
     second.grasp_to = k;
-    second.q = *at_start;
+    second.q = at_start;
     second.before = *before_second;
     down.kind = RegraspStepKind::place;
     down.from = 0;
     down.grasp_from = i;
     down.T_world_object = T_goal;
-    down.q = *at_goal;
+    down.q = at_goal;
     down.after = RobotModel::with(*after_first, *other.arm, arm_of(*after_second, 1));
     return std::vector<RegraspStep>{first, second, down};
   }
@@ -417,29 +429,29 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
   Impl& impl = *impl_;
   if (impl.arms.size() != 2) throw ConfigError("two hands at once need two arms, there is " + std::to_string(impl.arms.size()));
   RegraspPlan out;
-  // Grasps each arm reaches from where it stands to where it is to stand.
-  std::vector<Pose> T_root_object;
-  for (const Pose& T : {T_world_start, T_world_goal}) {
-    Pose raised = T;
-    raised.translation().z() += impl.settings.lift;
-    for (const Pose& at : {T, raised}) T_root_object.push_back(impl.T_root_world * at);
-  }
+  // Grasps by which each arm follows it from where it stands to where it is to stand.
+  const std::vector<Pose> way = impl.carried_over(T_world_start, T_world_goal);
   std::array<GraspList, 2> reached;
   std::array<std::vector<std::size_t>, 2> index;
+  std::array<std::map<std::size_t, std::vector<CarriedWay>>, 2> ways;
   std::array<HandSide, 2> sides;
   for (std::size_t a = 0; a < 2; ++a) {
     const RegraspArm& arm = impl.arms[a];
-    const std::vector<double> scores = posture_scores(impl.robot, *arm.arm.arm, impl.robot.rest_posture(), *arm.list, T_root_object);
-    for (std::size_t n = 0; n < scores.size(); ++n) {
-      if (scores[n] < 0) continue;
+    for (std::size_t n = 0; n < arm.list->grasps.size(); ++n) {
+      std::vector<Pose> T_root_tip;
+      for (const Pose& T : way) T_root_tip.push_back(impl.T_root_world * T * arm.list->grasps[n].grasp.T_object_hand);
+      std::vector<CarriedWay> found = carried_ways(impl.robot, *arm.arm.arm, impl.robot.rest_posture(), T_root_tip);
+      if (found.empty()) continue;
       reached[a].grasps.push_back(arm.list->grasps[n]);
       index[a].push_back(n);
-      sides[a].posture.push_back(scores[n]);
+      sides[a].posture.push_back(std::min(1.0, found.front().room));
+      ways[a][n] = std::move(found);
     }
     sides[a].kit = arm.kit;
     sides[a].list = &reached[a];
     if (!index[a].empty()) continue;
-    out.reason = "by none of " + std::to_string(scores.size()) + " grasps does " + arm.arm.name + " reach it at its start and its goal";
+    out.reason =
+        "by none of " + std::to_string(arm.list->grasps.size()) + " grasps does " + arm.arm.name + " follow it from its start to its goal";
     return out;
   }
   DoubleSettings pairs;
@@ -449,6 +461,10 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
   pairs.clearance = impl.settings.clearance;
   DoubleList doubles = list_double_grasps(sides[0], sides[1], pairs);
   for (DoubleGrasp& d : doubles.grasps) d.first = index[0][d.first], d.second = index[1][d.second];
+  std::stable_sort(doubles.grasps.begin(), doubles.grasps.end(), [&](const DoubleGrasp& x, const DoubleGrasp& y) {
+    const auto margin = [&](const DoubleGrasp& d) { return std::min(impl.grasp(0, d.first).margin, impl.grasp(1, d.second).margin); };
+    return margin(x) > margin(y);
+  });
   out.double_grasps = doubles.grasps.size();
   std::map<std::string, std::uint64_t> rejected;
   for (const DoubleGrasp& d : doubles.grasps) {
@@ -460,7 +476,7 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
     if (out.judged >= impl.settings.most_pairs_tried || (cancelled && cancelled())) break;
     ++out.judged;
     std::string why;
-    auto steps = impl.judge_together(d.first, d.second, T_world_start, T_world_goal, why);
+    auto steps = impl.judge_together(d.first, d.second, way, ways[0].at(d.first), ways[1].at(d.second), why);
     if (steps) {
       out.steps = std::move(*steps);
       out.solved = true;

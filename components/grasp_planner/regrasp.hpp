@@ -80,9 +80,8 @@ class RegraspPlanner {
   /// an arm or a grasp that is not there.
   RegraspPlan plan(const RegraspTask& task, const std::function<bool()>& cancelled = {});
 
-  /// Two hands that take it at once where it stands and put it down together: pick, join, place. The postures are those at the start, that
-  /// lifted by `lift` above start and goal are found from the one before; the way between is not looked at. ConfigError when there is one
-  /// arm.
+  /// Two hands that take it at once where it stands, up by `lift`, straight over and down: pick, join, place. On the whole way both arms
+  /// keep the angles of their elbows, stay inside their limits and touch nothing. ConfigError when there is one arm.
   RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled = {});
 
  private:

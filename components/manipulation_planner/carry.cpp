@@ -1,6 +1,7 @@
 // Two hands at once on what is too heavy for one, a closed chain: up, over and down, level on the way.
 #include <algorithm>
 
+#include "common/model/srs_arm.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
 namespace handsel::manipulation_planner {
@@ -162,9 +163,14 @@ Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id
   together.speed = kTogether;
   const Vector start = posture();
   TrajectoryRequest request = trajectory_request({}, start, together);
+  // The whole way was looked at with the elbow where it is.
+  const ik::Chain chain(*robot_, arm_, start);
+  const std::optional<ik::SrsArm> srs = ik::SrsArm::recognise(chain);
   for (const Pose& T : T_world_object) {
     TipNode node;
     node.T_world_tip = T * attachment_.T_tool_object.inverse();
+    node.has_elbow = srs.has_value();
+    if (srs) node.elbow = srs->elbow_angle(RobotModel::part(start, arm_));
     request.poses.push_back(node);
   }
   request.follower = follower;

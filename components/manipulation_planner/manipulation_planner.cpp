@@ -11,7 +11,10 @@ namespace {
 
 constexpr double kSameGoal = 1e-6;  // [rad]
 constexpr double kAtHand = 0.15;    // [m] from the middle of a hand to that of what it takes hold of
+constexpr double kSlipped = 0.2;    // what is this far from where the hand would have it is not in the hand [m]
+constexpr double kSlipTime = 0.2;   // for so long [s]
 constexpr double kForever = 600;    // [s] a motion this long has been forgotten by everybody
+constexpr const char* kHands[] = {"l_hand", "r_hand"};
 constexpr std::uint32_t kBlocked = 1U << static_cast<unsigned>(Cause::forecast_collision);
 constexpr std::uint32_t kTooNear = 1U << static_cast<unsigned>(Cause::separation);
 
@@ -108,6 +111,8 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   } else {
     waiting_.poll(now);
   }
+  if (!slipped()) held_at_ = now;
+  if (action_ && !action_.done() && to_seconds(now - held_at_) > kSlipTime) lose_object(out);
   if (action_ && action_.done()) {
     const Outcome& outcome = action_.result();
     status_.state = outcome.good ? ActionState::succeeded : ActionState::failed;
@@ -117,6 +122,37 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   }
   status_.time_to_exchange = time_to_exchange();
   out_ = nullptr;
+}
+
+/// What a hand holds has left it, and no person has it.
+bool ManipulationPlanner::slipped() const {
+  const SceneObject* held = attachment_.object.empty() ? nullptr : object(attachment_.object);
+  if (held == nullptr || held->holder == Holder::robot || held->holder == Holder::human || set_point_.size() != robot_->dof()) return false;
+  const int hand = hand_index(hands_, attachment_.hand);
+  if (hand < 0) return false;
+  const Pose T_world_palm = scene_.T_world_base * robot_->link_pose(set_point_, hands_[static_cast<std::size_t>(hand)].palm);
+  const Vector3& p = held->T_world_object.translation();
+  if ((p - T_world_palm * attachment_.T_tool_object.translation()).norm() < kSlipped) return false;
+  return std::none_of(people_.people.begin(), people_.people.end(), [&](const Person& who) {
+    return std::any_of(std::begin(kHands), std::end(kHands), [&](const char* name) {
+      return (who.joints[static_cast<std::size_t>(body_joint_index(name))].position - p).norm() < 2 * kAtHand;
+    });
+  });
+}
+
+/// The action ends where the arm is.
+void ManipulationPlanner::lose_object(Outbox& out) {
+  const std::string lost = attachment_.object;
+  drop_action();
+  release_object();
+  TrajectoryCommand stop;
+  stop.id = ++commands_;
+  stop.epoch = execution_ ? execution_->epoch : 0;
+  stop.robot = robot_->name();
+  out.trajectories.push_back(stop);
+  status_.state = ActionState::failed;
+  status_.exchange_engaged = false;
+  status_.reason = lost + " slipped out of the hand (" + status_.phase + ")";
 }
 
 /// What the running motion still takes at the pace it has now, and what usually comes after it.
@@ -400,7 +436,7 @@ bool ManipulationPlanner::takes_hold(const std::string& who) const {
   const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : object(attachment_.object);
   const Person* them = held == nullptr ? nullptr : person(who);
   if (them == nullptr || held->holder == Holder::surface) return false;
-  for (const char* hand : {"l_hand", "r_hand"}) {
+  for (const char* hand : kHands) {
     const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
     if ((p - held->T_world_object.translation()).norm() < kAtHand) return true;
   }

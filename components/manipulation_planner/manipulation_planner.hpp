@@ -232,6 +232,8 @@ class ManipulationPlanner {
   /// The path that runs, as it would be timed for the people as they are now, where that makes a difference.
   Routine<Outcome> retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes);
   bool gone(const Running& running) const;
+  bool slipped() const;
+  void lose_object(Outbox& out);
   /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good exchange posture any more; true: it is none, even
   /// where there is no other.
   Routine<bool> follow(Motion& motion, const Vector& goal);
@@ -310,7 +312,7 @@ class ManipulationPlanner {
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;
   ActiveTrajectory active_;
-  TimePoint free_at_{};
+  TimePoint free_at_{}, held_at_{};
   double blocked_for_{0};  // how long the forecast, or a person too near, has held the robot back [s]
   bool too_near_{false};
   std::optional<GraspReply> grasp_reply_;

@@ -385,6 +385,31 @@ TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
   EXPECT_GT(std::count(rig.phases.begin(), rig.phases.end(), "lift"), 1) << "it is tried again";
 }
 
+TEST(ManipulationPlanner, WhatSlipsOutOfTheHandEndsTheActionWithThatReason) {
+  for (const bool to_a_person : {false, true}) {
+    Rig rig;
+    rig.start(ActionKind::pick);
+    rig.run(30);
+    ASSERT_TRUE(rig.planner.status().holding);
+    rig.person_takes = false;
+    rig.start(ActionKind::give);
+    rig.run_until("offer");
+    SceneObject& mug = rig.scene.objects[0];
+    mug.holder = to_a_person ? Holder::human : Holder::nobody;
+    mug.holder_id = to_a_person ? "anna" : "";
+    mug.T_world_object.translation().z() = 0.05;
+    for (int i = 0; i < 20; ++i) rig.cycle();
+    const ActionStatus& status = rig.planner.status();
+    if (to_a_person) {
+      EXPECT_EQ(status.state, ActionState::running) << status.reason;
+      continue;
+    }
+    EXPECT_EQ(status.state, ActionState::failed);
+    EXPECT_EQ(status.reason, "mug slipped out of the hand (offer)");
+    EXPECT_FALSE(status.holding);
+  }
+}
+
 TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoAndTakesTheNextAction) {
   Rig rig;
   rig.execution.mode = Mode::hold;
