@@ -67,8 +67,27 @@ class Costs {
     const OutsideCost outside = layers_.outside_cost(p);
     if (outside.forbidden_by != nullptr) return Why::forbidden;
     cost = settings_.w_comfort() * comfort + settings_.w_safety() * safety_cost(distance_to_body(body_, p), 0.8) +
-           settings_.w_visibility() * visibility_cost(person_, p, 3.0) + settings_.w_effort() * (p - p_now_).norm() + outside.cost;
+           settings_.w_visibility() * visibility_cost(person_, p, 3.0) + settings_.w_effort() * (p - p_now_).norm() + outside.cost +
+           settings_.w_preference() * against_preference(p);
     return Why::good;
+  }
+  /// What their profile says against it: the other side, another distance; 0 without one.
+  double against_preference(const Vector3& p) const {
+    constexpr double kFull = 0.3;  // [m]
+    const auto& people = settings_.people();
+    const auto profile =
+        std::find_if(people.begin(), people.end(), [this](const config::PersonProfile& one) { return one.id() == person_.id; });
+    if (profile == people.end()) return 0;
+    double cost = 0;
+    const auto joint = [this](const char* name) { return person_.joints[static_cast<std::size_t>(body_joint_index(name))].position; };
+    if (profile->handed() != config::EITHER) {
+      const Vector3 to_left = (joint("l_shoulder") - joint("r_shoulder")).stableNormalized();
+      const double off = (p - torso()).dot(profile->handed() == config::LEFT ? Vector3(-to_left) : to_left);
+      cost += std::clamp(off / kFull, 0.0, 1.0);
+    }
+    if (profile->preferred_distance() > 0)
+      cost += std::min(1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance()) / kFull);
+    return cost;
   }
   /// Of how the hand holds it toward them; nullopt: they could not take it.
   std::optional<double> of_attitude(const Eigen::Matrix3d& R_world_object) const {

@@ -21,7 +21,8 @@ namespace {
 struct RunOptions {
   SystemOptions system;
   bool headless{false}, stay{false}, json{false};
-  std::string human, report;
+  std::string human, report, condition, participant;
+  std::uint64_t trial{};
   double timeout{0.0};
 };
 
@@ -55,6 +56,22 @@ std::filesystem::path with_recording(const std::string& name, const std::string&
   return file;
 }
 
+/// Notes for the record of a study.
+class Marks {
+ public:
+  Marks(Bus& bus, const RunOptions& options)
+      : out_(bus.advertise<StudyMark>()),
+        mark_{.condition = options.condition, .participant = options.participant, .trial = options.trial} {}
+  void operator()(const std::string& text) {
+    mark_.text = text;
+    out_->publish(mark_);
+  }
+
+ private:
+  std::unique_ptr<Publisher<StudyMark>> out_;
+  StudyMark mark_;
+};
+
 void write_report(const std::string& file, const nlohmann::json& report) {
   std::ofstream out(file);
   out << report.dump(2) << "\n";
@@ -77,6 +94,7 @@ int run(RunOptions& options) {
   std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n", kProcesses.size(),
                options.system.domain, shown.c_str(), static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());
   Session& session = system.session();
+  Marks mark(session.bus(), options);
   Performer performer(session.bus(), session.observer(), scenario, options.timeout, [&] { return not_ready(session.snapshot()).empty(); });
   const auto ready = system.wait_ready(kReadyPatience);
   if (!ready) return 1;
@@ -90,15 +108,21 @@ int run(RunOptions& options) {
   session.observer().on_event([&](const TimelineEvent& event) {
     std::fprintf(stderr, "%7.2f s  %s\n", performer.started() ? to_seconds(event.at - performer.begin()) : 0.0, event.text.c_str());
   });
+  system.wait(std::chrono::hours(24), [&] { return performer.started(); });
+  mark("begin");
   system.wait(std::chrono::hours(24), [&] { return performer.finished(); });
   if (!performer.finished()) performer.abort("interrupted");
+  mark(performer.succeeded() ? "done" : "failed");
   session.listen(from_seconds(0.3));  // the last health samples
   session.observer().on_event({});
 
   for (const ProcessStatus& process : system.launcher().processes()) {
     if (process.restarts > 0) inputs.restarts[process.name] = process.restarts;
   }
-  const nlohmann::json report = make_report(inputs, performer, session.observer());
+  nlohmann::json report = make_report(inputs, performer, session.observer());
+  if (!options.condition.empty()) report["condition"] = options.condition;
+  if (!options.participant.empty()) report["participant"] = options.participant;
+  if (options.trial > 0) report["trial"] = options.trial;
   std::fprintf(stderr, "\n%s", summary(report).c_str());
   if (!options.report.empty()) write_report(options.report, report);
   if (json_wanted(options.json)) std::printf("%s\n", report.dump().c_str());
@@ -121,6 +145,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_flag("--json", options->json, "print the report as JSON");
   command->add_option("--human", options->human, "recording that the first person plays: .csv, .bvh, or a folder of the KTH handover set");
   command->add_option("--report", options->report, "write the report to this file");
+  command->add_option("--condition", options->condition, "of a study: in the report and, as a mark at begin and end, in the record");
+  command->add_option("--participant", options->participant, "pseudonym, likewise");
+  command->add_option("--trial", options->trial, "number of the trial, likewise");
   command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")->check(CLI::PositiveNumber);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

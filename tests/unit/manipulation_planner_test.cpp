@@ -625,8 +625,10 @@ TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {
 
 class Exchange : public ::testing::Test {
  protected:
-  ExchangeSearch find(const LayersNow& layers = {}) {
+  ExchangeSearch find(const LayersNow& layers = {}, const std::vector<config::PersonProfile>& people = {}) {
     auto many = settings();
+    many.set_w_preference(0.4);
+    for (const config::PersonProfile& profile : people) *many.add_people() = profile;
     many.set_exchange_goals(20);
     return find_exchange(*rig_.robot, rig_.scene, anna_, layers, rig_.q, rig_.tool() * rig_.T_tool_mug, make_pose({0.08, 0.02, 0.23}),
                          many);
@@ -642,6 +644,30 @@ TEST_F(Exchange, places_under_a_table_are_none) {
   rig_.scene.boxes.push_back({"high table", make_pose({0.95, 0, middle + 0.1}), {0.9, 2, 0.04}, true});
   const ExchangeSearch search = find();
   for (const ExchangePose& pose : search.poses) EXPECT_GT(pose.T_world_object.translation().z(), middle + 0.1) << "under or in the table";
+}
+
+TEST_F(Exchange, is_where_the_profile_of_the_person_says) {
+  const auto across_and_away = [&](const config::PersonProfile& profile) {
+    const ExchangeSearch search = find({}, {profile});
+    EXPECT_FALSE(search.poses.empty()) << search.reason;
+    const auto joint = [&](const char* name) { return anna_.joints[static_cast<std::size_t>(body_joint_index(name))].position; };
+    const Vector3 from_torso = search.poses.front().T_world_object.translation() - joint("torso");
+    return std::pair(from_torso.dot((joint("l_shoulder") - joint("r_shoulder")).normalized()), from_torso.head<2>().norm());
+  };
+  config::PersonProfile profile;
+  profile.set_id(anna_.id);
+  profile.set_handed(config::LEFT);
+  EXPECT_GT(across_and_away(profile).first, -1e-6);
+  profile.set_handed(config::RIGHT);
+  EXPECT_LT(across_and_away(profile).first, 1e-6);
+  profile.set_handed(config::EITHER);
+  profile.set_preferred_distance(0.45);
+  const double near = across_and_away(profile).second;
+  profile.set_preferred_distance(0.8);
+  EXPECT_GT(across_and_away(profile).second, near + 0.05);
+  const double usual = find().poses.front().cost;
+  profile.set_id("somebody else");
+  EXPECT_EQ(find({}, {profile}).poses.front().cost, usual);
 }
 
 TEST_F(Exchange, behind_a_wall_there_is_none_and_the_reason_says_so) {
