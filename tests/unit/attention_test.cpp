@@ -469,6 +469,21 @@ TEST(AttentionSettingsFile, what_a_user_adds_is_refused_where_it_is_wrong) {
               HasSubstr("attention.txtpb:" + line + ":p_max: p_max must not be below p_min"));
 }
 
+TEST(AttentionSettingsFile, the_example_is_a_behaviour_that_can_be) {
+  const auto text = [](const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return std::string((std::istreambuf_iterator<char>(in)), {});
+  };
+  const test::TemporaryFolder folder;
+  const AttentionSettings settings = load_settings(folder.write(
+      "attention.txtpb", text(resource("config/attention.txtpb")) + text(HANDSEL_SOURCE_DIR "/examples/attention/mind_the_hand.txtpb")));
+  ASSERT_EQ(settings.behaviours.back().name, "mind_the_hand");
+  EXPECT_EQ(settings.behaviours.back().conditions.size(), 3u);
+  const auto robot = test::small_robot();
+  const Body body(*robot, Vector3(0.4, 0, 0));
+  EXPECT_EQ(Attention(settings, body).state().behaviours.size(), 8u);
+}
+
 TEST(Pace, keeps_to_what_is_advised_within_its_limits_and_forgets_old_advice) {
   Pace pace(0.02, 0.06, 0.02);
   EXPECT_TRUE(pace.due(at(0)));
