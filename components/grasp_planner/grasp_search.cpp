@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/cost/person_frame.hpp"
+#include "common/model/holding_hand.hpp"
 #include "common/model/object_extent.hpp"
 #include "components/grasp_planner/double_grasp.hpp"
 #include "components/grasp_planner/retreat.hpp"
@@ -53,7 +54,9 @@ GraspChooser::Search::Search(const GraspChooser& chooser, const GraspRequest& r,
   if (!holder.empty()) {
     HumanState around = people;
     for (Person& p : around.people) {
-      if (p.id == holder) p.inflation += settings().off_fingers;
+      if (p.id != holder) continue;
+      p = with_fingers_bent(p, start.T_world_object.translation());
+      p.inflation += settings().off_fingers;
     }
     start.world.set_people(around);
     for (Person& p : around.people) {

@@ -16,7 +16,9 @@ constexpr double kSlipTime = 0.2;   // for so long [s]
 constexpr double kForever = 600;    // [s] a motion this long has been forgotten by everybody
 constexpr const char* kHands[] = {"l_hand", "r_hand"};
 constexpr std::uint32_t kBlocked = 1U << static_cast<unsigned>(Cause::forecast_collision);
-constexpr std::uint32_t kTooNear = 1U << static_cast<unsigned>(Cause::separation);
+constexpr std::uint32_t kTooNear = (1U << static_cast<unsigned>(Cause::separation)) | (1U << static_cast<unsigned>(Cause::attention_slow));
+constexpr double kStraight = 0.9;   // [rad] an axis turns less on a short straight motion; with more the tool swings around
+constexpr double kCreeping = 0.04;  // of the speed: who is so near that it is slower does not get anywhere
 
 }  // namespace
 
@@ -62,6 +64,8 @@ void ManipulationPlanner::on(const ActionGoal& goal) {
 /// What it has asked for is wanted no more.
 void ManipulationPlanner::drop_action() {
   action_ = {};
+  taken_up_ = {};
+  at_offer_ = false;
   waiting_.clear();
   drop_path_ = path_awaited_;
 }
@@ -92,7 +96,7 @@ void ManipulationPlanner::on(const TrajectoryReply& reply) {
 
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = &out;
-  too_near_ = execution_ && (execution_->causes & kTooNear) != 0 && active_.trajectory != 0 && std::abs(active_.speed_factor) < 1e-3;
+  too_near_ = execution_ && (execution_->causes & kTooNear) != 0 && active_.trajectory != 0 && std::abs(active_.speed_factor) < kCreeping;
   const bool blocked = too_near_ || (execution_ && (execution_->causes & kBlocked) != 0);
   if (!blocked) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
@@ -118,8 +122,10 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
     status_.state = outcome.good ? ActionState::succeeded : ActionState::failed;
     status_.reason = outcome.reason;
     status_.exchange_engaged = false;
+    taken_up_ = {};
     action_ = {};
   }
+  if (!taken_up_.giver.empty()) status_.exchange_engaged = exchanges();
   status_.time_to_exchange = time_to_exchange();
   out_ = nullptr;
 }
@@ -504,8 +510,7 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
   co_return Outcome::failure("no straight way leads off " + touched);
 }
 
-Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout,
-                                                                   const Vector* effort, double share_of_mass) {
+Routine<Outcome> ManipulationPlanner::tell_hand(HandAction action, const Vector& position, const Vector* effort, double share_of_mass) {
   HandCommand command;
   command.id = ++commands_;
   command.robot = robot_->name();
@@ -516,7 +521,6 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
   command.pull_force = settings_.pull_force();
   if (const ObjectModel* grasped = model_of(status_.object); action == HandAction::grasp && grasped != nullptr)
     command.payload = share_of_mass * grasped->mass;
-  HandResult result;
   const std::uint64_t id = command.id;
   bool heard = false;
   for (int tries = 0; tries < 20 && !heard; ++tries) {
@@ -526,10 +530,16 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
     out_->hand_commands.push_back(command);
     heard = co_await waiting_.until([this, id] { return execution_->hand_command == id && hand_state() != HandState::refused; }, 0.3);
   }
-  if (!heard) {
-    result.outcome = Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
-    co_return result;
-  }
+  if (!heard) co_return Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
+  co_return Outcome{};
+}
+
+Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout,
+                                                                   const Vector* effort, double share_of_mass) {
+  HandResult result;
+  result.outcome = co_await tell_hand(action, position, effort, share_of_mass);
+  if (!result.outcome.good) co_return result;
+  const std::uint64_t id = execution_->hand_command;
   const bool ended =
       co_await waiting_.until([this, id] { return execution_->hand_command != id || hand_state() != HandState::moving; }, timeout);
   const bool waits_for_pull = action == HandAction::release_on_pull;
@@ -561,7 +571,7 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
   for (const double share : {1.0, 0.75, 0.5, 0.3}) {
     Pose T = T_now;
     T.translation() += share * settings_.retreat_distance() * away;
-    if (auto joints = reach(T)) {
+    if (auto joints = reach(T); joints && (*joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() < kStraight) {
       motion.goals = {*joints};
       Outcome outcome = co_await move(motion);
       if (outcome.good) co_return outcome;
@@ -569,15 +579,6 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
     }
   }
   co_return Outcome::failure("the hand finds no straight way back from " + object_id + ": " + why);
-}
-
-Routine<Outcome> ManipulationPlanner::go_to_rest() {
-  Motion motion;
-  motion.phase = "to rest";
-  motion.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
-  motion.speed = attachment_.object.empty() ? 1.0 : settings_.carry_speed();
-  Outcome outcome = co_await move(motion);
-  co_return outcome;
 }
 
 Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {

@@ -163,8 +163,14 @@ class ManipulationPlanner {
   /// Draws the hand back where it leaves no room to hold something out; nullopt: nothing was offered until `patience`.
   Routine<std::optional<Offer>> watch_for_offer(const std::string& wanted, const std::string& giver, TimePoint patience);
   /// Back from the giver, toward the robot's own body.
+  /// The arm at rest, or moved from there as little as gives room before this person, else as far as it goes; nearest to rest first.
+  std::vector<Vector> postures_before(const Person&) const;
   Routine<Outcome> make_room(const std::string& giver);
-  double room_before(const std::string& giver) const;  // between their chest and the hand, level [m]
+  /// How much farther than it must be hand and arm are, in this posture, from where this person would hold something out [m].
+  double room_before(const Person&, const Vector& posture) const;
+  bool crowds(const std::string& giver) const;
+  bool holds_out(const Person& who, const SceneObject& held) const;
+  bool exchanges() const;  ///< the giver holds it out, or the hand is at it
   std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
   /// The grasp for where the object is now; nullopt: the arm does not reach it there.
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
@@ -264,6 +270,8 @@ class ManipulationPlanner {
   /// `share_of_mass`: of what is grasped, that this hand bears.
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr,
                            double share_of_mass = 1.0);
+  /// The same, only until the controller has heard of it.
+  Routine<Outcome> tell_hand(HandAction action, const Vector& position, const Vector* effort = nullptr, double share_of_mass = 1.0);
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);
@@ -302,6 +310,8 @@ class ManipulationPlanner {
   Waiting waiting_;
   Routine<Outcome> action_;
   ActionGoal goal_;
+  Offer taken_up_;   // by receive; empty: none
+  bool at_offer_{};  // the hand, from the straight way in until it has drawn back
   ActionStatus status_;
   Outbox* out_{nullptr};
 

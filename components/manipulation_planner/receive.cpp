@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "common/model/holding_hand.hpp"
 #include "common/model/human_body.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
@@ -9,10 +10,12 @@ namespace handsel::manipulation_planner {
 
 namespace {
 constexpr double kSteady = 0.25;     // [s] an offer must last before the hand goes for it
+constexpr double kFirstOffer = 3.0;  // [s] without an offer before room is made for one
 constexpr double kLookAgain = 0.02;  // [s]
 constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
 constexpr double kAimed = 0.012;     // [m] before the object the hand stands where the straight way in begins, up to this
 constexpr double kHandLength = 0.3;  // [m] palm to what is beyond the open fingers
+constexpr double kInHand = 0.05;     // [m] what weighs on the hand lies in it, when so near to where it is grasped
 constexpr double kNear = 0.5;        // [m] palm to what is offered
 // [m] While a new way is sought, an offer may be shifted by this share of the way that is left to there, and at its end by this.
 constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
@@ -20,23 +23,42 @@ constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 constexpr double kDetour = 1.5, kMoreThan = 2.0;
 constexpr int kMostAims = 6;          // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;  // [m] kept from the giver's hand, closing included
-constexpr double kRoom = 0.9;         // [m] between chest and waiting hand, so that there is room to hold something out, level
-constexpr double kCrowded = 0.05;     // [m] less room than that by more makes the hand draw back
+// [m] The waiting hand keeps so far, level, from where a person would hold something out comfortably: nobody puts it into a hand that is
+// there already; the arm keeps the second. Less room by more than the third makes it draw back.
+constexpr double kRoom = 0.55, kArmRoom = 0.35, kCrowded = 0.05;
+// More than `held_out` [m] and toward the robot by this cosine: held out by who was asked for it, though the arm is not stretched.
+constexpr double kBentArm = 0.05, kTowardRobot = 0.7;
+constexpr std::size_t kPostures = 6;  // to wait in that are looked for
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 const Vector3& torso_of(const Person& who) { return who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
 }  // namespace
 
+bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) const {
+  if (held.holder != Holder::human || held.holder_id != who.id) return false;
+  const Vector3 out = level(held.T_world_object.translation() - torso_of(who));
+  const bool fact = std::any_of(facts_.facts.begin(), facts_.facts.end(),
+                                [&](const Fact& f) { return f.kind == FactKind::offering && f.subject == who.id && f.object == held.id; });
+  if (fact) return out.norm() >= settings_.held_out();
+  // Who was asked for it and holds it out toward the robot means it, with a bent arm too.
+  const bool asked = goal_.human == who.id && goal_.object == held.id;
+  const Vector3 to_robot = level(scene_.T_world_base.translation() - torso_of(who));
+  return asked && out.norm() >= settings_.held_out() + kBentArm && out.dot(to_robot) > kTowardRobot * out.norm() * to_robot.norm();
+}
+
+bool ManipulationPlanner::exchanges() const {
+  const SceneObject* held = object(taken_up_.object);
+  const Person* who = held == nullptr || held->holder != Holder::human ? nullptr : person(taken_up_.giver);
+  return at_offer_ || (who != nullptr && holds_out(*who, *held));
+}
+
 std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std::string& wanted, const std::string& giver) const {
-  for (const Fact& fact : facts_.facts) {
-    if (fact.kind != FactKind::offering || (!giver.empty() && fact.subject != giver) || (!wanted.empty() && fact.object != wanted))
-      continue;
-    const SceneObject* held = object(fact.object);
-    const Person* who = person(fact.subject);
-    if (held == nullptr || who == nullptr || held->holder != Holder::human || held->holder_id != fact.subject) continue;
-    const Vector3 out = level(held->T_world_object.translation() - torso_of(*who));
-    if (out.norm() < settings_.held_out() || held->velocity.norm() > settings_.offer_still()) continue;
-    return Offer{fact.object, fact.subject};
+  for (const SceneObject& held : scene_.objects) {
+    if (!wanted.empty() && held.id != wanted) continue;
+    for (const Person& who : people_.people) {
+      if ((!giver.empty() && who.id != giver) || held.velocity.norm() > settings_.offer_still() || !holds_out(who, held)) continue;
+      return Offer{held.id, who.id};
+    }
   }
   return std::nullopt;
 }
@@ -44,13 +66,12 @@ std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std
 bool ManipulationPlanner::strayed(const Motion& motion) const {
   if (motion.aims_at.empty()) return false;
   const SceneObject* aim = object(motion.aims_at);
-  if (aim == nullptr || (motion.follows && aim->holder == Holder::robot)) return true;
+  if (aim == nullptr) return true;
   const double shifted = (aim->T_world_object.translation() - motion.p_world_aim).norm();
   if (!motion.follows) return shifted > motion.aim_slack;
   const double ahead = (aim->T_world_object.translation() - T_world_tool().translation()).norm() - kHandLength;
-  return shifted > std::clamp(kOfTheWay * ahead, kBesideHand, motion.aim_slack) ||
-         std::none_of(facts_.facts.begin(), facts_.facts.end(),
-                      [&](const Fact& fact) { return fact.kind == FactKind::offering && fact.object == motion.aims_at; });
+  const Person* giver = aim->holder == Holder::human ? person(aim->holder_id) : nullptr;
+  return shifted > std::clamp(kOfTheWay * ahead, kBesideHand, motion.aim_slack) || giver == nullptr || !holds_out(*giver, *aim);
 }
 
 std::optional<Vector3> ManipulationPlanner::follow_offer(Motion& motion) {
@@ -82,46 +103,86 @@ std::optional<Grasp> ManipulationPlanner::aimed(const std::string& object_id, co
   return now;
 }
 
-double ManipulationPlanner::room_before(const std::string& giver) const {
-  const Person* who = person(giver);
-  return who == nullptr ? kRoom : level(T_world_tool().translation() - torso_of(*who)).norm();
+double ManipulationPlanner::room_before(const Person& who, const Vector& posture) const {
+  double room = std::numeric_limits<double>::infinity();
+  const Vector3 p_hand = scene_.T_world_base * robot_->link_pose(posture, palm_).translation();
+  for (const Side side : {Side::left, Side::right}) {
+    const Vector3 p_offer = comfortable_reach(who, side);
+    room = std::min({room, level(p_hand - p_offer).norm() - kRoom, way_out_.distance(posture, scene_.T_world_base, p_offer) - kArmRoom});
+  }
+  return room;
+}
+
+bool ManipulationPlanner::crowds(const std::string& id) const {
+  const Person* who = person(id);
+  return who != nullptr && room_before(*who, posture()) < -kCrowded;
+}
+
+std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) const {
+  struct Place {
+    Vector joints;
+    double room, from_rest;
+  };
+  const Pose T_rest = scene_.T_world_base * robot_->link_pose(robot_->rest_posture(), palm_);
+  const Vector3 away = level(scene_.T_world_base.translation() - torso_of(who)).stableNormalized();
+  const Vector3 aside = Vector3::UnitZ().cross(away);
+  std::vector<Place> places;
+  IkOptions options;
+  options.restarts = 0;
+  for (const double back : {0.0, 0.1, 0.2, 0.3}) {
+    for (const double beside : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) {
+      Pose T = T_rest;
+      T.translation() += back * away + beside * aside;
+      const auto joints = robot_->inverse(arm_, scene_.T_world_base.inverse() * T, robot_->rest_posture(), options);
+      if (joints) places.push_back({*joints, room_before(who, RobotModel::with(posture(), arm_, *joints)), std::hypot(back, beside)});
+    }
+  }
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+    const bool enough = a.room >= 0;
+    if (enough != (b.room >= 0)) return enough;
+    return enough ? a.from_rest < b.from_rest : a.room > b.room;
+  });
+  if (places.size() > kPostures) places.resize(kPostures);
+  std::vector<Vector> out;
+  for (Place& place : places) out.push_back(std::move(place.joints));
+  return out;
+}
+
+Routine<Outcome> ManipulationPlanner::go_to_rest() {
+  Motion motion;
+  motion.phase = "to rest";
+  motion.speed = attachment_.object.empty() ? 1.0 : settings_.carry_speed();
+  const Vector rest = RobotModel::with(posture(), arm_, RobotModel::part(robot_->rest_posture(), arm_));
+  const Person* who = person("");
+  if (who != nullptr && room_before(*who, rest) < -kCrowded) motion.goals = postures_before(*who);
+  if (motion.goals.empty()) motion.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
+  Outcome outcome = co_await move(motion);
+  co_return outcome;
 }
 
 Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver) {
   const Person* who = person(giver);
   if (who == nullptr) co_return Outcome::failure("nobody is in sight");
-  const Pose T_rest = scene_.T_world_base * robot_->link_pose(robot_->rest_posture(), robot_->tool_link());
-  const Vector3 chest = torso_of(*who), away = level(scene_.T_world_base.translation() - chest).stableNormalized();
-  const double room = room_before(giver), lacks = std::max(0.0, kRoom - level(T_rest.translation() - chest).norm());
-  IkOptions options;
-  options.restarts = 2;
   Motion back;
   back.phase = "making room";
-  Outcome last = Outcome::failure("no posture of the arm lies farther back");
-  for (const double share : {1.0, 0.75, 0.5, 0.25, 0.0}) {
-    Pose T = T_rest;
-    T.translation() += share * lacks * away;
-    if (level(T.translation() - chest).norm() < room + kCrowded) break;
-    const auto joints = robot_->inverse(arm_, scene_.T_world_base.inverse() * T, robot_->rest_posture(), options);
-    if (!joints) continue;
-    back.goals = {*joints};
-    last = co_await move(back);
-    if (last.good) break;
-  }
-  co_return last;
+  back.goals = postures_before(*who);
+  if (back.goals.empty()) co_return Outcome::failure("no posture of the arm lies farther back");
+  Outcome made = co_await move(back);
+  co_return made;
 }
 
 Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_for_offer(const std::string& wanted, const std::string& giver,
                                                                                         TimePoint patience) {
   std::optional<Offer> offer;
   bool made_room = false;
-  for (TimePoint since = waiting_.now(); waiting_.now() < patience;) {
+  const TimePoint began = waiting_.now();
+  for (TimePoint since = began; waiting_.now() < patience;) {
     status_.phase = "watching for an offer";
     const std::optional<Offer> seen = offered(wanted, giver);
     if (!seen || !offer || seen->object != offer->object || seen->giver != offer->giver) since = waiting_.now();
     offer = seen;
     if (offer && to_seconds(waiting_.now() - since) >= kSteady) co_return offer;
-    if (!offer && !made_room && room_before(giver) < kRoom - kCrowded) {
+    if (!offer && !made_room && to_seconds(waiting_.now() - began) > kFirstOffer && crowds(giver)) {
       made_room = true;
       Outcome made = co_await make_room(giver);
       if (!made.good) refuse("making room", made.reason);
@@ -139,9 +200,10 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
   std::set<std::uint64_t> did_not_hold;
   TimePoint patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   for (std::uint32_t attempt = 0; attempt < settings_.receive_attempts();) {
-    status_.exchange_engaged = false;
     std::optional<Offer> offer = co_await watch_for_offer(wanted, giver, patience);
     if (!offer) break;
+    taken_up_ = *offer;
+    at_offer_ = false;
     status_.object = offer->object;
     status_.human = offer->giver;
     status_.exchange_point = object(offer->object)->T_world_object.translation();
@@ -151,7 +213,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       // Who is not come for holds it out elsewhere, nearer, or farther out where there is room.
       if (list.outcome.reason != last.reason) refuse("offer", list.outcome.reason);
       last = list.outcome;
-      if (room_before(offer->giver) < kRoom - kCrowded) co_await make_room(offer->giver);
+      if (crowds(offer->giver)) co_await make_room(offer->giver);
       co_await waiting_.pause(kAnotherTry);
       continue;
     }
@@ -168,7 +230,6 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     }
     patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   }
-  status_.exchange_engaged = false;
   co_return last;
 }
 
@@ -183,20 +244,19 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   const Vector opened = RobotModel::with(set_point_, fingers_, chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
   if (!way.outcome.good) co_return Outcome::failure("approach: " + way.outcome.reason);
-  status_.phase = "opening the hand";
-  HandResult open = co_await hand(HandAction::move, chosen.pregrasp_joints, settings_.hand_timeout());
-  if (!open.outcome.good) co_return open.outcome;
-
+  Outcome opening = co_await tell_hand(HandAction::move, chosen.pregrasp_joints);
+  if (!opening.good) co_return opening;
   Outcome last;
   const auto steady = [this, &object_id, &giver] { return offered(object_id, giver).has_value(); };
   // Who is eager puts it into the open hand.
-  const auto put_into_hand = [this, &object_id] {
+  const auto put_into_hand = [this, &object_id, &chosen] {
     const SceneObject* given = object(object_id);
-    return given != nullptr && given->holder == Holder::robot;
+    if (given == nullptr || given->holder != Holder::robot) return false;
+    const Vector3 in_hand = T_world_tool().inverse() * given->T_world_object.translation();
+    return (in_hand - chosen.T_object_hand.inverse().translation()).norm() < kInHand;
   };
   bool there = false;
   for (int aims = 0; aims < kMostAims && !there; ++aims) {
-    status_.exchange_engaged = true;
     approach = approach_to(object_id, giver, *grasp);
     last = co_await move(approach);
     if (there = put_into_hand(); there) break;
@@ -214,6 +274,11 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     last = Outcome::failure(object_id + " is moved about");
     last.strayed = true;
     if ((T_before.translation() - T_world_tool().translation()).norm() > kAimed) continue;
+    const bool open = co_await waiting_.until([this] { return hand_state() != HandState::moving; }, settings_.hand_timeout());
+    if (!open) {
+      last = Outcome::failure("the hand does not open");
+      break;
+    }
     std::vector<Grasp> this_one{*grasp};
     last = co_await keep_off_fingers(object_id, giver, this_one);
     if (last.good && object(object_id) == nullptr) last = Outcome::failure(object_id + " is out of sight");
@@ -223,10 +288,10 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     reach_object.goals = {grasp->arm_joints};
     reach_object.straight = true;
     reach_object.allowed = {object_id, giver};
-    reach_object.speed = settings_.approach_speed();
     reach_object.aims_at = object_id;
     reach_object.p_world_aim = status_.exchange_point = object(object_id)->T_world_object.translation();
     reach_object.aim_slack = settings_.aim_slack();
+    at_offer_ = true;
     last = co_await move(reach_object);
     there = last.good;
     if (there) break;
@@ -237,12 +302,12 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   }
   if (!there) {
     co_await draw_back(object_id, giver);
-    status_.exchange_engaged = false;
     co_return last;
   }
   Outcome moved;
 
   status_.phase = "grasp";
+  at_offer_ = true;
   // What lies in the hand otherwise than planned is pressed on where the fingers are.
   const Vector closing = put_into_hand() ? RobotModel::part(set_point_, robot_->require_group("hand")) : grasp->hand_joints;
   HandResult closed = co_await hand(HandAction::grasp, closing, settings_.hand_timeout(), &grasp->hand_effort);
@@ -271,7 +336,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   back.allowed = {object_id, giver};
   back.speed = settings_.carry_speed();
   moved = co_await move(back);
-  status_.exchange_engaged = false;
+  at_offer_ = false;
   if (!moved.good) refuse("retreat", moved.reason);
   co_return Outcome{};
 }
@@ -294,8 +359,11 @@ Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object
   if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
   auto clear = std::make_shared<std::vector<Grasp>>();
   HumanState around = people_;
-  for (Person& who : around.people)
-    if (who.id == giver) who.inflation += kOffFingers;
+  for (Person& who : around.people) {
+    if (who.id != giver) continue;
+    if (const SceneObject* held = object(object_id)) who = with_fingers_bent(who, held->T_world_object.translation());
+    who.inflation += kOffFingers;
+  }
   const std::function<void()> job = [this, clear, around, grasps, object_id, world = world_, scene = scene_, q = posture()] {
     constexpr int kSteps = 6;
     world->set_scene(scene);
@@ -326,7 +394,12 @@ Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object
 /// While the giver's hand is still excepted: from so near to it nothing but straight away leads off.
 Routine<Outcome> ManipulationPlanner::draw_back(const std::string& object_id, const std::string& giver) {
   const SceneObject* held = object(object_id);
-  if (held == nullptr || (held->T_world_object.translation() - T_world_tool().translation()).norm() > kNear) co_return Outcome{};
+  const Vector3 p_hand = T_world_tool().translation();
+  const Person* who = person(giver);
+  const auto far = [&p_hand](const Vector3& p) { return (p - p_hand).norm() > kNear; };
+  const bool clear =
+      who == nullptr || std::all_of(who->joints.begin(), who->joints.end(), [&far](const BodyJoint& j) { return far(j.position); });
+  if (held == nullptr || (clear && far(held->T_world_object.translation()))) co_return Outcome{};
   Motion next;
   next.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
   next.allowed = {object_id};
@@ -348,7 +421,7 @@ Routine<Outcome> ManipulationPlanner::back_off(const std::string& object_id, con
   back.speed = settings_.approach_speed();
   Outcome backed = co_await move(back);
   if (!backed.good) refuse("backing off", backed.reason);
-  status_.exchange_engaged = false;
+  at_offer_ = false;
   co_return why;
 }
 

@@ -1,6 +1,7 @@
 #include "components/manipulation_planner/way_out.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/geometry/segments.hpp"
 #include "common/model/human_body.hpp"
@@ -60,6 +61,17 @@ bool WayOut::leads_away(const Vector& from, const Vector& to, const Pose& T_worl
     }
   }
   return true;
+}
+
+double WayOut::distance(const Vector& posture, const Pose& T_world_base, const Vector3& p_world) const {
+  const std::vector<Pose> T_root_link = links(posture);
+  double least = std::numeric_limits<double>::infinity();
+  Vector3 on_robot, on_point;
+  for (const LinkCapsule& link : capsules_) {
+    const Placed arm = placed(link, T_root_link, T_world_base);
+    least = std::min(least, std::sqrt(nearest_points(arm.a, arm.b, p_world, p_world, on_robot, on_point)) - link.radius);
+  }
+  return least;
 }
 
 std::vector<Vector> WayOut::steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people, double way) const {

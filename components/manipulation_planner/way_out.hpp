@@ -17,6 +17,8 @@ class WayOut {
   /// Postures of the arm, each about a centimetre's step further, that lead every link near a person away from them, at most `way` [m] in
   /// all, ending where nobody is near any more or a link or a joint limit allows no more; empty: nobody is near, or nothing leads away.
   std::vector<Vector> steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people, double way) const;
+  /// Between the robot in this posture and a point of the world [m].
+  double distance(const Vector& posture, const Pose& T_world_base, const Vector3& p_world) const;
 
  private:
   bool within_limits(const Vector& posture) const;
