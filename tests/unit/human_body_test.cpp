@@ -1,4 +1,5 @@
 #include "common/model/human_body.hpp"
+#include "common/model/holding_hand.hpp"
 
 #include <gtest/gtest.h>
 
@@ -165,4 +166,26 @@ TEST(ComfortableReach, IsBeforeTheShoulderAndBelowIt) {
 }
 
 }  // namespace
+TEST(HoldingHand, its_capsule_ends_in_the_palm_and_the_other_stays_stretched) {
+  Person anna;
+  anna.stature = 1.7;
+  anna.joints = standing_body({0, 0, 0}, 0, anna.stature);
+  const auto at = [](const Person& who, const char* joint) {
+    return who.joints[static_cast<std::size_t>(body_joint_index(joint))].position;
+  };
+  const auto tip = [](const Person& who, BodyPart hand) {
+    for (const BodyCapsule& part : body_capsules(who))
+      if (part.part == hand) return part.b;
+    return Vector3(Vector3::Zero());
+  };
+  const Person bent = with_fingers_bent(anna, at(anna, "r_hand") + Vector3(0.05, 0, 0));
+  EXPECT_LT((tip(bent, BodyPart::hand_right) - at(anna, "r_hand")).norm(), 1e-9);
+  EXPECT_GT((tip(anna, BodyPart::hand_right) - at(anna, "r_hand")).norm(), 0.03) << "stretched fingers reach beyond the palm";
+  EXPECT_EQ(tip(bent, BodyPart::hand_left), tip(anna, BodyPart::hand_left));
+  Person lacking = anna;
+  std::erase_if(lacking.joints, [](const BodyJoint& joint) { return joint.name == "r_wrist"; });
+  EXPECT_EQ(at(with_fingers_bent(anna, {9, 9, 9}), "head"), at(anna, "head"));
+  EXPECT_EQ(with_fingers_bent(lacking, at(anna, "r_hand")).joints.size(), lacking.joints.size());
+}
+
 }  // namespace handsel
