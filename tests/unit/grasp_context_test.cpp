@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "common/model/holding_hand.hpp"
 #include "common/model/human_body.hpp"
 #include "common/model/platform.hpp"
 #include "components/grasp_planner/grasp_choice.hpp"
@@ -292,6 +293,7 @@ TEST(HeldOut, grasps_keep_off_fingers_and_body_of_who_holds_it) {
   CollisionWorld body(*robot().model, library);
   body.set_scene(scene);
   body.set_people(around, PeopleParts::without_forearms_and_hands);
+  around.people.front() = with_fingers_bent(around.people.front(), scene.objects[0].T_world_object.translation());
   around.people.front().inflation = ChoiceSettings{}.off_fingers - 0.001;
   CollisionWorld all(*robot().model, library);
   all.set_scene(scene);
