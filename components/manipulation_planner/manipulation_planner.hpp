@@ -162,9 +162,9 @@ class ManipulationPlanner {
   };
   /// Draws the hand back where it leaves no room to hold something out; nullopt: nothing was offered until `patience`.
   Routine<std::optional<Offer>> watch_for_offer(const std::string& wanted, const std::string& giver, TimePoint patience);
-  /// Back from the giver, toward the robot's own body.
   /// The arm at rest, or moved from there as little as gives room before this person, else as far as it goes; nearest to rest first.
   std::vector<Vector> postures_before(const Person&) const;
+  /// To one of these.
   Routine<Outcome> make_room(const std::string& giver);
   /// How much farther than it must be hand and arm are, in this posture, from where this person would hold something out [m].
   double room_before(const Person&, const Vector& posture) const;
