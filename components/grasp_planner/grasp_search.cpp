@@ -21,7 +21,8 @@ constexpr double kMotionStep = 0.04;      // [rad] between two states judged on 
 constexpr double kExchangeAhead = 0.58;   // [m] before the torso of the person
 constexpr double kExchangeBelow = 0.2;    // [m] below the shoulder
 constexpr int kExchangeHeadings = 8;
-constexpr int kTransferReaches = 16;  // inverse kinematics tried for the places of one grasp
+constexpr double kNearerToHeld = 0.02;  // [m] what somebody holds out is waited before nearer: who sees the hand keep away offers anew
+constexpr int kTransferReaches = 16;    // inverse kinematics tried for the places of one grasp
 
 std::size_t touching(const Grasp& g) {
   std::set<std::uint32_t> fingers;
@@ -216,7 +217,7 @@ bool GraspChooser::Search::free(CollisionWorld& world, const Vector& arm_q, cons
 // The straight way from approach_q to grasp_q with the hand opened: nothing touched, the object neither.
 bool GraspChooser::Search::way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g) {
   const Vector from = whole(approach_q, g.pregrasp_joints), to = whole(grasp_q, g.pregrasp_joints);
-  const int steps = static_cast<int>(std::ceil(settings().stand_off / kSweepStep));
+  const int steps = static_cast<int>(std::ceil(stand_off() / kSweepStep));
   const Pose T_object_root = site.T_world_object.inverse() * scene.T_world_base;
   for (int i = 0; i <= steps; ++i) {
     const double share = static_cast<double>(i) / steps;
@@ -246,6 +247,8 @@ bool GraspChooser::Search::something_at_goal() const {
          });
 }
 
+double GraspChooser::Search::stand_off() const { return settings().stand_off - (holder.empty() ? 0.0 : kNearerToHeld); }
+
 // Where the straight way in begins; T_open must be that of the grasp.
 std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q, const Grasp& g) {
   const Pose T_world_hand = site.T_world_object * g.T_object_hand;
@@ -253,12 +256,11 @@ std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& g
   std::vector<Vector3> ways = self.retreats_;
   ways.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
   for (const Vector3& way : ways) {
-    if (!retreat_free(*self.kit_, T_open, object, g.T_object_hand, way, settings().stand_off, settings().approach_clearance,
-                      &out.touch_tests)) {
+    if (!retreat_free(*self.kit_, T_open, object, g.T_object_hand, way, stand_off(), settings().approach_clearance, &out.touch_tests)) {
       continue;
     }
     Pose T = T_world_hand;
-    T.translate(Vector3(settings().stand_off * way));
+    T.translate(Vector3(stand_off() * way));
     const auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
     if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > kLargestApproach) continue;
     if (way_in_free(site, *q, grasp_q, g)) return q;

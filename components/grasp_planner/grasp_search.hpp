@@ -52,6 +52,7 @@ struct GraspChooser::Search {
   std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const;
   bool free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q);
   bool way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
+  double stand_off() const;  ///< before the object, where the straight way in begins [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   bool something_at_goal() const;
   ChoiceReason pick_up(Grasp& g);

@@ -1,5 +1,6 @@
 // Taking an object from a person's hand: wait for an offer, come to it clear of the fingers, close, feel that they have let go, draw back.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "common/model/holding_hand.hpp"
@@ -13,7 +14,7 @@ constexpr double kSteady = 0.25;     // [s] an offer must last before the hand g
 constexpr double kFirstOffer = 3.0;  // [s] without an offer before room is made for one
 constexpr double kLookAgain = 0.02;  // [s]
 constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
-constexpr double kAimed = 0.012;     // [m] before the object the hand stands where the straight way in begins, up to this
+constexpr double kAimed = 0.02;      // [m] before the object the hand stands where the straight way in begins, up to this
 constexpr double kHandLength = 0.3;  // [m] palm to what is beyond the open fingers
 constexpr double kInHand = 0.05;     // [m] what weighs on the hand lies in it, when so near to where it is grasped
 constexpr double kNear = 0.5;        // [m] palm to what is offered
@@ -21,6 +22,7 @@ constexpr double kNear = 0.5;        // [m] palm to what is offered
 constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 // [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and this.
 constexpr double kDetour = 1.5, kMoreThan = 2.0;
+constexpr double kSameWay = 0.5;      // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
 constexpr int kMostAims = 6;          // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;  // [m] kept from the giver's hand, closing included
 // [m] The waiting hand keeps so far, level, from where a person would hold something out comfortably: nobody puts it into a hand that is
@@ -218,6 +220,11 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       continue;
     }
     ++attempt;
+    // Who holds something out does not wait long: what the arm is at sooner comes first.
+    const auto way = [this](const Grasp& g) {
+      return std::floor((g.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() / kSameWay);
+    };
+    std::stable_sort(list.grasps.begin(), list.grasps.end(), [&way](const Grasp& a, const Grasp& b) { return way(a) < way(b); });
     if (std::all_of(list.grasps.begin(), list.grasps.end(), [&](const Grasp& g) { return did_not_hold.count(g.id) > 0; }))
       did_not_hold.clear();
     for (const Grasp& grasp : list.grasps) {

@@ -24,8 +24,14 @@ config::Scenario load_scenario(const NodeContext& context) {
   return scenario;
 }
 
+/// The floor of every place, z = 0 in the world: no arm goes there. What stands on it, the robot's own feet too, does not touch it.
+SceneBox floor() {
+  constexpr double kWide = 12.0, kThick = 0.1, kBelow = 0.002;  // [m]
+  return {"floor", make_pose({0, 0, -kBelow - 0.5 * kThick}), {kWide, kWide, kThick}, false};
+}
+
 std::vector<SceneBox> boxes_of(const config::Scenario& scenario) {
-  std::vector<SceneBox> boxes;
+  std::vector<SceneBox> boxes{floor()};
   for (const auto& box : scenario.boxes()) {
     const auto& xyz = box.pose().xyz();
     const auto& rpy = box.pose().rpy();
