@@ -7,6 +7,7 @@ import { Config } from "./config";
 import { PrimitiveKind, Scene, SceneBox, SceneObject } from "./messages";
 import { dispose, kSphere, setPose } from "./shapes";
 
+const kFloor = "floor";  // the page has its own
 const kUnknownSize = 0.04;  // [m] radius of what has no mesh
 const kSurePlace = 0.02;    // [m] an object more uncertain than this is drawn pale
 const kObject = 0xd6336c, kUnknown = 0xb06ab3, kWood = 0xdcc39b, kEdge = 0xa08259;
@@ -46,7 +47,8 @@ export class Things {
 
   show(scene: Scene): boolean {
     let changed = forget(this.objects, scene.objects) || false;
-    changed = forget(this.boxes, scene.boxes) || changed;
+    const furniture = scene.boxes.filter((box) => box.id !== kFloor);
+    changed = forget(this.boxes, furniture) || changed;
     for (const object of scene.objects) {
       const mesh = this.object(object);
       changed = setPose(mesh, object.T_world_object) || changed;
@@ -64,7 +66,7 @@ export class Things {
       mesh.scale.copy(size);
       changed = true;
     }
-    for (const box of scene.boxes) {
+    for (const box of furniture) {
       const mesh = this.box(box);
       changed = setPose(mesh, box.T_world_box) || changed;
       const size = new THREE.Vector3(box.size.x, box.size.y, box.size.z);
