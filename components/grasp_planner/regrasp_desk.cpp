@@ -11,8 +11,6 @@ namespace {
 // [N] of Grasp::margin: weaker grasps are taken only where firmer ones lead nowhere.
 constexpr std::array kLeastMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
 constexpr std::size_t kFewest = 3;     // steps from one hand by the other to its place
-constexpr double kHeavyNormal = 25;    // what a finger presses with where a load takes two hands: DLR Hand II has 30 N [N]
-constexpr double kSlowLoad = 11;       // such a load is moved slowly [m/s^2]
 constexpr double kLeastEffort = 0.05;  // [Nm]
 
 RegraspKind kind_of(RegraspStepKind kind) {
@@ -30,9 +28,7 @@ RegraspKind kind_of(RegraspStepKind kind) {
 }
 
 /// Two hands bear half of the weight each, at their own contacts: the other hand sees to it that nothing turns. The squeeze for that.
-void share_load(const HandKit& kit, const ObjectModel& model, GripForceSettings settings, Grasp& g) {
-  settings.max_normal = std::max(settings.max_normal, kHeavyNormal);
-  settings.acceleration = std::min(settings.acceleration, kSlowLoad);
+void share_load(const HandKit& kit, const ObjectModel& model, const GripForceSettings& settings, Grasp& g) {
   std::vector<PointContact> contacts;
   Vector3 middle = Vector3::Zero();
   for (const Contact& c : g.contacts) {

@@ -26,9 +26,9 @@ using Json = nlohmann::json;
 constexpr double kReadyPatience = 10.0;  // [s]
 
 std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
+  if (truth.dropped) return "dropped";
   if (performer.succeeded()) return "";
   if (!performer.started()) return "not_ready";
-  if (truth.dropped) return "dropped";
   const TaskOutcome& last = performer.outcomes().back();
   if (last.reason.rfind("not done after", 0) == 0) return "timeout";
   if (last.state == name(TaskState::succeeded)) return "no_handover";
@@ -129,26 +129,27 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   char hash[32];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(truth.hash));
   Json line = base_line(context, options);
-  line.update({{"success", report["success"]},
-               {"failure", failure_kind(performer, truth)},
-               {"reason", report["failure"]},
-               {"duration_s", report["duration_s"]},
-               {"least_separation_m", report["least_separation_m"]},
-               {"ssm_violations", report["ssm_violations"]},
-               {"limit_share", report["limit_share"]},
-               {"limit_violations", truth.limit_violations},
-               {"collisions", truth.self_or_scene_collisions},
-               {"contact_force_n", truth.contact_force},
-               {"peak_closing_speed_m_s", truth.peak_closing_speed},
-               {"drops", truth.dropped ? 1 : 0},
-               {"lifted_m", truth.max_lifted},
-               {"contact_share", report["oracle"]["contact_share"]},
-               {"activations", activations},
-               {"activations_of", activations_of},
-               {"activations_at_pmin", fastest},
-               {"tasks", report["tasks"]},
-               {"events", system.network().events()},
-               {"hash", hash}});
+  line.update(
+      {{"success", report["success"].get<bool>() && !truth.dropped},
+       {"failure", failure_kind(performer, truth)},
+       {"reason", truth.dropped && report["success"].get<bool>() ? Json(truth.object + " was dropped afterwards") : report["failure"]},
+       {"duration_s", report["duration_s"]},
+       {"least_separation_m", report["least_separation_m"]},
+       {"ssm_violations", report["ssm_violations"]},
+       {"limit_share", report["limit_share"]},
+       {"limit_violations", truth.limit_violations},
+       {"collisions", truth.self_or_scene_collisions},
+       {"contact_force_n", truth.contact_force},
+       {"peak_closing_speed_m_s", truth.peak_closing_speed},
+       {"drops", truth.dropped ? 1 : 0},
+       {"lifted_m", truth.max_lifted},
+       {"contact_share", report["oracle"]["contact_share"]},
+       {"activations", activations},
+       {"activations_of", activations_of},
+       {"activations_at_pmin", fastest},
+       {"tasks", report["tasks"]},
+       {"events", system.network().events()},
+       {"hash", hash}});
   line.update(criteria.fields());
   if (options.hash_outputs) {
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(system.network().output_hash()));
