@@ -63,6 +63,12 @@ void ManipulationPlanner::on(const ActionGoal& goal) {
 
 /// What it has asked for is wanted no more.
 void ManipulationPlanner::drop_action() {
+  if (action_ && active_.trajectory != 0) {
+    halt_.emplace();
+    halt_->id = ++commands_;
+    halt_->robot = robot_->name();
+    halted_at_ = {};
+  }
   action_ = {};
   taken_up_ = {};
   at_offer_ = false;
@@ -101,6 +107,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   if (!blocked) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
+  halt(out);
   if (drop_path_) {
     PathRequest request;
     request.id = {client_, requests_};
@@ -146,16 +153,24 @@ bool ManipulationPlanner::slipped() const {
   });
 }
 
+/// Said again until it is heard: at first the epoch may have changed.
+void ManipulationPlanner::halt(Outbox& out) {
+  constexpr double kAgain = 0.1;  // [s]
+  if (!halt_) return;
+  const bool heard = execution_ && execution_->trajectory == halt_->id && execution_->motion != MotionState::refused;
+  if (heard || active_.trajectory == 0) return halt_.reset();
+  if (to_seconds(waiting_.now() - halted_at_) < kAgain) return;
+  halted_at_ = waiting_.now();
+  halt_->epoch = execution_ ? execution_->epoch : 0;
+  out.trajectories.push_back(*halt_);
+}
+
 /// The action ends where the arm is.
 void ManipulationPlanner::lose_object(Outbox& out) {
   const std::string lost = attachment_.object;
   drop_action();
   release_object();
-  TrajectoryCommand stop;
-  stop.id = ++commands_;
-  stop.epoch = execution_ ? execution_->epoch : 0;
-  stop.robot = robot_->name();
-  out.trajectories.push_back(stop);
+  halt(out);
   status_.state = ActionState::failed;
   status_.exchange_engaged = false;
   status_.reason = lost + " slipped out of the hand (" + status_.phase + ")";
@@ -187,7 +202,7 @@ Vector ManipulationPlanner::posture() const {
   return q;
 }
 
-bool ManipulationPlanner::may_move() const { return execution_ && execution_->mode < Mode::hold; }
+bool ManipulationPlanner::may_move() const { return !halt_ && execution_ && execution_->mode < Mode::hold; }
 
 const ObjectModel* ManipulationPlanner::model_of(const std::string& id) const {
   const SceneObject* seen = object(id);

@@ -239,6 +239,7 @@ class ManipulationPlanner {
   Routine<Outcome> retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes);
   bool gone(const Running& running) const;
   bool slipped() const;
+  void halt(Outbox& out);
   void lose_object(Outbox& out);
   /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good exchange posture any more; true: it is none, even
   /// where there is no other.
@@ -329,9 +330,11 @@ class ManipulationPlanner {
   std::optional<RegraspReply> regrasp_reply_;
   std::optional<PathReply> path_reply_;
   std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
-  RequestId comparison_;      // for the time that the path which runs would take from now on
-  bool path_awaited_{false};  // the newest path request is without a reply
-  bool drop_path_{false};     // and nobody wants it any more
+  RequestId comparison_;                   // for the time that the path which runs would take from now on
+  bool path_awaited_{false};               // the newest path request is without a reply
+  bool drop_path_{false};                  // and nobody wants it any more
+  std::optional<TrajectoryCommand> halt_;  // what a dropped action has set in motion is to end, until the controller has heard it
+  TimePoint halted_at_{};
 
   Attachment attachment_;
   std::optional<Grasp> grasp_;

@@ -160,6 +160,11 @@ class Rig {
     execution.trajectory = command.id;
     if (moves) {
       commands.push_back(command);
+      if (command.axes.empty()) {
+        way = {};
+        execution.motion = MotionState::stopped;
+        return;
+      }
       if (command.switch_at > 0) {
         const double offset = way.duration() - latest;
         way = cut(way, 0, command.switch_at + offset);
@@ -414,16 +419,23 @@ TEST(ManipulationPlanner, WhatSlipsOutOfTheHandEndsTheActionWithThatReason) {
   }
 }
 
-TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoAndTakesTheNextAction) {
+TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoStopsTheArmAndTakesTheNextAction) {
   Rig rig;
-  rig.execution.mode = Mode::hold;
+  rig.moves = true;
+  rig.q[rig.robot->require_group("arm").axes[0]] += 1.0;
   rig.start(ActionKind::go_to);
-  rig.run(0.5);
+  for (int i = 0; i < 50 && rig.commands.empty(); ++i) rig.cycle();
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  ASSERT_EQ(rig.commands.size(), 1u);
   ActionGoal cancel;
   cancel.id = rig.actions;
   cancel.cancel = true;
   rig.planner.on(cancel);
   EXPECT_EQ(rig.planner.status().state, ActionState::cancelled);
+  rig.execution.mode = Mode::hold;
+  for (int i = 0; i < 20; ++i) rig.cycle();
+  ASSERT_EQ(rig.commands.size(), 2u) << "heard once is enough";
+  EXPECT_TRUE(rig.commands.back().axes.empty());
   rig.execution.mode = Mode::normal;
   rig.start(ActionKind::go_to);
   rig.run(10);
