@@ -52,6 +52,14 @@ Vector3 velocity_near(const Person& person, const Vector3& point) {
 
 }  // namespace
 
+void PeakSpeed::add(double speed) noexcept {
+  last_[count_++ % last_.size()] = speed;
+  if (count_ < last_.size()) return;
+  std::array<double, 5> sorted = last_;
+  std::nth_element(sorted.begin(), sorted.begin() + 2, sorted.end());
+  peak_ = std::max(peak_, sorted[2]);
+}
+
 SeparationOracle::SeparationOracle(const RobotModel& model, const SsmSettings& settings) : settings_(settings), stop_(model.stop_limits()) {
   for (int l = 0; l < static_cast<int>(model.links().size()); ++l) {
     for (const PlacedShape& part : model.links()[l].collision) {

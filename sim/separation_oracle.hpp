@@ -1,6 +1,7 @@
 // True separation of robot and people, and the speed-and-separation rule (formulas: section 2), computed apart from the guard's code.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,19 @@ struct TrueSeparation {
   int link{-1};
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};
   Vector3 person_velocity{Vector3::Zero()};
+};
+
+/// The highest speed that lasts: the median of five steps in a row. An elbow whose bend is solved anew may jump within one step, which is
+/// no motion of a person.
+class PeakSpeed {
+ public:
+  void add(double speed) noexcept;
+  double peak() const noexcept { return peak_; }  ///< [m/s], 0 before the fifth step
+
+ private:
+  std::array<double, 5> last_{};
+  std::size_t count_{};
+  double peak_{};
 };
 
 class SeparationOracle {

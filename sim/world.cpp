@@ -237,7 +237,7 @@ struct SimWorld::Impl {
     if (near.link >= 0 && near.distance < 0.5) {
       const Vector3 n = (near.on_person - near.on_robot).stableNormalized();
       const Vector3 v = robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
-      peak_closing = std::max(peak_closing, v.dot(n));
+      closing.add(v.dot(n));
     }
     const bool given_way = gives_way();
     if (steps % ssm_every == 0 && !given_way && separations.violates(near, *robot, side.velocity(), side.acceleration()))
@@ -435,7 +435,8 @@ struct SimWorld::Impl {
   SeparationOracle separations;
   std::unique_ptr<HandoverOracle> handover;
   TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  double least_separation{std::numeric_limits<double>::infinity()}, peak_closing{0};
+  double least_separation{std::numeric_limits<double>::infinity()};
+  PeakSpeed closing;
   std::uint64_t collisions{0}, ssm_violations{0};
   std::string last_collision;
   Hash hash;
@@ -524,7 +525,7 @@ void SimWorld::truth(GroundTruth& out) const {
   out.separation = w.near.distance;
   out.least_separation = w.least_separation;
   out.ssm_violations = w.ssm_violations;
-  out.peak_closing_speed = w.peak_closing;
+  out.peak_closing_speed = w.closing.peak();
   out.contact_force = w.hands.front().measured.largest_contact();
   out.limit_share_velocity = w.limits.share_velocity();
   out.limit_share_acceleration = w.limits.share_acceleration();

@@ -39,12 +39,16 @@ NearHand nearest_hand(const Person& person, const Vector3& p) {
   return near;
 }
 
-double urgency(double distance, double closing) {
+double urgency(double distance, double closing, double least) {
   constexpr double kReference = 0.5;
-  return std::max(0.0, closing > kReference ? distance * kReference / closing : distance);
+  return std::max(0.0, distance * kReference / std::max(closing, least));
 }
 
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
+
+bool exchanges_with(const World& w, const std::string& person) {
+  return (doing(w, ActionKind::give) || doing(w, ActionKind::receive)) && (w.action->human.empty() || w.action->human == person);
+}
 
 Exception exchange_exception(const World& w) {
   Exception exception;

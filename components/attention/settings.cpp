@@ -120,6 +120,8 @@ AttentionSettings load_settings(const std::filesystem::path& file) {
   m.avoid_stop = share(read.avoid_stop(), 0, 10, "avoid_stop", file);
   m.avoid_slow = share(read.avoid_slow(), m.avoid_stop + 1e-6, 10, "avoid_slow", file);
   m.avoid_contact_time = share(read.avoid_contact_time(), 1e-3, 10, "avoid_contact_time", file);
+  m.partner_slow = share(read.partner_slow(), m.avoid_stop + 1e-6, 10, "partner_slow", file);
+  m.partner_contact_time = share(read.partner_contact_time(), 1e-3, 10, "partner_contact_time", file);
   m.avoid_recede = share(read.avoid_recede(), 0, 1, "avoid_recede", file);
   m.recoil_factor = share(read.recoil_factor(), -1, 0, "recoil_factor", file);
   m.recoil_speed = share(read.recoil_speed(), 0, 10, "recoil_speed", file);

@@ -9,6 +9,7 @@ namespace handsel {
 namespace {
 
 constexpr double kNear = 0.40;      // [m] a person nearer than this is to be reacted to
+constexpr double kBraked = 0.02;    // of the speed below what attention asks for
 constexpr double kToward = 0.1;     // [m/s]
 constexpr double kSlower = 0.9;     // of the speed factor before
 constexpr double kLate = 0.2;       // [s]
@@ -66,6 +67,7 @@ Criteria::Criteria(Bus& seat, LocalNetwork& network) : network_(network) {
     settle(r.arrival);
   });
   seat.subscribe<AttentionAdvice>([this](const AttentionAdvice& a, const Receipt&) {
+    advised_ = a.speed_factor;
     const std::array<double, 5> periods{a.people_period, a.objects_period, a.forecast_period, a.cost_map_period, a.replan_period};
     for (std::size_t i = 0; i < periods.size(); ++i) rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
     ++advices_;
@@ -84,6 +86,9 @@ void Criteria::on(const ExecutionStatus& status, TimePoint) {
   const bool limits = (status.causes & bit(Cause::separation)) != 0 && running_;
   interventions_ += limits && !limited_;
   limited_ = limits;
+  const bool brakes = limits && speed_factor_ < advised_ - kBraked;
+  brakings_ += brakes && !braked_;
+  braked_ = brakes;
   status_ = status;
 }
 
@@ -96,6 +101,7 @@ void Criteria::on(const GroundTruth& truth, TimePoint now) {
     if (!moves) person_idle_ += step;
     if (moves && truth.robot_moving) concurrent_ += step;
     if (limited_) limited_for_ += step;
+    if (braked_) braked_for_ += step;
     if (truth.robot_moving && status_.separation < status_.separation_limit) below_for_ += step;
     const double nearer = last_->separation - truth.separation;
     if (step > 0 && last_->separation < kClose && nearer < kJump) closing_speed_ = std::max(closing_speed_, nearer / step);
@@ -132,6 +138,8 @@ nlohmann::json Criteria::fields() const {
           {"late_reactions", std::count_if(reactions.begin(), reactions.end(), [](double r) { return r > kLate; })},
           {"interventions", interventions_},
           {"intervention_s", limited_for_},
+          {"braked", brakings_},
+          {"braked_s", braked_for_},
           {"below_separation_s", below_for_},
           {"closing_speed_m_s", closing_speed_},
           {"robot_idle_s", robot_idle_},

@@ -26,7 +26,9 @@ class Criteria {
   ///   had fallen by a tenth of what it had been at most in the half second before [s]
   /// - `reaction_p50_s`, `reaction_p99_s` of these; `late_reactions`: those above 0.2 s
   /// - `interventions`: times the guard began to limit the speed of a running motion because of the separation
-  /// - `intervention_s`: for how long; `below_separation_s`: a moving arm was nearer than the separation rule asks for at its speed
+  /// - `braked`: times the guard began to make a motion slower than attention asked for; `braked_s`: for how long
+  /// - `intervention_s`: for how long the guard limited; `below_separation_s`: a moving arm was nearer than the separation rule asks for at
+  /// its speed
   /// - `closing_speed_m_s`: the fastest by which the least separation shrank within 0.5 m, over 20 ms
   /// - `robot_idle_s`, `person_idle_s`, `concurrent_s`: neither axis nor person moved, both did
   /// - `cpu_s`: of each component's handlers and jobs, thread CPU time; `cpu_chain_s`: of perception and planning
@@ -53,9 +55,9 @@ class Criteria {
   std::vector<double> reactions_;
   std::optional<GroundTruth> last_;
   ExecutionStatus status_;
-  bool running_{}, limited_{};
-  std::uint64_t interventions_{}, advices_{};
-  double closing_speed_{}, limited_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{};
+  bool running_{}, limited_{}, braked_{};
+  std::uint64_t interventions_{}, brakings_{}, advices_{};
+  double advised_{1.0}, closing_speed_{}, limited_for_{}, braked_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{};
   std::array<double, 5> rates_{};  // sums of advised rates [Hz]
 };
 

@@ -187,6 +187,45 @@ TEST_F(AttentionTest, a_person_who_comes_fast_is_answered_sooner_than_one_who_st
   EXPECT_LT(of(attention.state(), Behaviour::avoid).period, period);
 }
 
+TEST_F(AttentionTest, who_takes_part_in_an_exchange_may_be_nearer_than_others_before_the_arm_slows) {
+  people_.people = {standing(1.5, 0)};
+  const double distance = body_.separation_at(active_.position, active_.T_world_base, people_, {}).distance;
+  ASSERT_GT(distance, 0.40);
+  ASSERT_LT(distance, 0.60);
+  Attention passing(settings(), body_);
+  run(passing, 0, 0.5);
+  EXPECT_LT(passing.advice().speed_factor, 1.0);
+  action_.kind = ActionKind::receive;
+  action_.state = ActionState::running;
+  action_.human = "anna";
+  Attention exchanging(settings(), body_);
+  run(exchanging, 0, 0.5);
+  EXPECT_EQ(of(exchanging.state(), Behaviour::avoid).speed_factor, 1.0);
+  action_.human = "ben";
+  Attention beside(settings(), body_);
+  run(beside, 0, 0.5);
+  EXPECT_LT(of(beside.state(), Behaviour::avoid).speed_factor, 1.0);
+}
+
+TEST_F(AttentionTest, a_motion_toward_a_person_is_watched_more_often_than_one_that_leads_away) {
+  people_.people = {standing(0.8, 0.8)};
+  double last = 0.0;
+  for (const double speed : {1.0, 0.6, 0.0}) {
+    point_arm_at_person_with_trajectory(speed);
+    active_.axes = {0};
+    Attention attention(settings(), body_);
+    run(attention, 0, 0.5);
+    const double period = of(attention.state(), Behaviour::avoid).period;
+    EXPECT_GT(period, last) << speed;
+    last = period;
+  }
+  point_arm_at_person_with_trajectory(-0.6);
+  active_.axes = {0};
+  Attention leaves(settings(), body_);
+  run(leaves, 0, 0.5);
+  EXPECT_EQ(of(leaves.state(), Behaviour::avoid).period, last);
+}
+
 TEST_F(AttentionTest, recoils_only_when_running_back_leads_away) {
   Attention attention(settings(), body_);
   people_.people = {standing(0.6, 0.36)};
@@ -433,10 +472,10 @@ TEST(AttentionSettingsFile, a_behaviour_that_cannot_be_is_refused_where_it_stand
   const std::string shipped((std::istreambuf_iterator<char>(in)), {});
   EXPECT_EQ(refusal_of(shipped, "tick", "tick"), "no error");
   const std::string order = refusal_of(shipped, "p_min: 0.04 p_max: 0.2", "p_min: 0.4 p_max: 0.2");
-  EXPECT_THAT(order, HasSubstr("attention.txtpb:28"));
+  EXPECT_THAT(order, HasSubstr("attention.txtpb:30"));
   EXPECT_THAT(order, HasSubstr("behaviour avoid: p_max must not be below p_min"));
   const std::string stranger = refusal_of(shipped, "\"give\"", "\"hug\"");
-  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:31"));
+  EXPECT_THAT(stranger, HasSubstr("attention.txtpb:33"));
   EXPECT_THAT(stranger, HasSubstr("\"hug\" is none of search, track, avoid, pick, place, give, receive"));
   EXPECT_THAT(refusal_of(shipped, "law: LINEAR", "law: FIXED"), HasSubstr("behaviour search: period must be from p_min to p_max"));
 }

@@ -172,6 +172,14 @@ TEST(SeparationOracleTest, ItsStopAgreesWithTheStopOfTheTrajectoryRoom) {
   }
 }
 
+TEST(PeakSpeedTest, AJumpWithinOneStepIsNoMotion) {
+  PeakSpeed peak;
+  for (int step = 0; step < 100; ++step) peak.add(step == 50 ? 65.0 : 0.4 + 0.001 * step);
+  EXPECT_NEAR(peak.peak(), 0.4 + 0.001 * 97, 1e-12);
+  for (int step = 0; step < 3; ++step) peak.add(1.5);
+  EXPECT_DOUBLE_EQ(peak.peak(), 1.5);
+}
+
 TEST(SeparationOracleTest, ApproachingFastIsAViolationStandingIsNot) {
   config::Scenario scenario;
   scenario.set_name("near");
