@@ -76,7 +76,7 @@ struct CollisionWorld::Impl {
   std::vector<RobotBody> bodies;  // links; what the hand holds is appended
   std::size_t link_bodies{};
   std::vector<SelfPair> link_pairs, held_pairs;
-  std::vector<SceneBody> scene, obstacles;
+  std::vector<SceneBody> scene, obstacles, in_peoples_hands;
   std::vector<PersonBody> people;
   Scene last_scene;
   Attachment attachment;
@@ -184,6 +184,7 @@ struct CollisionWorld::Impl {
 
   void rebuild_scene() {
     std::vector<SceneBody> bodies_now;
+    in_peoples_hands.clear();
     for (const SceneBox& box : last_scene.boxes) {
       SceneBody body;
       body.id = box.id;
@@ -204,7 +205,7 @@ struct CollisionWorld::Impl {
       bodies_now.push_back(std::move(body));
     }
     for (const SceneObject& object : last_scene.objects) {
-      if (object.holder == Holder::robot || object.holder == Holder::human || object.id == attachment.object) continue;
+      if (object.holder == Holder::robot || object.id == attachment.object) continue;
       SceneBody body;
       body.id = object.id;
       body.is_object = true;
@@ -212,7 +213,7 @@ struct CollisionWorld::Impl {
       body.allowed = allowed.count(object.id) > 0;
       body.shape = body.allowed ? object_shape(object, 0) : object_shape(object, object.uncertainty, body.T_world_shape);
       if (!body.shape) continue;
-      bodies_now.push_back(std::move(body));
+      (object.holder == Holder::human ? in_peoples_hands : bodies_now).push_back(std::move(body));
     }
     scene = std::move(bodies_now);
   }
@@ -341,7 +342,15 @@ struct CollisionWorld::Impl {
     return people_distance([](const PersonBody& p) { return p.obstacle && !(p.allowed && p.arm); }, 1e-6, 0.0) <= 0.0;
   }
 
+  bool things_touch(const std::vector<SceneBody>& things, CollisionVerdict* verdict) const {
+    for (std::size_t i = 0; !things.empty() && i < bodies.size(); ++i)
+      if (bodies[i].moves && scene_touch(i, things, verdict)) return true;
+    return false;
+  }
+
+  /// What they hold belongs to them: it moves as they do.
   bool people_touch(CollisionVerdict* verdict) const {
+    if (things_touch(in_peoples_hands, verdict)) return true;
     if (people.empty() || !near_people()) return false;
     for (std::size_t i = 0; i < bodies.size(); ++i)
       if (bodies[i].moves && person_touch(i, verdict)) return true;
@@ -359,7 +368,7 @@ struct CollisionWorld::Impl {
     rest_touches = false;
     if (!same) fold(q);
     std::vector<WideWorld::Solid> solids;
-    for (const auto* things : {&scene, &obstacles})
+    for (const auto* things : {&scene, &obstacles, &in_peoples_hands})
       for (const SceneBody& thing : *things) {
         const std::uint8_t all = thing.allowed ? kWideArm : kWideArm | kWideHand | kWideHeld;
         add_solid(*thing.shape, thing.T_world_shape, thing.lowered ? all & ~kWideHeld : all, solids);
@@ -371,7 +380,8 @@ struct CollisionWorld::Impl {
     wide->set_solids(solids, T_world_base);
     for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
       rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
-                     (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) || person_touch(i, nullptr));
+                     (scene_touch(i, scene, nullptr) || scene_touch(i, obstacles, nullptr) || scene_touch(i, in_peoples_hands, nullptr) ||
+                      person_touch(i, nullptr));
     for (const auto* pairs : {&link_pairs, &held_pairs})
       for (const SelfPair& pair : *pairs) {
         if (rest_touches || lean(pair) || changes(pair)) continue;
@@ -460,8 +470,7 @@ struct CollisionWorld::Impl {
     ++checks;
     ++exact_checks;
     place(q);
-    for (std::size_t i = 0; i < bodies.size(); ++i)
-      if (bodies[i].moves && (scene_touch(i, scene, verdict) || scene_touch(i, obstacles, verdict))) return false;
+    if (things_touch(scene, verdict) || things_touch(obstacles, verdict)) return false;
     if (with_people && people_touch(verdict)) return false;
     const bool known = self_free.size() == q.size();
     for (int axis = 0; axis < robot.dof(); ++axis) changed[axis] = !known || self_free[axis] != q[axis];

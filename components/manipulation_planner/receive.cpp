@@ -353,7 +353,7 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
   Motion approach;
   approach.phase = "approach";
   approach.goals = {grasp.approach_joints};
-  approach.tolerated = {object_id, giver};
+  approach.tolerated = {giver};
   approach.aims_at = object_id;
   approach.p_world_aim = object(object_id)->T_world_object.translation();
   approach.aim_slack = settings_.approach_slack();
