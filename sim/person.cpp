@@ -110,6 +110,7 @@ void PersonModel::step(double dt, const PersonView& view) {
   }
   placed_ = false;
   place_base();
+  if (wants_grip_) keep_above_furniture();
   if (hand_active_) {
     bend_arm(index(), hand_target_);
     hand_target_ = points_[kHand[index()]];

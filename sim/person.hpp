@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "common/messages/world.hpp"
 #include "common/model/human_body.hpp"
@@ -32,6 +33,12 @@ struct Manner {
   bool early{};  ///< takes what comes within reach while it still moves
 };
 
+/// A box that stands where it is.
+struct Furniture {
+  Pose T_world_box{Pose::Identity()};
+  Vector3 size{Vector3::Zero()};  ///< [m]
+};
+
 struct PersonSettings {
   std::string id;
   Vector3 feet{Vector3::Zero()};  ///< world [m]
@@ -49,6 +56,7 @@ struct PersonSettings {
   double warp_time{0.5};    ///< over the last part before contact [s]
   double fetches_at{};      ///< who fetches something reaches for it from then on [s]
   Manner manner{};
+  std::vector<Furniture> furniture;  ///< what they hold is kept above it
 };
 
 /// What the person sees and feels.
@@ -130,6 +138,8 @@ class PersonModel {
   Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
   double gap(const PersonView&) const;
   Vector3 keep_point() const;
+  double height_above_furniture(const Vector3& hand) const;
+  void keep_above_furniture();
   double since() const { return clock_ - phase_since_; }
   Vector3 hand_point() const { return hands_[index()].T_world_body.translation(); }
   int index() const { return side_ == Side::left ? 0 : 1; }

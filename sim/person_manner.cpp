@@ -1,4 +1,6 @@
 // What makes people different: who offers, hesitates, changes their mind, looks away, steps aside.
+#include <limits>
+
 #include "sim/person.hpp"
 #include "sim/person_parts.hpp"
 
@@ -16,6 +18,10 @@ constexpr double kBeforeHand = 0.5;   // from the robot's hand, where something 
 constexpr double kImpatience = 8.0;   // who is ignored for so long holds it out anew [s] ...
 constexpr double kStepNearer = 0.12;  // ... and comes nearer by this [m] ...
 constexpr int kMostSteps = 2;         // ... so often
+// [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it, and lower with every step away from
+// there.
+constexpr double kAbove = 0.16, kBeside = 0.12;
+constexpr double kLift = 0.4;  // to where that is, for who takes something beside furniture [s]
 
 }  // namespace
 
@@ -90,6 +96,28 @@ void PersonModel::step_aside(double dt) {
   if (clock_ < settings_.manner.sidestep_at || !(free || under_way)) return;
   step_clock_ += dt;
   aside_ = home_aside_ + min_jerk(step_clock_ * kWalkSpeed / length) * settings_.manner.sidestep;
+}
+
+/// The least height of a hand that holds something, there [m].
+double PersonModel::height_above_furniture(const Vector3& hand) const {
+  double least = -std::numeric_limits<double>::infinity();
+  for (const Furniture& box : settings_.furniture) {
+    const Vector3 p = box.T_world_box.inverse() * hand, half = box.size / 2;
+    const double up = (box.T_world_box.linear().row(2).transpose().cwiseAbs()).dot(half), z = box.T_world_box.translation().z();
+    if (hand.z() < z - up) continue;  // it hangs over them
+    const double beside = (p.cwiseAbs() - half).cwiseMax(0).head<2>().norm();
+    least = std::max(least, z + up + kAbove - std::max(0.0, beside - kBeside));
+  }
+  return least;
+}
+
+/// Only what nobody else has hold of.
+void PersonModel::keep_above_furniture() {
+  const bool alone = phase_ == PersonPhase::withdrawing || phase_ == PersonPhase::keeping || phase_ == PersonPhase::leaving ||
+                     (phase_ == PersonPhase::offering && lost_time_ <= 0);
+  if (!alone) return;
+  const double share = phase_ == PersonPhase::withdrawing ? min_jerk(since() / kLift) : 1.0;
+  hand_target_.z() += share * std::max(0.0, height_above_furniture(hand_target_) - hand_target_.z());
 }
 
 Vector3 PersonModel::looked_at(const PersonView& view) const {

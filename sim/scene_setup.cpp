@@ -112,6 +112,7 @@ class Reader {
     if (s.stature < 1.2 || s.stature > 2.2)
       fail("stature of " + s.id + " is " + std::to_string(s.stature) + ", must be between 1.2 and 2.2");
     s.kind = kind_of(person.behaviour());
+    for (const StartBox& box : out_.boxes) s.furniture.push_back({box.T_world_box, box.size});
     if (person.reaction() > 0) s.reaction = person.reaction();
     s.reaction *= 1 + (person.jitter() > 0 ? jitter(std::min(0.5, person.jitter() * 5)) : 0);
     s.approach_from = person.approach_from();

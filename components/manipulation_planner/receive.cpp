@@ -11,7 +11,8 @@ namespace handsel::manipulation_planner {
 
 namespace {
 constexpr double kSteady = 0.25;     // [s] an offer must last before the hand goes for it
-constexpr double kFirstOffer = 3.0;  // [s] without an offer before room is made for one
+constexpr double kFirstOffer = 3.0;  // [s] without an offer, before what is held still before the body counts as one ...
+constexpr double kKeptStill = 1.0;   // [s] ... when it has lasted so long; and if there is none, room is made for one
 constexpr double kLookAgain = 0.02;  // [s]
 constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
 constexpr double kAimed = 0.02;      // [m] before the object the hand stands where the straight way in begins, up to this
@@ -28,8 +29,9 @@ constexpr double kOffFingers = 0.01;  // [m] kept from the giver's hand, closing
 // [m] The waiting hand keeps so far, level, from where a person would hold something out comfortably: nobody puts it into a hand that is
 // there already; the arm keeps the second. Less room by more than the third makes it draw back.
 constexpr double kRoom = 0.55, kArmRoom = 0.35, kCrowded = 0.05;
-// More than `held_out` [m] and toward the robot by this cosine: held out by who was asked for it, though the arm is not stretched.
-constexpr double kBentArm = 0.05, kTowardRobot = 0.7;
+// More than `held_out` [m] and toward the robot by this cosine: held out by who was asked for it, though the arm is not stretched. The
+// second is less than `held_out`, and means it when nothing else has been offered for long.
+constexpr double kBentArm = 0.05, kBeforeBody = 0.03, kTowardRobot = 0.7;
 constexpr std::size_t kPostures = 6;  // to wait in that are looked for
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
@@ -45,7 +47,8 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
   // Who was asked for it and holds it out toward the robot means it, with a bent arm too.
   const bool asked = goal_.human == who.id && goal_.object == held.id;
   const Vector3 to_robot = level(scene_.T_world_base.translation() - torso_of(who));
-  return asked && out.norm() >= settings_.held_out() + kBentArm && out.dot(to_robot) > kTowardRobot * out.norm() * to_robot.norm();
+  const double least = settings_.held_out() + (waited_long_ ? -kBeforeBody : kBentArm);
+  return asked && out.norm() >= least && out.dot(to_robot) > kTowardRobot * out.norm() * to_robot.norm();
 }
 
 bool ManipulationPlanner::exchanges() const {
@@ -177,14 +180,17 @@ Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_fo
                                                                                         TimePoint patience) {
   std::optional<Offer> offer;
   bool made_room = false;
+  waited_long_ = false;
   const TimePoint began = waiting_.now();
   for (TimePoint since = began; waiting_.now() < patience;) {
     status_.phase = "watching for an offer";
     const std::optional<Offer> seen = offered(wanted, giver);
     if (!seen || !offer || seen->object != offer->object || seen->giver != offer->giver) since = waiting_.now();
     offer = seen;
-    if (offer && to_seconds(waiting_.now() - since) >= kSteady) co_return offer;
-    if (!offer && !made_room && to_seconds(waiting_.now() - began) > kFirstOffer && crowds(giver)) {
+    if (offer && to_seconds(waiting_.now() - since) >= (waited_long_ ? kKeptStill : kSteady)) co_return offer;
+    const double waited = to_seconds(waiting_.now() - began);
+    waited_long_ = waited > kFirstOffer;
+    if (!offer && !made_room && waited > kFirstOffer + kKeptStill && crowds(giver)) {
       made_room = true;
       Outcome made = co_await make_room(giver);
       if (!made.good) refuse("making room", made.reason);
@@ -268,6 +274,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     last = co_await move(approach);
     if (there = put_into_hand(); there) break;
     if (!last.good && !last.strayed) break;
+    if (last.strayed) waited_long_ = false;
     const bool settled =
         co_await waiting_.until([&steady, &put_into_hand] { return steady() || put_into_hand(); }, settings_.sight_timeout());
     if (there = put_into_hand(); there) break;

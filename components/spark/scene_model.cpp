@@ -251,6 +251,7 @@ bool SceneModel::keep_gripped(SceneObject& object) const {
 
 std::optional<std::size_t> SceneModel::loaded_hand(const Known& known) const {
   constexpr double kReach = 0.35;  // [m] from the palm
+  constexpr double kTaken = 0.30;  // [m] and so near to come to be held: what only leans on the fingertips is not in the hand
   constexpr double kShare = 0.4;   // of its weight that is felt when it is held
   constexpr double kSome = 0.2;    // and that whoever had it feels at least
   const ObjectModel* model = library_ ? library_(known.object.model) : nullptr;
@@ -259,7 +260,8 @@ std::optional<std::size_t> SceneModel::loaded_hand(const Known& known) const {
   double together = 0;
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     const Hand& hand = hands_[i];
-    if (!((known.object.T_world_object.translation() - hand.T_world_palm.translation()).norm() < kReach)) continue;
+    const double reach = known.object.holder == Holder::robot ? kReach : kTaken;
+    if (!((known.object.T_world_object.translation() - hand.T_world_palm.translation()).norm() < reach)) continue;
     together += hand.payload;
     if (!most || hand.payload > hands_[*most].payload) most = i;
   }

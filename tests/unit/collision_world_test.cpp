@@ -95,6 +95,32 @@ TEST_F(World, hands_of_the_person_of_an_exchange_are_no_obstacle_the_torso_stays
   EXPECT_FALSE(world_.check(q_).free);
 }
 
+TEST_F(World, what_a_person_holds_is_an_obstacle_that_belongs_to_them) {
+  Scene scene;
+  SceneObject held;
+  held.id = "cup";
+  held.holder = Holder::human;
+  held.holder_id = "anna";
+  held.primitive = {PrimitiveKind::box, {0.1, 0.1, 0.1}};
+  held.T_world_object = make_pose({1.0, 0, 0});
+  scene.objects = {held};
+  world_.set_scene(scene);
+  const CollisionVerdict verdict = world_.check(q_);
+  EXPECT_FALSE(verdict.free);
+  EXPECT_EQ(verdict.second, "object cup");
+  EXPECT_FALSE(world_.check_people(q_).free);
+  EXPECT_TRUE(world_.check_scene(q_).free);
+  world_.set_moving_axes({0, 1, 2});
+  EXPECT_FALSE(world_.is_free(q_));
+  scene.objects[0].holder = Holder::surface;
+  world_.set_scene(scene);
+  EXPECT_FALSE(world_.check_scene(q_).free);
+  EXPECT_TRUE(world_.check_people(q_).free);
+  scene.objects[0].holder = Holder::robot;
+  world_.set_scene(scene);
+  EXPECT_TRUE(world_.check(q_).free);
+}
+
 TEST_F(World, clearance_to_the_scene_is_the_gap) {
   world_.set_scene(scene_with("table", {1.5, 0, 0}, {0.1, 0.1, 0.1}));
   EXPECT_NEAR(world_.distance_to_scene(q_), 1.45 - 1.18, 1e-6);

@@ -59,6 +59,27 @@ class SceneObjects : public ::testing::Test {
   HumanState people_;
 };
 
+TEST_F(SceneObjects, what_leans_on_the_fingertips_is_not_in_the_hand_what_was_in_it_may_be_farther_out) {
+  model_.emplace(
+      settings_, std::make_shared<const RobotModel>(test::planar_arm()),
+      [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; }, std::vector<SceneBox>{});
+  people_.people = {person_at({2.2, 0, 0})};
+  RobotState robot;
+  robot.position = Vector::Zero(3);
+  robot.payload = mug_.mass;
+  model_->update(robot);
+  const auto holder = [&](double t, double before_palm) {
+    see(t, {mug("mug", {before_palm, 0, 0})});
+    return find(wait(t, t), "mug")->holder;
+  };
+  EXPECT_NE(holder(0, 0.33), Holder::robot);
+  EXPECT_EQ(holder(0.1, 0.25), Holder::robot);
+  EXPECT_EQ(holder(0.2, 0.33), Holder::robot);
+  robot.payload = 0;
+  model_->update(robot);
+  EXPECT_NE(holder(0.3, 0.25), Holder::robot);
+}
+
 TEST_F(SceneObjects, out_of_sight_grows_uncertain_and_seen_again_is_sure) {
   see(0, {mug("mug", {0.7, 0, 0.74})});
   EXPECT_EQ(find(wait(0, 0.4), "mug")->uncertainty, 0);

@@ -137,6 +137,29 @@ TEST(SimPerson, WhoGivesNeverHoldsItIntoTheRobotsHand) {
   EXPECT_GT((person.hand().T_world_body.translation() - Vector3(1.0, -0.2, 1.2)).norm(), 0.3);
 }
 
+TEST(SimPerson, WhoHoldsSomethingKeepsItAboveTheTableTheySitAt) {
+  PersonSettings settings = giver();
+  settings.manner.seated = true;
+  PersonModel free(settings);
+  const Vector3 where = free.hand().T_world_body.translation();
+  EXPECT_LT(where.z(), 0.8);
+  const Furniture table{make_pose({where.x() - 0.2, where.y(), 0.36}), {0.5, 0.5, 0.72}},
+      far{make_pose({where.x() - 5, 0, 0.36}), {1, 1, 2}}, shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}};
+  settings.furniture = {far, shelf};
+  PersonModel same(settings);
+  EXPECT_EQ(same.hand().T_world_body.translation(), where);
+  settings.furniture.push_back(table);
+  PersonModel person(settings);
+  Vector3 before = person.hand().T_world_body.translation();
+  for (int i = 0; i < 20000; ++i) {
+    person.step(0.001, holding(person, {0.3, 0.4, 1.0}, false));
+    const Vector3 hand = person.hand().T_world_body.translation();
+    ASSERT_GT(hand.z(), 0.72 + 0.1) << i;
+    ASSERT_LT((hand - before).norm(), 0.004) << i;
+    before = hand;
+  }
+}
+
 TEST(SimPerson, WhoIsIgnoredComesNearerAndHoldsItOutAnewTwice) {
   PersonModel person(giver());
   const double before = person.body().joints[joint("torso")].position.x();
