@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/cost/human_cost.hpp"
 #include "common/messages/attention.hpp"
 
 namespace handsel {
 namespace {
 
 constexpr double kNear = 0.40;      // [m] a person nearer than this is to be reacted to
-constexpr double kBraked = 0.02;    // of the speed below what attention asks for
+constexpr double kCarried = 0.05;   // [m] a shorter way says nothing
 constexpr double kToward = 0.1;     // [m/s]
 constexpr double kSlower = 0.9;     // of the speed factor before
 constexpr double kLate = 0.2;       // [s]
@@ -67,7 +68,6 @@ Criteria::Criteria(Bus& seat, LocalNetwork& network) : network_(network) {
     settle(r.arrival);
   });
   seat.subscribe<AttentionAdvice>([this](const AttentionAdvice& a, const Receipt&) {
-    advised_ = a.speed_factor;
     const std::array<double, 5> periods{a.people_period, a.objects_period, a.forecast_period, a.cost_map_period, a.replan_period};
     for (std::size_t i = 0; i < periods.size(); ++i) rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
     ++advices_;
@@ -86,9 +86,6 @@ void Criteria::on(const ExecutionStatus& status, TimePoint) {
   const bool limits = (status.causes & bit(Cause::separation)) != 0 && running_;
   interventions_ += limits && !limited_;
   limited_ = limits;
-  const bool brakes = limits && speed_factor_ < advised_ - kBraked;
-  brakings_ += brakes && !braked_;
-  braked_ = brakes;
   status_ = status;
 }
 
@@ -100,8 +97,8 @@ void Criteria::on(const GroundTruth& truth, TimePoint now) {
     if (!truth.robot_moving) robot_idle_ += step;
     if (!moves) person_idle_ += step;
     if (moves && truth.robot_moving) concurrent_ += step;
+    if (!moves && !truth.robot_moving) both_idle_ += step;
     if (limited_) limited_for_ += step;
-    if (braked_) braked_for_ += step;
     if (truth.robot_moving && status_.separation < status_.separation_limit) below_for_ += step;
     const double nearer = last_->separation - truth.separation;
     if (step > 0 && last_->separation < kClose && nearer < kJump) closing_speed_ = std::max(closing_speed_, nearer / step);
@@ -113,7 +110,25 @@ void Criteria::on(const GroundTruth& truth, TimePoint now) {
       settle(now);
     }
   }
+  watch_exchange(truth);
   last_ = truth;
+}
+
+void Criteria::watch_exchange(const GroundTruth& truth) {
+  const Vector3 p = truth.T_world_object.translation();
+  const std::string before = last_ ? last_->carrier : "";
+  if (truth.carrier == "robot") {
+    if (before == "robot" && carried_from_)
+      carried_ += (p - last_->T_world_object.translation()).norm();
+    else if (before != "both")
+      carried_from_ = p, carried_ = 0;
+  }
+  if (truth.carrier != "both" || (before != "robot" && before != "human") || truth.person.size() != kBodyJoints.size()) return;
+  Person person;
+  person.joints = truth.person;
+  discomfort_ = arm_comfort_cost(person, p);
+  legibility_.reset();
+  if (before == "robot" && carried_from_ && carried_ > kCarried) legibility_ = std::min(1.0, (p - *carried_from_).norm() / carried_);
 }
 
 nlohmann::json Criteria::fields() const {
@@ -138,13 +153,14 @@ nlohmann::json Criteria::fields() const {
           {"late_reactions", std::count_if(reactions.begin(), reactions.end(), [](double r) { return r > kLate; })},
           {"interventions", interventions_},
           {"intervention_s", limited_for_},
-          {"braked", brakings_},
-          {"braked_s", braked_for_},
           {"below_separation_s", below_for_},
           {"closing_speed_m_s", closing_speed_},
           {"robot_idle_s", robot_idle_},
           {"person_idle_s", person_idle_},
           {"concurrent_s", concurrent_},
+          {"functional_delay_s", both_idle_},
+          {"discomfort", discomfort_ ? Json(*discomfort_) : Json(nullptr)},
+          {"legibility", legibility_ ? Json(*legibility_) : Json(nullptr)},
           {"cpu_s", cpu},
           {"cpu_chain_s", chain},
           {"runs", runs},

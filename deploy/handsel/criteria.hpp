@@ -26,11 +26,13 @@ class Criteria {
   ///   had fallen by a tenth of what it had been at most in the half second before [s]
   /// - `reaction_p50_s`, `reaction_p99_s` of these; `late_reactions`: those above 0.2 s
   /// - `interventions`: times the guard began to limit the speed of a running motion because of the separation
-  /// - `braked`: times the guard began to make a motion slower than attention asked for; `braked_s`: for how long
   /// - `intervention_s`: for how long the guard limited; `below_separation_s`: a moving arm was nearer than the separation rule asks for at
   /// its speed
   /// - `closing_speed_m_s`: the fastest by which the least separation shrank within 0.5 m, over 20 ms
   /// - `robot_idle_s`, `person_idle_s`, `concurrent_s`: neither axis nor person moved, both did
+  /// - `functional_delay_s`: neither of them moved: each waited for the other
+  /// - `discomfort`: of the person's arm at the object when it last begins to change hands, [0, 1] (arm_comfort_cost); null: it did not
+  /// - `legibility`: the straight way of what the robot carried to a person over the way it took, (0, 1]; null: it carried nothing there
   /// - `cpu_s`: of each component's handlers and jobs, thread CPU time; `cpu_chain_s`: of perception and planning
   /// - `runs`: how often each piece of work was done; `work_period_s`: mean period that was advised
   nlohmann::json fields() const;
@@ -47,6 +49,7 @@ class Criteria {
     double before{};  // speed factor
   };
   void settle(TimePoint now);
+  void watch_exchange(const GroundTruth& truth);
 
   LocalNetwork& network_;
   double speed_factor_{};
@@ -55,9 +58,12 @@ class Criteria {
   std::vector<double> reactions_;
   std::optional<GroundTruth> last_;
   ExecutionStatus status_;
-  bool running_{}, limited_{}, braked_{};
-  std::uint64_t interventions_{}, brakings_{}, advices_{};
-  double advised_{1.0}, closing_speed_{}, limited_for_{}, braked_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{};
+  bool running_{}, limited_{};
+  std::uint64_t interventions_{}, advices_{};
+  double closing_speed_{}, limited_for_{}, below_for_{}, robot_idle_{}, person_idle_{}, concurrent_{}, both_idle_{};
+  std::optional<Vector3> carried_from_;  // where the robot alone began to carry it
+  double carried_{};                     // the way since [m]
+  std::optional<double> discomfort_, legibility_;
   std::array<double, 5> rates_{};  // sums of advised rates [Hz]
 };
 

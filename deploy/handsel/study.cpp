@@ -24,11 +24,25 @@ struct Measure {
   int decimals;
   bool of_success;  // told of trials that succeeded only
 };
-constexpr Measure kMeasures[] = {{"activations_share", 3, false},  {"cpu_chain_s", 3, false},        {"looks", 1, false},
-                                 {"least_separation_m", 4, false}, {"below_separation_s", 3, false}, {"ssm_violations", 2, false},
-                                 {"closing_speed_m_s", 3, false},  {"contact_force_n", 2, false},    {"late_reactions", 3, false},
-                                 {"reaction_p50_s", 3, false},     {"interventions", 3, false},      {"intervention_s", 3, false},
-                                 {"duration_s", 2, true},          {"robot_idle_s", 2, true},        {"concurrent_s", 2, true}};
+constexpr Measure kMeasures[] = {{"activations_share", 3, false},
+                                 {"cpu_chain_s", 3, false},
+                                 {"looks", 1, false},
+                                 {"least_separation_m", 4, false},
+                                 {"below_separation_s", 3, false},
+                                 {"ssm_violations", 2, false},
+                                 {"closing_speed_m_s", 3, false},
+                                 {"contact_force_n", 2, false},
+                                 {"late_reactions", 3, false},
+                                 {"reaction_p50_s", 3, false},
+                                 {"interventions", 3, false},
+                                 {"intervention_s", 3, false},
+                                 {"peak_closing_speed_m_s", 3, false},
+                                 {"duration_s", 2, true},
+                                 {"robot_idle_s", 2, true},
+                                 {"concurrent_s", 2, true},
+                                 {"functional_delay_s", 2, true},
+                                 {"discomfort", 3, false},
+                                 {"legibility", 3, false}};
 
 std::optional<double> value(const Json& line, const Measure& measure) {
   if (measure.of_success && !line.value("success", false)) return std::nullopt;

@@ -3,4 +3,5 @@ handsel_test(story SOURCES ${CMAKE_CURRENT_LIST_DIR}/story_test.cpp LINK handsel
 handsel_test(includes SOURCES ${CMAKE_CURRENT_LIST_DIR}/includes_test.cpp LABEL unit)
 handsel_test(docs SOURCES ${CMAKE_CURRENT_LIST_DIR}/docs_test.cpp LABEL unit)
 handsel_test(compose_file SOURCES ${CMAKE_CURRENT_LIST_DIR}/compose_file_test.cpp LINK handsel_command LABEL unit)
+handsel_test(criteria SOURCES ${CMAKE_CURRENT_LIST_DIR}/criteria_test.cpp LINK handsel_lockstep LABEL unit)
 handsel_test(study SOURCES ${CMAKE_CURRENT_LIST_DIR}/study_test.cpp LINK handsel_lockstep LABEL unit)
