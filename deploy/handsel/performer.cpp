@@ -113,6 +113,9 @@ void Performer::follow(TimePoint now) {
   const TaskStatus& status = found->second;
   note_step(status, now);
   TaskOutcome& outcome = outcomes_.back();
+  const Seen<GroundTruth>& truth = observer_.snapshot().truth;
+  if (outcome.first_motion < 0 && truth.arrival > task_begin_ && truth.sample.robot_moving)
+    outcome.first_motion = to_seconds(truth.arrival - task_begin_);
   outcome.state = name(status.state);
   outcome.reason = status.reason;
   outcome.refusals = status.refusals;

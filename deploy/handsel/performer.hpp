@@ -32,6 +32,7 @@ struct TaskOutcome {
   bool success{};                ///< give: the oracle's word; other kinds: the supervisor's
   std::string state, reason;     ///< as the supervisor said last; reason also when the oracle disagrees
   double started{}, duration{};  ///< [s]
+  double first_motion{-1};       ///< after the goal was given the robot moved first [s]; negative: never
   std::vector<StepOutcome> steps;
   Refusals refusals;
 };

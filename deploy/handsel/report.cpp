@@ -22,10 +22,15 @@ Json task_json(const TaskOutcome& outcome) {
   Json steps = Json::array();
   for (const StepOutcome& step : outcome.steps)
     steps.push_back({{"step", step.step}, {"started_s", step.started}, {"duration_s", step.duration}});
-  return {{"task", outcome.task},         {"success", outcome.success},
-          {"state", outcome.state},       {"reason", outcome.reason},
-          {"started_s", outcome.started}, {"duration_s", outcome.duration},
-          {"steps", std::move(steps)},    {"refusals", refusals(outcome.refusals)}};
+  return {{"task", outcome.task},
+          {"success", outcome.success},
+          {"state", outcome.state},
+          {"reason", outcome.reason},
+          {"started_s", outcome.started},
+          {"duration_s", outcome.duration},
+          {"first_motion_s", outcome.first_motion < 0 ? Json() : Json(outcome.first_motion)},
+          {"steps", std::move(steps)},
+          {"refusals", refusals(outcome.refusals)}};
 }
 
 std::string format(const char* pattern, double a, double b = 0, double c = 0) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <random>
 
@@ -92,6 +93,7 @@ class Exchanges : public testing::TestWithParam<const char*> {};
 TEST_P(Exchanges, succeed) {
   const std::uint64_t runs = number("HANDSEL_RUNS", 50), first = number("HANDSEL_FIRST_SEED", 9001);
   std::uint64_t done = 0;
+  std::vector<double> first_motions;
   for (std::uint64_t seed = first; seed < first + runs; ++seed) {
     const Performance trial = perform(GetParam(), seed, std::nullopt);
     ASSERT_TRUE(trial.over) << "seed " << seed;
@@ -99,10 +101,13 @@ TEST_P(Exchanges, succeed) {
     std::printf("%s\n", what.c_str());
     std::fflush(stdout);
     done += trial.report["success"].get<bool>();
+    if (const Json& moved = trial.report["tasks"][0]["first_motion_s"]; moved.is_number()) first_motions.push_back(moved);
     expect_harmless(trial.report, what);
     EXPECT_TRUE(trial.report["success"].get<bool>() || !trial.report["failure"].get<std::string>().empty()) << what;
   }
   std::printf("%s: %llu of %llu\n", GetParam(), static_cast<unsigned long long>(done), static_cast<unsigned long long>(runs));
+  std::sort(first_motions.begin(), first_motions.end());
+  if (!first_motions.empty()) std::printf("first motion after the goal: median %.2f s\n", first_motions[first_motions.size() / 2]);
   EXPECT_GE(static_cast<double>(done), kSuccess * static_cast<double>(runs));
 }
 
