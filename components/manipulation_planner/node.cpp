@@ -1,5 +1,6 @@
 #include "components/manipulation_planner/node.hpp"
 
+#include "common/config/people.hpp"
 #include "common/config/resources.hpp"
 #include "common/cost/cost_settings.hpp"
 
@@ -23,11 +24,7 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   positive("status_period", s.status_period());
   positive("regrasp_timeout", s.regrasp_timeout());
   if (s.w_preference() < 0) throw ConfigError("manipulation_planner.txtpb: w_preference must be >= 0");
-  for (const auto& profile : s.people()) {
-    if (profile.id().empty()) throw ConfigError("manipulation_planner.txtpb: people: a profile needs the person's id");
-    if (!(profile.preferred_distance() >= 0 && profile.preferred_distance() <= 2))
-      throw ConfigError("manipulation_planner.txtpb: people: preferred_distance of " + profile.id() + " must be in [0, 2]");
-  }
+  *s.mutable_people() = load_people(context.settings).people();
   if (s.live_period() < 0) throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
   if (s.live_period() > 0) {
     if (s.live_longest() < s.live_period()) throw ConfigError("manipulation_planner.txtpb: live_longest must not be below live_period");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/config/people.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
 
@@ -15,6 +16,7 @@ config::SparkSettings load_settings(const NodeContext& context) {
     throw ConfigError("spark.txtpb: publish_period and human_period must be > 0");
   if (!(settings.news_period() > 0) || settings.longest_period() < std::max(settings.human_period(), settings.publish_period()))
     throw ConfigError("spark.txtpb: news_period must be > 0 and longest_period not below human_period and publish_period");
+  *settings.mutable_people() = load_people(context.settings).people();
   return settings;
 }
 

@@ -158,7 +158,8 @@ void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint s
     lately[i] = true;
   }
   track.size.see(body);
-  person.stature = track.size.stature();
+  const double known_height = height(person.id);
+  person.stature = known_height > 0 ? known_height : track.size.stature();
   const Person previous = person;
   std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
   if (fitted.empty()) return;
@@ -237,6 +238,13 @@ void PeopleTracker::add(const ObservedPerson& body, const std::string& source, T
   if (fresh.person.joints.empty()) return;
   fresh.came_in = from != sources_.end() && at_edge(from->second, position(fresh.person, kTorso));
   tracks_.push_back(std::move(fresh));
+}
+
+/// By the profile; 0: it says nothing.
+double PeopleTracker::height(const std::string& id) const {
+  for (const config::PersonProfile& one : settings_.people())
+    if (one.id() == id) return one.height();
+  return 0;
 }
 
 /// Whether a person anywhere in the grown volume would show head or chest to a source.

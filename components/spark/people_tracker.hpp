@@ -70,6 +70,7 @@ class PeopleTracker {
   double age(const Track& track, TimePoint now) const { return to_seconds(now - track.seen); }
   bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
+  double height(const std::string& id) const;
   bool at_edge(const Source& source, const Vector3& place) const;
   void confine(Track& track, TimePoint now) const;
   Track* heir(const Track& gone, TimePoint now);

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/config/people.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
 #include "common/config/scenario.pb.h"
@@ -43,6 +44,21 @@ TEST(TextProto, NamesFileLineAndColumnOfWhatIsWrong) {
 TEST(TextProto, AFileThatIsNotThereIsMissing) {
   config::RobotDescription out;
   EXPECT_THAT(message_of<MissingError>([&] { load_text_proto("/nowhere/x.txtpb", out); }), HasSubstr("/nowhere/x.txtpb"));
+}
+
+TEST(People, ProfilesAreReadAndThoseThatCannotBeAreRefused) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(load_people(folder.path()).people_size(), 0);
+  const auto refused = [&](const std::string& text) {
+    folder.write("people.txtpb", text);
+    return message_of<ConfigError>([&] { load_people(folder.path()); });
+  };
+  folder.write("people.txtpb", "people { id: \"anna\" handed: LEFT height: 1.66 preferred_distance: 0.6 }");
+  EXPECT_DOUBLE_EQ(load_people(folder.path()).people(0).height(), 1.66);
+  EXPECT_THAT(refused("people { height: 1.7 }"), HasSubstr("a profile needs the person's id"));
+  EXPECT_THAT(refused("people { id: \"a\" } people { id: \"a\" }"), HasSubstr("a has two profiles"));
+  EXPECT_THAT(refused("people { id: \"a\" height: 17 }"), HasSubstr("height of a must be 0 (as it is seen) or in [0.8, 2.5]"));
+  EXPECT_THAT(refused("people { id: \"a\" preferred_distance: -1 }"), HasSubstr("preferred_distance of a must be in [0, 2]"));
 }
 
 TEST(Resources, FindsTheDescriptionsOfTheProject) {

@@ -407,6 +407,21 @@ TEST(PeopleTracker, AnySubsetOfJointsMakesABodyOfItsOwnSize) {
   }
 }
 
+TEST(PeopleTracker, WhoseHeightIsKnownIsThatTallWhateverIsSeenOfThem) {
+  config::SparkSettings known = settings();
+  auto* profile = known.add_people();
+  profile->set_id("anna");
+  profile->set_height(1.62);
+  for (const char* who : {"anna", "ben"}) {
+    PeopleTracker tracker(known);
+    ObservedPerson body;
+    body.body = who;
+    for (const BodyJoint& joint : standing_body({1.0, 0.5, 0}, 0.3, 1.85)) body.joints.push_back({joint.name, joint.position, 1.0});
+    for (int i = 0; i < 20; ++i) tracker.observe(seen({body}), at(i / 15.0));
+    EXPECT_NEAR(tracker.state(at(1.3), kReach).people.at(0).stature, body.body == "anna" ? 1.62 : 1.85, 0.03) << who;
+  }
+}
+
 TEST(PeopleTracker, ABodyWithoutJointsIsNobody) {
   PeopleTracker tracker(settings());
   ObservedPerson empty;
