@@ -39,9 +39,9 @@ NearHand nearest_hand(const Person& person, const Vector3& p) {
   return near;
 }
 
-double urgency(double distance, double closing, double least) {
+double urgency(double distance, double closing) {
   constexpr double kReference = 0.5;
-  return std::max(0.0, distance * kReference / std::max(closing, least));
+  return std::max(0.0, closing > kReference ? distance * kReference / closing : distance);
 }
 
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }

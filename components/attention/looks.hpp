@@ -29,9 +29,8 @@ NearHand nearest_hand(const Person& person, const Vector3& p);
 bool exchanges_with(const World& w, const std::string& person);
 /// The exchanging forearm and hand, while the exchange is engaged.
 Exception exchange_exception(const World& w);
-/// Time to contact as the distance at a reference speed of 0.5 m/s: what urgency is judged by [m]. What closes in more slowly than `least`
-/// counts as that fast [m/s].
-double urgency(double distance, double closing, double least = 0.5);
+/// Distance, or the time to contact at reference speed 0.5 m/s when that is less: what urgency is judged by [m].
+double urgency(double distance, double closing);
 /// 0 at `low`, 1 at `high`, straight between.
 double ramp(double x, double low, double high);
 

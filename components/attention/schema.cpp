@@ -98,9 +98,9 @@ class Avoid : public Schema {
     double closing = 0.0;
     for (const Person& person : w.people->people)
       if (person.id == s.person) closing = directed_speed(person, s.part, (s.on_robot - s.on_person).normalized());
-    double stimulus = urgency(s.distance, closing, kUnrest);
+    double stimulus = urgency(s.distance, closing);
     if (w.forecast && w.forecast->trajectory != 0 && w.forecast->trajectory == active.trajectory)
-      stimulus = std::min(stimulus, urgency(w.forecast->clearance, 0.0, kUnrest));
+      stimulus = std::min(stimulus, std::max(0.0, w.forecast->clearance));
     if (!near_) return stimulus;
 
     const bool partner = exchanges_with(w, s.person);
@@ -114,7 +114,6 @@ class Avoid : public Schema {
     if (active.trajectory != 0 && active.rest.size() > 0) {
       constexpr double kSame = 2e-4, kFarther = 1e-3;  // [m]
       const double ahead = least_along(active, *w.people, exception, 1);
-      stimulus = std::min(stimulus, urgency(s.distance, closing + std::max(0.0, s.distance - ahead) / kSoon, kUnrest));
       const bool closes_in = s.distance < motor_.avoid_stop && closing > motor_.recoil_speed;
       if (closes_in && ahead < s.distance + kFarther && least_along(active, *w.people, exception, -1) > s.distance + kFarther) {
         factor_ = motor_.recoil_factor;
@@ -133,11 +132,9 @@ class Avoid : public Schema {
   const char* reason() const override { return reason_; }
 
  private:
-  static constexpr double kUnrest = 0.3;               // [m/s] who stands may be that fast the next moment
-  static constexpr double kFirst = 0.15, kSoon = 0.4;  // [s]
-
   /// The least distance along the running trajectory before long. At first alone would not do: what begins or ends softly seems to stand.
   double least_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, int way) {
+    constexpr double kFirst = 0.15, kSoon = 0.4;  // [s]
     return std::min(distance_along(active, people, exception, way * kFirst), distance_along(active, people, exception, way * kSoon));
   }
   double distance_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, double ahead) {
