@@ -24,6 +24,7 @@ namespace {
 constexpr double kReach = 0.001;         // contacts closer than this touch [m]
 constexpr double kCollisionForce = 0.5;  // [N]
 constexpr double kFingersMeet = 0.002;   // the person's hand and the robot's overlap by more, before both have the object [m]
+constexpr double kMostHelped = 1.0;      // [kg] the constraint helps to hold no more than this
 constexpr double kPush = 0.2;            // so long after the last touch a push still moves the arm [s]
 constexpr double kFloorHeight = 0.02;    // an object's origin lower than this lies on the floor [m]
 
@@ -141,7 +142,7 @@ struct SimWorld::Impl {
   }
 
   void hold_with(Hand& hand) {
-    if (hand.gripped < 0 || !settings.constraint) return;
+    if (hand.gripped < 0 || !helped(hand.gripped)) return;
     ObjectBody& object = objects[hand.gripped];
     const Wrench w = hand.grip.update(tool_state(hand), object.state(), object.model().mass, object.least_inertia(), settings.step);
     if (!hand.grip.holding()) {
@@ -157,6 +158,9 @@ struct SimWorld::Impl {
     hand.grasp.reset();
     hand.gripped = -1;
   }
+
+  /// What is heavy is held by contact alone: a spring in proportion to it is stiffer than hand and wrist can answer within a step.
+  bool helped(int object) const { return settings.constraint && objects[object].model().mass <= kMostHelped; }
 
   bool grips(int object) const {
     return std::any_of(hands.begin(), hands.end(), [&](const Hand& hand) { return hand.gripped == object; });
@@ -181,7 +185,7 @@ struct SimWorld::Impl {
     const bool held = hand.grasp.update(touches, candidate, centre, settings.step);
     if (hand.gripped < 0 && held) {
       hand.gripped = candidate;
-      if (settings.constraint) hand.grip.hold(tool_state(hand).T_world_body.inverse() * objects[candidate].state().T_world_body);
+      if (helped(candidate)) hand.grip.hold(tool_state(hand).T_world_body.inverse() * objects[candidate].state().T_world_body);
     } else if (hand.gripped >= 0 && !held) {
       let_go(hand);
     }

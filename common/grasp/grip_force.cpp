@@ -1,6 +1,7 @@
 #include "common/grasp/grip_force.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <Eigen/Dense>
@@ -51,24 +52,34 @@ Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, con
   return x;
 }
 
-GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass, const GripForceSettings& settings) {
+namespace {
+
+// 6 x 3m: force and torque about `centre`, the torque over `size`, of a force at each contact.
+Eigen::MatrixXd wrenches(const std::vector<PointContact>& contacts, const Vector3& centre, double size) {
   const auto m = static_cast<Eigen::Index>(contacts.size());
-  GripForces out;
-  if (m < 3) return out;
-  double size = 0;
-  for (const PointContact& c : contacts) size = std::max(size, (c.position - com).norm());
   Eigen::MatrixXd G(6, 3 * m);
   for (Eigen::Index i = 0; i < m; ++i) {
-    const Vector3 r = (contacts[static_cast<std::size_t>(i)].position - com) / size;
+    const Vector3 r = (contacts[static_cast<std::size_t>(i)].position - centre) / size;
     G.block<3, 3>(0, 3 * i).setIdentity();
     G.block<3, 3>(3, 3 * i) << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
   }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(G, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(svd.singularValues()[5] > 1e-6 * svd.singularValues()[0])) return out;
-  const Eigen::MatrixXd free = svd.matrixV().rightCols(3 * m - 6);           // forces that cancel out
-  const Eigen::MatrixXd bear = -svd.solve(Eigen::MatrixXd::Identity(6, 3));  // forces on the object that bear a force at its centre
+  return G;
+}
+
+double size_of(const std::vector<PointContact>& contacts, const Vector3& centre) {
+  double size = 0;
+  for (const PointContact& c : contacts) size = std::max(size, (c.position - centre).norm());
+  return size;
+}
+
+bool holds_all_ways(const Eigen::JacobiSVD<Eigen::MatrixXd>& svd) { return svd.singularValues()[5] > 1e-6 * svd.singularValues()[0]; }
+
+// The squeeze of one hand. `free`: 3m x n, forces that cancel out; `bear`: 3m x 3, forces on the object that bear a force at its centre.
+GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::MatrixXd& free, const Eigen::MatrixXd& bear,
+                   const GripLoad& load, const GripForceSettings& settings) {
+  const auto m = static_cast<Eigen::Index>(contacts.size());
+  GripForces out;
   const Eigen::Index n = free.cols() + 1, per = settings.edges + 1;
-  const double load = mass * settings.acceleration;
   Eigen::MatrixXd A = Eigen::MatrixXd::Zero(m * per, n);
   Eigen::VectorXd b(m * per), c = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -79,23 +90,60 @@ GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3&
     for (int k = 0; k < settings.edges; ++k) {
       const double angle = 2 * std::numbers::pi * k / settings.edges;
       const Vector3 inside = settings.friction_share * contact.friction * normal - std::cos(angle) * t1 - std::sin(angle) * t2;
+      const Eigen::RowVector3d of_load = inside.transpose() * bear.middleRows(3 * i, 3);
       A.row(i * per + k).head(n - 1) = -inside.transpose() * free.middleRows(3 * i, 3);
       A(i * per + k, n - 1) = 1;
-      b[i * per + k] = -load * (inside.transpose() * bear.middleRows(3 * i, 3)).norm();
+      b[i * per + k] = of_load.dot(load.weight) - load.shake * of_load.norm();
     }
     A.row(i * per + settings.edges).head(n - 1) = normal.transpose() * free.middleRows(3 * i, 3);
     b[i * per + settings.edges] = settings.max_normal;
     c.head(n - 1) -= 1e-3 * free.middleRows(3 * i, 3).transpose() * normal;  // of equal margins the gentlest
   }
   c[n - 1] = 1;
-  const double least = b.minCoeff();  // the margin without a squeeze
-  for (Eigen::Index i = 0; i < b.size(); ++i) {
+  double least = std::numeric_limits<double>::infinity();  // the margin without a squeeze
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    if (i % per != settings.edges) least = std::min(least, b[i]);
+  for (Eigen::Index i = 0; i < b.size(); ++i)
     if (i % per != settings.edges) b[i] -= least;
-  }
   const Eigen::VectorXd x = maximise(c, A, b);
   const Eigen::VectorXd f = free * x.head(n - 1);
   for (Eigen::Index i = 0; i < m; ++i) out.forces.push_back(f.segment<3>(3 * i));
   out.margin = x[n - 1] + least;
+  return out;
+}
+
+}  // namespace
+
+GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass, const GripForceSettings& settings) {
+  const auto m = static_cast<Eigen::Index>(contacts.size());
+  if (m < 3) return {};
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(wrenches(contacts, com, size_of(contacts, com)), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (!holds_all_ways(svd)) return {};
+  const Eigen::MatrixXd bear = -svd.solve(Eigen::MatrixXd::Identity(6, 3));
+  return squeeze(contacts, svd.matrixV().rightCols(3 * m - 6), bear, {Vector3::Zero(), mass * settings.acceleration}, settings);
+}
+
+std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands, const Vector3& com, const GripLoad& load,
+                                           const GripForceSettings& settings) {
+  std::vector<GripForces> out(hands.size());
+  std::vector<PointContact> all;
+  for (const auto& contacts : hands) all.insert(all.end(), contacts.begin(), contacts.end());
+  if (all.size() < 3) return out;
+  const Eigen::JacobiSVD<Eigen::MatrixXd> together(wrenches(all, com, size_of(all, com)), Eigen::ComputeThinU | Eigen::ComputeThinV);
+  if (!holds_all_ways(together)) return out;
+  const Eigen::MatrixXd bear = -together.solve(Eigen::MatrixXd::Identity(6, 3));
+  Eigen::Index row = 0;
+  for (std::size_t h = 0; h < hands.size(); ++h) {
+    const auto m = static_cast<Eigen::Index>(hands[h].size());
+    Vector3 middle = Vector3::Zero();
+    for (const PointContact& c : hands[h]) middle += c.position / static_cast<double>(m);
+    if (m >= 3) {
+      const Eigen::JacobiSVD<Eigen::MatrixXd> own(wrenches(hands[h], middle, size_of(hands[h], middle)),
+                                                  Eigen::ComputeThinU | Eigen::ComputeFullV);
+      if (holds_all_ways(own)) out[h] = squeeze(hands[h], own.matrixV().rightCols(3 * m - 6), bear.middleRows(row, 3 * m), load, settings);
+    }
+    row += 3 * m;
+  }
   return out;
 }
 

@@ -23,9 +23,20 @@ struct GripForces {
   double margin{};
 };
 
+/// What is to be borne, frame of the contacts.
+struct GripLoad {
+  Vector3 weight{Vector3::Zero()};  ///< always there, at the load's centre [N]
+  double shake{};                   ///< besides, in the worst direction [N]
+};
+
 /// Maximises the margin by linear programming. The load of `mass` [kg] acts at `com` and is borne by all contacts as equal springs.
 /// Without three contacts, or with all on one line, nothing can be borne: no forces, margin 0.
 GripForces grip_forces(const std::vector<PointContact>& contacts, const Vector3& com, double mass, const GripForceSettings& settings = {});
+
+/// Several hands on one load, one entry a hand: each squeezes for itself, and the contacts of all together bear the load at `com` as equal
+/// springs, so that no hand must keep it from turning that another keeps.
+std::vector<GripForces> shared_grip_forces(const std::vector<std::vector<PointContact>>& hands, const Vector3& com, const GripLoad& load,
+                                           const GripForceSettings& settings = {});
 
 /// Maximises c.x subject to A x <= b with b >= 0, x free; x = 0 is where it starts. Unbounded directions are not followed further.
 Eigen::VectorXd maximise(const Eigen::VectorXd& c, const Eigen::MatrixXd& A, const Eigen::VectorXd& b);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kLeastContacts = 3;
 constexpr std::size_t kScoredCombinations = 8;
+constexpr double kMostPositions = 2000;
 
 /// Which contact each finger uses; -1: none, the finger rests.
 using Combination = std::vector<int>;
@@ -90,11 +91,17 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
   return out;
 }
 
+std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings) {
+  if (!(settings.spacing > 0)) return settings.positions;
+  const double dense = std::ceil(box.sizes().cwiseMax(settings.spacing).prod() / std::pow(settings.spacing, 3));
+  return static_cast<std::uint32_t>(std::clamp<double>(dense, settings.positions, kMostPositions));
+}
+
 struct GraspLister::Impl {
   Impl(std::shared_ptr<const HandKit> k, std::shared_ptr<const FingerWorkspaces> w, std::shared_ptr<const Graspable> o,
        const GraspListSettings& s)
       : kit(std::move(k)), workspaces(std::move(w)), object(std::move(o)), settings(s), search(*kit, *workspaces, *object, settings) {
-    positions = uniform_positions(object->box(), settings.positions);
+    positions = uniform_positions(object->box(), position_count(object->box(), settings));
     orientations = so3_sequence(settings.orientations);
     out.hand = kit->hand.name();
     out.object = object->name();
@@ -397,7 +404,7 @@ GraspList GraspLister::list() const { return merged({impl_->out}); }
 
 std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings) {
   if (kit.hand.pinches()) return PinchSearch(kit, object, settings).frames();
-  return uniform_positions(object.box(), settings.positions).size() * std::uint64_t{settings.orientations};
+  return uniform_positions(object.box(), position_count(object.box(), settings)).size() * std::uint64_t{settings.orientations};
 }
 
 GraspList merged(std::vector<GraspList> parts) {

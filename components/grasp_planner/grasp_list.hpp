@@ -24,6 +24,7 @@ struct QualityWeights {
 
 struct GraspListSettings {
   std::uint32_t positions{60};      ///< of the grasp frame in the object's box, uniform
+  double spacing{0.04};             ///< in a large box as many more as make them about this far apart [m]; 0: never more
   std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
   double step_share{0.6};           ///< distance of contact points / fingertip radius
   double friction{0};               ///< Coulomb coefficient; 0: the object's
@@ -79,6 +80,9 @@ struct GraspList {
 
 /// Positions of the grasp frame: cell centres of a uniform grid over the box, about `count` of them.
 std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count);
+
+/// How many positions the settings want in a box.
+std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings);
 
 /// Frames of a hand on an object with these settings.
 std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);

@@ -161,11 +161,26 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
   h.add(object.com);
   h.add(object.friction);
   h.add(object.mass);
-  for (const double v :
-       {static_cast<double>(s.positions), s.step_share, s.friction, static_cast<double>(s.cone_edges), s.full_epsilon, s.weights.stability,
-        s.weights.centre, s.weights.force, s.weights.curvature, static_cast<double>(s.contacts_per_finger),
-        static_cast<double>(s.tries_per_finger), s.depth, s.opening, s.open_clearance, s.free_distance, s.grip.max_normal,
-        s.grip.friction_share, s.grip.acceleration, static_cast<double>(s.grip.edges)}) {
+  for (const double v : {static_cast<double>(s.positions),
+                         s.spacing,
+                         s.step_share,
+                         s.friction,
+                         static_cast<double>(s.cone_edges),
+                         s.full_epsilon,
+                         s.weights.stability,
+                         s.weights.centre,
+                         s.weights.force,
+                         s.weights.curvature,
+                         static_cast<double>(s.contacts_per_finger),
+                         static_cast<double>(s.tries_per_finger),
+                         s.depth,
+                         s.opening,
+                         s.open_clearance,
+                         s.free_distance,
+                         s.grip.max_normal,
+                         s.grip.friction_share,
+                         s.grip.acceleration,
+                         static_cast<double>(s.grip.edges)}) {
     h.add(v);
   }
   h.add(s.seed);

@@ -75,6 +75,7 @@ Duration choice_time(const Choice& choice) {
 GraspListSettings taker_settings(const config::GraspPlannerSettings& text) {
   GraspListSettings s = list_settings(text, 1);
   s.positions = std::min(s.positions, kTakerPositions);
+  s.spacing = 0;
   s.orientations = std::min(s.orientations, kTakerOrientations);
   return s;
 }
@@ -91,6 +92,7 @@ std::shared_ptr<TransferBook> transfer_book(const config::GraspPlannerSettings& 
 GraspListSettings list_settings(const config::GraspPlannerSettings& t, std::uint64_t seed) {
   GraspListSettings s;
   s.positions = static_cast<std::uint32_t>(positive("positions", t.positions()));
+  s.spacing = positive("spacing", t.spacing());
   s.orientations = static_cast<std::uint32_t>(positive("orientations", t.orientations()));
   s.step_share = positive("step_share", t.step_share());
   if (t.cone_edges() < 6) throw ConfigError("grasp_planner.txtpb: cone_edges must be at least 6");

@@ -59,7 +59,7 @@ std::optional<Vector> PinchMotion::at_gap(double wanted) const {
 PinchSearch::PinchSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings)
     : kit_(kit), object_(object), settings_(settings), motion_(kit) {
   const std::uint64_t all = object.points().size();
-  places_ = std::clamp<std::uint64_t>(std::uint64_t{settings.positions} * settings.orientations / kTurns, 1, all);
+  places_ = std::clamp<std::uint64_t>(std::uint64_t{position_count(object.box(), settings)} * settings.orientations / kTurns, 1, all);
   stride_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kGolden * static_cast<double>(all)));
   while (std::gcd(stride_, all) != 1) ++stride_;
 }

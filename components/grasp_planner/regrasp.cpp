@@ -429,7 +429,8 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
   Impl& impl = *impl_;
   if (impl.arms.size() != 2) throw ConfigError("two hands at once need two arms, there is " + std::to_string(impl.arms.size()));
   RegraspPlan out;
-  // Grasps by which each arm follows it from where it stands to where it is to stand.
+  const GripLoad load = carried_load(impl.object.mass(), T_world_start.linear(), impl.settings.grip);
+  // Grasps that bear half of it and by which each arm follows it from where it stands to where it is to stand.
   const std::vector<Pose> way = impl.carried_over(T_world_start, T_world_goal);
   std::array<GraspList, 2> reached;
   std::array<std::vector<std::size_t>, 2> index;
@@ -437,9 +438,13 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
   std::array<HandSide, 2> sides;
   for (std::size_t a = 0; a < 2; ++a) {
     const RegraspArm& arm = impl.arms[a];
+    std::size_t firm = 0;
     for (std::size_t n = 0; n < arm.list->grasps.size(); ++n) {
+      const Grasp& g = arm.list->grasps[n].grasp;
+      if (bear_part({arm.kit, &g}, 0.5, load, impl.settings.grip).margin <= 0) continue;
+      ++firm;
       std::vector<Pose> T_root_tip;
-      for (const Pose& T : way) T_root_tip.push_back(impl.T_root_world * T * arm.list->grasps[n].grasp.T_object_hand);
+      for (const Pose& T : way) T_root_tip.push_back(impl.T_root_world * T * g.T_object_hand);
       std::vector<CarriedWay> found = carried_ways(impl.robot, *arm.arm.arm, impl.robot.rest_posture(), T_root_tip);
       if (found.empty()) continue;
       reached[a].grasps.push_back(arm.list->grasps[n]);
@@ -450,8 +455,9 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
     sides[a].kit = arm.kit;
     sides[a].list = &reached[a];
     if (!index[a].empty()) continue;
-    out.reason =
-        "by none of " + std::to_string(arm.list->grasps.size()) + " grasps does " + arm.arm.name + " follow it from its start to its goal";
+    const std::string all = "by none of " + std::to_string(firm > 0 ? firm : arm.list->grasps.size()) + " grasps ";
+    out.reason = firm > 0 ? all + "that bear half of it does " + arm.arm.name + " follow it from its start to its goal"
+                          : all + "do the fingers of " + arm.arm.name + " bear half of it";
     return out;
   }
   DoubleSettings pairs;
@@ -461,10 +467,16 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
   pairs.clearance = impl.settings.clearance;
   DoubleList doubles = list_double_grasps(sides[0], sides[1], pairs);
   for (DoubleGrasp& d : doubles.grasps) d.first = index[0][d.first], d.second = index[1][d.second];
-  std::stable_sort(doubles.grasps.begin(), doubles.grasps.end(), [&](const DoubleGrasp& x, const DoubleGrasp& y) {
-    const auto margin = [&](const DoubleGrasp& d) { return std::min(impl.grasp(0, d.first).margin, impl.grasp(1, d.second).margin); };
-    return margin(x) > margin(y);
-  });
+  const auto shares_of = [&](const DoubleGrasp& d) {
+    return share_load({{impl.arms[0].kit, &impl.grasp(0, d.first)}, {impl.arms[1].kit, &impl.grasp(1, d.second)}}, impl.object.com(), load,
+                      impl.settings.grip);
+  };
+  for (DoubleGrasp& d : doubles.grasps) {
+    const std::vector<LoadShare> shares = shares_of(d);
+    d.score = std::min(shares[0].margin, shares[1].margin);
+  }
+  std::stable_sort(doubles.grasps.begin(), doubles.grasps.end(),
+                   [](const DoubleGrasp& x, const DoubleGrasp& y) { return x.score > y.score; });
   out.double_grasps = doubles.grasps.size();
   std::map<std::string, std::uint64_t> rejected;
   for (const DoubleGrasp& d : doubles.grasps) {
@@ -473,12 +485,17 @@ RegraspPlan RegraspPlanner::plan_together(const Pose& T_world_start, const Pose&
       ++rejected["the hands would be too near each other"];
       continue;
     }
+    if (d.score <= 0) {
+      ++rejected["the fingers would not bear it"];
+      continue;
+    }
     if (out.judged >= impl.settings.most_pairs_tried || (cancelled && cancelled())) break;
     ++out.judged;
     std::string why;
     auto steps = impl.judge_together(d.first, d.second, way, ways[0].at(d.first), ways[1].at(d.second), why);
     if (steps) {
       out.steps = std::move(*steps);
+      out.shares = shares_of(d);
       out.solved = true;
       break;
     }

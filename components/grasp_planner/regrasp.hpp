@@ -12,6 +12,7 @@
 #include "common/grasp/grip_force.hpp"
 #include "common/model/manipulator.hpp"
 #include "components/grasp_planner/double_grasp.hpp"
+#include "components/grasp_planner/load_share.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -66,6 +67,7 @@ struct RegraspPlan {
   std::string reason;  ///< why not, one sentence
   Refusals rejected;   ///< steps that were judged and why they cannot be made
   std::uint64_t judged{}, double_grasps{};
+  std::vector<LoadShare> shares;  ///< of two hands at once, one an arm: how each squeezes
 };
 
 /// Keeps what it found about an object on a robot in a scene: later tasks with the same object are answered faster. For one thread.
@@ -81,7 +83,8 @@ class RegraspPlanner {
   RegraspPlan plan(const RegraspTask& task, const std::function<bool()>& cancelled = {});
 
   /// Two hands that take it at once where it stands, up by `lift`, straight over and down: pick, join, place. On the whole way both arms
-  /// keep the angles of their elbows, stay inside their limits and touch nothing. ConfigError when there is one arm.
+  /// keep the angles of their elbows, stay inside their limits and touch nothing, and the fingers of both bear the load. ConfigError when
+  /// there is one arm.
   RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled = {});
 
  private:

@@ -10,8 +10,7 @@ namespace {
 
 // [N] of Grasp::margin: weaker grasps are taken only where firmer ones lead nowhere.
 constexpr std::array kLeastMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
-constexpr std::size_t kFewest = 3;     // steps from one hand by the other to its place
-constexpr double kLeastEffort = 0.05;  // [Nm]
+constexpr std::size_t kFewest = 3;  // steps from one hand by the other to its place
 
 RegraspKind kind_of(RegraspStepKind kind) {
   switch (kind) {
@@ -25,28 +24,6 @@ RegraspKind kind_of(RegraspStepKind kind) {
       break;
   }
   return RegraspKind::place;
-}
-
-/// Two hands bear half of the weight each, at their own contacts: the other hand sees to it that nothing turns. The squeeze for that.
-void share_load(const HandKit& kit, const ObjectModel& model, const GripForceSettings& settings, Grasp& g) {
-  std::vector<PointContact> contacts;
-  Vector3 middle = Vector3::Zero();
-  for (const Contact& c : g.contacts) {
-    contacts.push_back({c.position, -c.normal, c.friction});
-    middle += c.position / static_cast<double>(g.contacts.size());
-  }
-  const GripForces grip = grip_forces(contacts, middle, 0.5 * model.mass, settings);
-  g.margin = grip.margin;
-  g.hand_effort = Vector::Zero(g.hand_joints.size());
-  std::vector<std::vector<Pose>> T_hand_step;
-  kit.forward(g.hand_joints, T_hand_step);
-  const Pose T_hand_object = g.T_object_hand.inverse();
-  for (std::size_t k = 0; k < grip.forces.size(); ++k) {
-    const std::size_t finger = g.contacts[k].finger;
-    kit.chains[finger].add_effort(T_hand_step[finger], T_hand_object, g.contacts[k].position, grip.forces[k], g.hand_effort);
-  }
-  // Where nothing bears it for sure the hand squeezes as it does when it is told no efforts.
-  if (!g.hand_effort.allFinite() || g.hand_effort.cwiseAbs().maxCoeff() < kLeastEffort) g.hand_effort.resize(0);
 }
 
 handsel::RegraspStep told(const RegraspStep& step, const std::vector<RegraspArm>& arms) {
@@ -65,6 +42,14 @@ handsel::RegraspStep told(const RegraspStep& step, const std::vector<RegraspArm>
   out.grasp.arm_joints = RobotModel::part(step.q, *arm.arm.arm);
   out.grasp.approach_joints = RobotModel::part(comes ? step.before : step.after, *arm.arm.arm);
   return out;
+}
+
+void tell(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, RegraspReply& reply) {
+  reply.solved = plan.solved;
+  reply.reason = plan.reason;
+  reply.rejected = plan.rejected;
+  reply.steps.clear();
+  for (const RegraspStep& step : plan.steps) reply.steps.push_back(told(step, arms));
 }
 
 }  // namespace
@@ -89,13 +74,24 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& ro
       return answer;
     }
     whole[a].grasps = pages.back()->list.grasps;
-    if (request.both)
-      for (ListedGrasp& g : whole[a].grasps) share_load(*arms[a].kit, model, settings.grip, g.grasp);
     answer.listed += whole[a].grasps.size();
   }
   RegraspTask task;
   task.start.T_world_object = object->T_world_object;
   task.goal.T_world_object = request.T_world_goal;
+  if (request.both) {
+    std::vector<RegraspArm> sides;
+    for (std::size_t a = 0; a < arms.size(); ++a) sides.push_back({arms[a].arm, arms[a].kit.get(), &whole[a]});
+    RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
+    const RegraspPlan plan = planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
+    answer.judged = plan.judged;
+    tell(plan, sides, answer.reply);
+    for (std::size_t a = 0; a < plan.shares.size(); ++a) {
+      answer.reply.steps[a].grasp.hand_effort = plan.shares[a].effort;
+      answer.reply.steps[a].grasp.margin = plan.shares[a].margin;
+    }
+    return answer;
+  }
   for (const double least : kLeastMargins) {
     std::vector<GraspList> firm(arms.size());
     std::vector<RegraspArm> sides;
@@ -107,16 +103,11 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& ro
     const bool any = std::all_of(firm.begin(), firm.end(), [](const GraspList& list) { return !list.grasps.empty(); });
     if (!any && least != kLeastMargins.back()) continue;
     RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
-    const RegraspPlan plan = request.both ? planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled)
-                                          : planner.plan(task, cancelled);
+    const RegraspPlan plan = planner.plan(task, cancelled);
     answer.judged += plan.judged;
     // A firm grip is not worth handing the object to and fro.
     if (!plan.solved ? !answer.reply.solved : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
-      answer.reply.solved = plan.solved;
-      answer.reply.reason = plan.reason;
-      answer.reply.rejected = plan.rejected;
-      answer.reply.steps.clear();
-      for (const RegraspStep& step : plan.steps) answer.reply.steps.push_back(told(step, sides));
+      tell(plan, sides, answer.reply);
     }
     const bool better_by_weaker = least >= 0 && answer.reply.steps.size() > kFewest;
     if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;

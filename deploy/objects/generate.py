@@ -166,17 +166,23 @@ def merge(mesh, other, x, y, z):
 
 
 def tray():
-    length, width, thick = 0.56, 0.26, 0.02
-    apart, R, H, sunk = 0.235, 0.030, 0.16, 0.01
-    plate, post = -H / 2, thick / 2 - sunk  # middles
+    length, width, thick = 0.56, 0.22, 0.02
+    apart, R, stem, high = 0.235, 0.035, 0.012, 0.09  # knobs: middles, radius, of what they stand on, above the middle of the plate
+    middle = (high + R - thick / 2) / 2  # of the whole
     mesh = block(length, width, thick)
-    mesh.vertices = [(x, y, z + plate) for x, y, z in mesh.vertices]
-    profile = [(0, -H / 2), (R, -H / 2), (R, H / 2), (0, H / 2)]
+    start = math.asin(stem / R)
+    n = round((math.pi - start) * R / STEP)
+    arc = [start + (math.pi - start) * i / n for i in range(1, n)]
+    profile = [(0, -thick / 4), (stem, -thick / 4), (stem, high - R * math.cos(start))]
+    profile += [(R * math.sin(a), high - R * math.cos(a)) for a in arc] + [(0, high + R)]
     for side in (1, -1):
-        merge(mesh, revolve(profile), side * apart, 0, post)
-    describe("tray", "A laden tray with a post to hold at either end, along x.", mesh, 3.0, 0.6,
-             [f"{at(0, 0, plate)} box {{ x: {length} y: {width} z: {thick} }}"] +
-             [f"{at(side * apart, 0, post)} cylinder {{ radius: {R} length: {H} }}" for side in (1, -1)], (0, 0, plate + 0.02))
+        merge(mesh, revolve(profile), side * apart, 0, 0)
+    mesh.vertices = [(x, y, z - middle) for x, y, z in mesh.vertices]
+    describe("tray", "A laden tray with a knob on a stem to hold at either end, along x.", mesh, 3.0, 0.6,
+             [f"{at(0, 0, -middle)} box {{ x: {length} y: {width} z: {thick} }}"] +
+             [p for side in (1, -1) for p in (f"{at(side * apart, 0, high - middle)} sphere: {R}",
+                                              f"{at(side * apart, 0, high / 2 - middle)} cylinder {{ radius: {stem} length: {high:g} }}")],
+             (0, 0, 0.04 - middle))
 
 
 mug()

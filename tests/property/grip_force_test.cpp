@@ -145,6 +145,76 @@ TEST(GripForces, opposed_pads_press_with_all_they_may_and_what_cannot_be_held_sa
   EXPECT_TRUE(grip_forces({at(0), at(M_PI)}, Vector3::Zero(), 0.1, settings).forces.empty()) << "two points";
 }
 
+TEST(SharedGripForces, one_hand_without_a_known_weight_is_the_single_grip) {
+  Random random(5);
+  for (int trial = 0; trial < 40; ++trial) {
+    const auto contacts = random_contacts(random, 3 + trial % 3);
+    const GripForces alone = grip_forces(contacts, Vector3::Zero(), 0.3),
+                     shared =
+                         shared_grip_forces({contacts}, Vector3::Zero(), {Vector3::Zero(), 0.3 * GripForceSettings{}.acceleration}).front();
+    EXPECT_NEAR(shared.margin, alone.margin, 1e-6) << "trial " << trial;
+  }
+}
+
+TEST(SharedGripForces, each_hand_balances_itself_and_the_margin_is_that_of_the_sampled_loads) {
+  Random random(7);
+  const GripForceSettings settings;
+  const GripLoad load{Vector3(0, 0, -5), 1.0};
+  int held = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<std::vector<PointContact>> hands{random_contacts(random, 3 + trial % 2), random_contacts(random, 4)};
+    std::vector<PointContact> all;
+    for (std::size_t h = 0; h < 2; ++h)
+      for (PointContact& c : hands[h]) {
+        c.position.x() += h == 0 ? -0.2 : 0.2;
+        all.push_back(c);
+      }
+    const Vector3 com = 0.02 * random_unit(random);
+    const std::vector<GripForces> grips = shared_grip_forces(hands, com, load, settings);
+    const Eigen::MatrixXd bear = -grasp_matrix(all, com).completeOrthogonalDecomposition().pseudoInverse().leftCols(3);
+    Eigen::Index row = 0;
+    for (std::size_t h = 0; h < 2; ++h) {
+      const auto m = static_cast<Eigen::Index>(hands[h].size());
+      ASSERT_EQ(grips[h].forces.size(), hands[h].size());
+      Eigen::VectorXd f(3 * m);
+      for (Eigen::Index i = 0; i < m; ++i) f.segment<3>(3 * i) = grips[h].forces[static_cast<std::size_t>(i)];
+      EXPECT_LT((grasp_matrix(hands[h], com) * f).norm(), 1e-6 * std::max(1.0, f.norm())) << "trial " << trial;
+      double least = 1e9;
+      for (int k = 0; k < 400; ++k) {
+        const Eigen::VectorXd total = f + bear.middleRows(row, 3 * m) * (load.weight + load.shake * random_unit(random));
+        for (Eigen::Index i = 0; i < m; ++i) {
+          const PointContact& c = hands[h][static_cast<std::size_t>(i)];
+          const Vector3 force = total.segment<3>(3 * i);
+          const double normal = force.dot(c.inward_normal);
+          least = std::min(least, settings.friction_share * c.friction * normal - (force - normal * c.inward_normal).norm());
+        }
+      }
+      // The cone is linearised from outside.
+      const double rough = (1 / std::cos(M_PI / settings.edges) - 1) * settings.friction_share * 0.6 * (settings.max_normal + 6) + 0.1;
+      EXPECT_NEAR(grips[h].margin, least, rough + 0.05 * std::abs(least)) << "trial " << trial;
+      held += grips[h].margin > 0;
+      row += 3 * m;
+    }
+  }
+  EXPECT_GT(held, 5);
+}
+
+TEST(SharedGripForces, two_hands_bear_what_turns_out_of_one) {
+  const auto ring = [](double x) {
+    std::vector<PointContact> contacts;
+    for (int k = 0; k < 4; ++k) {
+      const Vector3 out(std::cos(k * M_PI / 2), std::sin(k * M_PI / 2), 0);
+      contacts.push_back({Vector3(x, 0, 0) + 0.03 * out, -out, 0.6});
+    }
+    return contacts;
+  };
+  const GripLoad load{Vector3(0, 0, -12), 1};
+  EXPECT_LT(shared_grip_forces({ring(0.25)}, Vector3::Zero(), load).front().margin, 0) << "at its end alone";
+  for (const GripForces& g : shared_grip_forces({ring(-0.25), ring(0.25)}, Vector3::Zero(), load)) EXPECT_GT(g.margin, 0);
+  for (const GripForces& g : shared_grip_forces({ring(-0.25), ring(0.25)}, Vector3::Zero(), {Vector3(0, 0, -60), 1}))
+    EXPECT_LT(g.margin, 0);
+}
+
 TEST(Maximise, corners_of_small_problems) {
   Eigen::MatrixXd A(3, 2);
   A << 1, 1, 1, 0, 0, 1;

@@ -1,9 +1,10 @@
 // Two hands on the running system, all components in lock-step with the simulator: pick-and-place goals that no grasp of one hand serves,
-// and a tray too heavy for one hand. HANDSEL_GOALS: which of the five goals, e.g. "3 4"; HANDSEL_TRAY: the tray too.
+// and a tray too heavy for one hand. HANDSEL_GOALS: which of the five goals, e.g. "3 4"; HANDSEL_SEEDS: of the tray, e.g. "1 2".
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <numbers>
 #include <sstream>
 
@@ -11,6 +12,7 @@
 #include "common/config/scenario.pb.h"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "tests/support/duo_stage.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace handsel {
 namespace {
@@ -24,14 +26,34 @@ struct Trip {
   Pose T_start{Pose::Identity()};
   double most_tilt{};  ///< of the object's z axis from up, ever [rad]
   double seconds{};
+  std::uint64_t truths{};  ///< told
 };
 
 double tilt(const Pose& T) { return std::acos(std::clamp(T.linear()(2, 2), -1.0, 1.0)); }
 
-Trip perform(const std::string& scenario, std::uint64_t seed) {
-  LockstepSystem system(system_context(scenario, "", seed));
+config::Scenario scenario_text(const std::string& scenario) {
   config::Scenario text;
   load_text_proto(std::string(HANDSEL_SOURCE_DIR) + "/sim/scenarios/" + scenario + ".txtpb", text);
+  return text;
+}
+
+/// The settings, but the simulator tells its truth after every step.
+void settings_of_every_step(const std::filesystem::path& folder) {
+  const std::filesystem::path from = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
+  std::filesystem::copy(from, folder, std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+  std::ifstream in(from / "sim.txtpb");
+  std::ofstream out(folder / "sim.txtpb");
+  double step = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind("step:", 0) == 0) step = std::stod(line.substr(5));
+    if (line.rfind("truth_rate:", 0) != 0) out << line << "\n";
+  }
+  out << "truth_rate: " << std::lround(1 / step) << "\n";
+}
+
+Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = TaskKind::place, const std::filesystem::path& settings = {}) {
+  LockstepSystem system(system_context(scenario, "", seed, settings));
+  const config::Scenario text = scenario_text(scenario);
   Trip run;
   Bus& seat = system.seat();
   auto goals = seat.advertise<TaskGoal>();
@@ -43,11 +65,13 @@ Trip perform(const std::string& scenario, std::uint64_t seed) {
   seat.subscribe<GroundTruth>([&](const GroundTruth& t, const Receipt&) {
     if (!started) run.T_start = t.T_world_object;
     run.truth = t;
+    ++run.truths;
     run.most_tilt = std::max(run.most_tilt, tilt(t.T_world_object));
   });
   seat.after(from_seconds(3.0), [&](TimePoint) {
     started = true;
-    goals->publish({.id = 1, .kind = TaskKind::place, .object = text.tasks(0).object(), .surface = text.tasks(0).surface()});
+    goals->publish(
+        {.id = 1, .kind = kind, .object = text.tasks(0).object(), .surface = kind == TaskKind::place ? text.tasks(0).surface() : ""});
   });
   const auto over = [&] {
     const auto& tasks = system.snapshot().tasks;
@@ -61,8 +85,7 @@ Trip perform(const std::string& scenario, std::uint64_t seed) {
 }
 
 void expect_put(const Trip& run, const std::string& scenario) {
-  config::Scenario text;
-  load_text_proto(std::string(HANDSEL_SOURCE_DIR) + "/sim/scenarios/" + scenario + ".txtpb", text);
+  const config::Scenario text = scenario_text(scenario);
   std::string phases;
   for (const std::string& phase : run.phases) phases += (phases.empty() ? "" : ", ") + phase;
   SCOPED_TRACE(scenario + ": " + phases);
@@ -93,8 +116,7 @@ TEST(TwoHands, pick_and_place_that_one_hand_cannot_do_goes_from_hand_to_hand) {
     expect_put(run, scenario);
     EXPECT_NE(std::find(run.phases.begin(), run.phases.end(), "carry to the other hand"), run.phases.end());
     // Neither hand alone: no grasp of its list serves where it stood and where it stands now.
-    config::Scenario text;
-    load_text_proto(std::string(HANDSEL_SOURCE_DIR) + "/sim/scenarios/" + scenario + ".txtpb", text);
+    const config::Scenario text = scenario_text(scenario);
     Scene scene = stage.scene();
     scene.boxes.clear();
     for (const auto& b : text.boxes())
@@ -117,14 +139,28 @@ TEST(TwoHands, pick_and_place_that_one_hand_cannot_do_goes_from_hand_to_hand) {
 }
 
 TEST(TwoHands, a_tray_too_heavy_for_one_is_carried_level_by_both) {
-  if (std::getenv("HANDSEL_TRAY") == nullptr)
-    GTEST_SKIP() << "the fingers' grip on the posts bears half of the tray by luck only; HANDSEL_TRAY=1 tries";
-  const Trip run = perform("duo_tray", 1);
-  std::printf("duo_tray: %s after %.1f s, tilted by %.2f degrees at most\n",
-              run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(), run.seconds, run.most_tilt / kDegree);
-  expect_put(run, "duo_tray");
-  EXPECT_GT(run.truth.max_lifted, 0.08);
-  EXPECT_LT(run.most_tilt, 5 * kDegree);
+  const char* asked = std::getenv("HANDSEL_SEEDS");
+  std::istringstream seeds(asked != nullptr ? asked : "1 2 3 4");
+  const test::TemporaryFolder folder;
+  settings_of_every_step(folder.path());
+  for (std::uint64_t seed = 0; seeds >> seed;) {
+    const Trip run = perform("duo_tray", seed, TaskKind::place, folder.path());
+    std::printf("duo_tray, seed %d: %s after %.1f s, tilted by %.2f degrees at most in %d steps\n", static_cast<int>(seed),
+                run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(), run.seconds, run.most_tilt / kDegree,
+                static_cast<int>(run.truths));
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expect_put(run, "duo_tray");
+    EXPECT_GT(run.truth.max_lifted, 0.15) << "over the edge of the stand";
+    EXPECT_LT(run.most_tilt, 5 * kDegree);
+    EXPECT_GT(static_cast<double>(run.truths), 990 * run.seconds);
+  }
+}
+
+TEST(TwoHands, one_hand_does_not_take_what_is_too_heavy_for_it) {
+  const Trip run = perform("duo_tray", 1, TaskKind::pick);
+  EXPECT_EQ(run.task.state, TaskState::refused);
+  EXPECT_NE(run.task.reason.find("too heavy for one hand"), std::string::npos) << run.task.reason;
+  EXPECT_LT((run.truth.T_world_object.translation() - run.T_start.translation()).norm(), 1e-3);
 }
 
 }  // namespace
