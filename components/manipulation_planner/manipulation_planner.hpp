@@ -176,6 +176,7 @@ class ManipulationPlanner {
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
   bool strayed(const Motion& motion) const;
   /// A hand of that person has come to what the robot holds.
+  bool comes_to_hand() const;
   bool takes_hold(const std::string& who) const;
   /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or the arm does not reach there.
   std::optional<Vector3> follow_offer(Motion& motion);

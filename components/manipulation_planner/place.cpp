@@ -11,6 +11,7 @@ namespace handsel::manipulation_planner {
 namespace {
 constexpr std::size_t kPlaces = 24;   // on a surface that are looked at
 constexpr std::size_t kPostures = 6;  // that motions are planned to
+constexpr double kPatience = 3.0;     // [s] with a person at the hand
 }  // namespace
 
 const SceneBox* ManipulationPlanner::surface(const std::string& id) const {
@@ -56,6 +57,19 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(con
     destinations_.push_back({list.grasps[grasp].id, object_id, onto, place});
   }
   co_return serving;
+}
+
+/// Somebody is about to be at the palm. Fingers that open move toward them, and no guard slows fingers.
+bool ManipulationPlanner::comes_to_hand() const {
+  constexpr double kRoom = 0.30, kSoon = 0.8;  // [m], [s]
+  const Vector3 p = T_world_tool().translation();
+  return std::any_of(people_.people.begin(), people_.people.end(), [&](const Person& person) {
+    return std::any_of(person.joints.begin(), person.joints.end(), [&](const BodyJoint& joint) {
+      const Vector3 way = p - joint.position;
+      const double left = way.norm() - kRoom, closing = joint.velocity.dot(way.normalized());
+      return left < 0 || (closing > 0 && left < kSoon * closing);
+    });
+  });
 }
 
 void ManipulationPlanner::place_world(CollisionWorld& world, const Scene& scene, const HumanState& people) {
@@ -116,6 +130,7 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
     if (!last.good) continue;
     destinations_.clear();
     Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
+    co_await waiting_.until([this] { return !comes_to_hand(); }, kPatience);
     HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
     if (!released.outcome.good) co_return released.outcome;
     release_object();
