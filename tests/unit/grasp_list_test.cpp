@@ -165,6 +165,23 @@ TEST(GraspList, sheets_and_needles_get_no_more_positions_than_other_things) {
   }
 }
 
+TEST(GraspList, positions_in_a_large_box_are_as_near_each_other_as_in_a_small_one) {
+  GraspListSettings settings;
+  EXPECT_EQ(position_count({Vector3::Zero(), Vector3(0.1, 0.1, 0.1)}, settings), settings.positions);
+  const Eigen::AlignedBox3d tray(Vector3::Zero(), Vector3(0.56, 0.22, 0.135));
+  const auto positions = uniform_positions(tray, position_count(tray, settings));
+  double farthest = 0;
+  for (const Vector3& p : positions) {
+    double nearest = 1;
+    for (const Vector3& q : positions)
+      if (&p != &q) nearest = std::min(nearest, (p - q).norm());
+    farthest = std::max(farthest, nearest);
+  }
+  EXPECT_LT(farthest, 1.2 * settings.spacing);
+  settings.spacing = 0;
+  EXPECT_EQ(position_count(tray, settings), settings.positions);
+}
+
 TEST(GraspList, an_object_of_the_wrong_size_is_refused_with_a_sentence) {
   ObjectModel o = object("box");
   for (Vector3& v : o.mesh.vertices) v *= 1000;
