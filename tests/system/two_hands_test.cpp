@@ -152,6 +152,7 @@ TEST(TwoHands, a_tray_too_heavy_for_one_is_carried_level_by_both) {
     expect_put(run, "duo_tray");
     EXPECT_GT(run.truth.max_lifted, 0.15) << "over the edge of the stand";
     EXPECT_LT(run.most_tilt, 5 * kDegree);
+    EXPECT_EQ(run.truth.constraint_time, 0.0) << "contact alone holds what is heavy";
     EXPECT_GT(static_cast<double>(run.truths), 990 * run.seconds);
   }
 }
