@@ -21,7 +21,7 @@ constexpr int kMostSteps = 2;         // ... so often
 // [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it, and lower with every step away from
 // there.
 constexpr double kAbove = 0.16, kBeside = 0.12;
-constexpr double kLift = 0.4;  // to where that is, for who takes something beside furniture [s]
+constexpr double kLift = 1.2;  // to where that is, for who takes something beside furniture: gently, the robot only lets go [s]
 
 }  // namespace
 

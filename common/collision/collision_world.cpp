@@ -76,7 +76,8 @@ struct CollisionWorld::Impl {
   std::vector<RobotBody> bodies;  // links; what the hand holds is appended
   std::size_t link_bodies{};
   std::vector<SelfPair> link_pairs, held_pairs;
-  std::vector<SceneBody> scene, obstacles, in_peoples_hands;
+  std::vector<SceneBody> scene, obstacles;
+  std::vector<SceneBody> in_peoples_hands;  // by their solid parts: nobody reaches into a cup that is held out
   std::vector<PersonBody> people;
   Scene last_scene;
   Attachment attachment;
@@ -211,6 +212,15 @@ struct CollisionWorld::Impl {
       body.is_object = true;
       body.T_world_shape = object.T_world_object;
       body.allowed = allowed.count(object.id) > 0;
+      const ObjectModel* model = library && object.holder == Holder::human ? library(object.model) : nullptr;
+      for (const PlacedShape& part : model != nullptr ? model->parts : std::vector<PlacedShape>{}) {
+        SceneBody solid = body;
+        solid.T_world_shape = object.T_world_object * part.T_parent_shape;
+        solid.shape = CollisionShape::make(part.shape);
+        if (!body.allowed && object.uncertainty > kSurePlace) solid.shape = widened(solid.shape, object.uncertainty, solid.T_world_shape);
+        in_peoples_hands.push_back(std::move(solid));
+      }
+      if (model != nullptr && !model->parts.empty()) continue;
       body.shape = body.allowed ? object_shape(object, 0) : object_shape(object, object.uncertainty, body.T_world_shape);
       if (!body.shape) continue;
       (object.holder == Holder::human ? in_peoples_hands : bodies_now).push_back(std::move(body));

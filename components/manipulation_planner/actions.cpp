@@ -198,7 +198,7 @@ void ManipulationPlanner::lead_to(const ExchangeSearch& search, const Person& re
 Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const std::string& human) {
   const SceneObject* held = object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
-  if (held->holder == Holder::human) co_return Outcome{};
+  if (held->holder == Holder::human && !in_hand(*held)) co_return Outcome{};
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
   status_.phase = "choosing the exchange point";
   const bool seen = co_await waiting_.until([this, &human] { return person(human) != nullptr; }, settings_.sight_timeout());

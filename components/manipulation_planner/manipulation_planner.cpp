@@ -137,15 +137,19 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = nullptr;
 }
 
+bool ManipulationPlanner::in_hand(const SceneObject& held) const {
+  const int hand = hand_index(hands_, attachment_.hand);
+  if (hand < 0 || attachment_.object != held.id) return false;
+  const Pose T_world_palm = scene_.T_world_base * robot_->link_pose(set_point_, hands_[static_cast<std::size_t>(hand)].palm);
+  return (held.T_world_object.translation() - T_world_palm * attachment_.T_tool_object.translation()).norm() < kSlipped;
+}
+
 /// What a hand holds has left it, and no person has it.
 bool ManipulationPlanner::slipped() const {
   const SceneObject* held = attachment_.object.empty() ? nullptr : object(attachment_.object);
   if (held == nullptr || held->holder == Holder::robot || held->holder == Holder::human || set_point_.size() != robot_->dof()) return false;
-  const int hand = hand_index(hands_, attachment_.hand);
-  if (hand < 0) return false;
-  const Pose T_world_palm = scene_.T_world_base * robot_->link_pose(set_point_, hands_[static_cast<std::size_t>(hand)].palm);
+  if (in_hand(*held)) return false;
   const Vector3& p = held->T_world_object.translation();
-  if ((p - T_world_palm * attachment_.T_tool_object.translation()).norm() < kSlipped) return false;
   return std::none_of(people_.people.begin(), people_.people.end(), [&](const Person& who) {
     return std::any_of(std::begin(kHands), std::end(kHands), [&](const char* name) {
       return (who.joints[static_cast<std::size_t>(body_joint_index(name))].position - p).norm() < 2 * kAtHand;
@@ -456,7 +460,7 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
 bool ManipulationPlanner::takes_hold(const std::string& who) const {
   const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : object(attachment_.object);
   const Person* them = held == nullptr ? nullptr : person(who);
-  if (them == nullptr || held->holder == Holder::surface) return false;
+  if (them == nullptr) return false;
   for (const char* hand : kHands) {
     const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
     if ((p - held->T_world_object.translation()).norm() < kAtHand) return true;
@@ -611,8 +615,8 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       grasp_.reset();
       hold(*held);
     }
-  } else if (attachment_.object == goal.object) {
-    release_object();
+  } else if (attachment_.object == goal.object && !(held != nullptr && in_hand(*held) && hand_state() == HandState::grasped)) {
+    release_object();  // and not while a person takes hold of it, too
   }
   if (attachment_.object.empty() && hand_ != 0) {
     Outcome ready = co_await use_arm(hands_.front().name);

@@ -91,6 +91,7 @@ class ManipulationPlanner {
     std::vector<std::string> tolerated;  // the plan keeps off these, but a brush foreseen on the way is no reason to hold
     double speed{1.0};
     double longest{kAnyLength};            // a path that is longer is none, sum of the legs' max norms [rad]
+    double think{};                        // for the path at most [s]; 0: as set
     std::string receiver;                  // the goals are exchange postures for this person, chosen anew as they move; empty: they stay
     Vector3 receiver_at{Vector3::Zero()};  // their torso when the goals were chosen, world [m]
     std::string yields_to;                 // who takes hold of what is held ends the motion; empty: nobody
@@ -240,6 +241,7 @@ class ManipulationPlanner {
   Routine<Outcome> retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes);
   bool gone(const Running& running) const;
   bool slipped() const;
+  bool in_hand(const SceneObject& held) const;  ///< it is where the hand has hold of it
   void halt(Outbox& out);
   void lose_object(Outbox& out);
   /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good exchange posture any more; true: it is none, even

@@ -41,7 +41,8 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(con
                     free_places(*robot_, scene, people, objects_, object_id, box, T_now, kPlaces, placing), settings_.lift_height());
     for (std::size_t i = 0; i < grasps.size() && found->places.size() < settings_.max_grasps(); ++i) {
       const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers_, grasps[i].hand_joints);
-      const auto posture = putting.anywhere(closed, {object_id, grasps[i].T_object_hand.inverse()}, 1);
+      const Vector opened = RobotModel::with(closed, fingers_, grasps[i].pregrasp_joints);
+      const auto posture = putting.anywhere(closed, opened, {object_id, grasps[i].T_object_hand.inverse()}, 1);
       if (!posture.empty()) found->places[i] = posture.front().T_world_object;
     }
     found->objections = putting.objections();
@@ -110,8 +111,9 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
     std::string objections;
   };
   auto found = std::make_shared<Found>();
+  const Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
   if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-  const std::function<void()> job = [this, found, T_chosen, world = world_, scene = scene_, people = people_, box = *box,
+  const std::function<void()> job = [this, found, T_chosen, opening, world = world_, scene = scene_, people = people_, box = *box,
                                      held = attachment_, q = posture(), T_now = T_world_tool() * attachment_.T_tool_object] {
     place_world(*world, scene, people);
     PlacingSettings placing;
@@ -119,7 +121,7 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
     std::vector<Pose> places = free_places(*robot_, scene, people, objects_, held.object, box, T_now, kPlaces, placing);
     if (T_chosen) places.insert(places.begin(), *T_chosen);
     Putting putting(*world, *robot_, arm_, scene.T_world_base, std::move(places), settings_.lift_height());
-    found->postures = putting.anywhere(q, held, kPostures);
+    found->postures = putting.anywhere(q, RobotModel::with(q, fingers_, opening), held, kPostures);
     found->objections = putting.objections();
   };
   Outcome last = co_await work(job);
@@ -129,7 +131,6 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
     last = co_await lower(posture);
     if (!last.good) continue;
     destinations_.clear();
-    Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
     co_await waiting_.until([this] { return !comes_to_hand(); }, kPatience);
     HandResult released = co_await hand(HandAction::release, opening, settings_.hand_timeout());
     if (!released.outcome.good) co_return released.outcome;

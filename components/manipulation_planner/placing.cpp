@@ -88,7 +88,8 @@ Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& ar
                  double from_above)
     : world_(world), robot_(robot), arm_(arm), T_base_world_(T_world_base.inverse()), places_(std::move(places)), from_above_(from_above) {}
 
-std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, const Attachment& held) {
+std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held) {
+  std::optional<PuttingPosture> closed_only;
   IkOptions options;
   options.restarts = 0;
   const Pose T_object_tool = held.T_tool_object.inverse();
@@ -107,18 +108,25 @@ std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, co
     }
     CollisionVerdict verdict = world_.check(RobotModel::with(q, arm_, *at));
     if (verdict.free) verdict = world_.check(RobotModel::with(q, arm_, *above));
-    if (verdict.free) return PuttingPosture{T, *above, *at};
-    ++objections_["because " + verdict.first + " would touch " + verdict.second];
+    if (!verdict.free) {
+      ++objections_["because " + verdict.first + " would touch " + verdict.second];
+      continue;
+    }
+    const bool opens = world_.check(RobotModel::with(opened, arm_, *at)).free;
+    if (opens) return PuttingPosture{T, *above, *at, opens};
+    if (!closed_only) closed_only = PuttingPosture{T, *above, *at, opens};
   }
-  return std::nullopt;
+  return closed_only;
 }
 
-std::vector<PuttingPosture> Putting::anywhere(const Vector& q, const Attachment& held, std::size_t most) {
-  std::vector<PuttingPosture> out;
+std::vector<PuttingPosture> Putting::anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t most) {
+  std::vector<PuttingPosture> out, closed_only;
   for (const Pose& place : places_) {
     if (out.size() >= most) break;
-    if (auto posture = at(place, q, held)) out.push_back(std::move(*posture));
+    if (auto posture = at(place, q, opened, held)) (posture->opens ? out : closed_only).push_back(std::move(*posture));
   }
+  for (PuttingPosture& posture : closed_only)
+    if (out.size() < most) out.push_back(std::move(posture));
   return out;
 }
 

@@ -37,6 +37,7 @@ std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const
 struct PuttingPosture {
   Pose T_world_object{Pose::Identity()};  ///< at the place
   Vector arm_above, arm_at;               ///< arm axes [rad]
+  bool opens{};                           ///< the hand can open there without touching anything else
 };
 
 /// Puts what is held on a surface, somewhere.
@@ -46,11 +47,11 @@ class Putting {
   Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm, const Pose& T_world_base, std::vector<Pose> places,
           double from_above);
 
-  /// At this place, its object turned about the vertical as is best for the arm; nullopt: what stands in the way is counted. `q`: all axes,
-  /// the hand closed on the object.
-  std::optional<PuttingPosture> at(const Pose& place, const Vector& q, const Attachment& held);
-  /// At the first `most` places where it can be.
-  std::vector<PuttingPosture> anywhere(const Vector& q, const Attachment& held, std::size_t most);
+  /// At this place, its object turned about the vertical as is best for the arm, where the hand can open if possible; nullopt: what stands
+  /// in the way is counted. `q`: all axes, the hand closed on the object; `opened`: likewise, when it has let go.
+  std::optional<PuttingPosture> at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held);
+  /// At the first `most` places where it can be, those where the hand can open before the others.
+  std::vector<PuttingPosture> anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t most);
   /// What stood in the way so far, how often: "12 out of reach, 3 link forearm would touch box table".
   std::string objections() const;
 

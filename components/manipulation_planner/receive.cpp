@@ -23,6 +23,7 @@ constexpr double kNear = 0.5;        // [m] palm to what is offered
 constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 // [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and this.
 constexpr double kDetour = 1.5, kMoreThan = 2.0;
+constexpr double kThink = 0.6;        // [s] of a way to one grasp, before the next is tried
 constexpr double kSameWay = 0.5;      // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
 constexpr int kMostAims = 6;          // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;  // [m] kept from the giver's hand, closing included
@@ -293,6 +294,7 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
   approach.p_world_aim = object(object_id)->T_world_object.translation();
   approach.aim_slack = settings_.approach_slack();
   approach.follows = grasp;
+  approach.think = kThink;
   approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + kMoreThan;
   return approach;
 }

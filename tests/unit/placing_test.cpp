@@ -82,7 +82,7 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, places(), 0.1);
   int reached = 0;
   for (const Pose& T : places()) {
-    const auto posture = putting.at(T, q, held);
+    const auto posture = putting.at(T, q, q, held);
     if (!posture) continue;
     ++reached;
     const Vector at = RobotModel::with(q, arm, posture->arm_at), above = RobotModel::with(q, arm, posture->arm_above);
@@ -96,7 +96,7 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   Pose inside = places(1).front();
   inside.translation().z() -= 0.2;
   Putting into(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {inside}, 0.1);
-  EXPECT_TRUE(into.anywhere(q, held, 1).empty());
+  EXPECT_TRUE(into.anywhere(q, q, held, 1).empty());
   EXPECT_FALSE(into.objections().empty());
 }
 
