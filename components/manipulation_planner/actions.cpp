@@ -207,7 +207,8 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   status_.human = receiver;
 
   Outcome last;
-  bool at_exchange = takes_hold(receiver);
+  // In the hand, yet not borne by it: somebody has hold of it already.
+  bool at_exchange = takes_hold(receiver) || (object(object_id) != nullptr && object(object_id)->holder != Holder::robot);
   const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange;) {
     status_.phase = "choosing the exchange point";

@@ -460,7 +460,7 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
 bool ManipulationPlanner::takes_hold(const std::string& who) const {
   const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : object(attachment_.object);
   const Person* them = held == nullptr ? nullptr : person(who);
-  if (them == nullptr) return false;
+  if (them == nullptr || held->holder == Holder::surface) return false;
   for (const char* hand : kHands) {
     const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
     if ((p - held->T_world_object.translation()).norm() < kAtHand) return true;
