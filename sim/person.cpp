@@ -110,7 +110,7 @@ void PersonModel::step(double dt, const PersonView& view) {
   }
   placed_ = false;
   place_base();
-  if (wants_grip_) keep_above_furniture();
+  if (wants_grip_) keep_above_furniture(view.robot_hand);
   if (hand_active_) {
     bend_arm(index(), hand_target_);
     hand_target_ = points_[kHand[index()]];

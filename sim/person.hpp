@@ -139,7 +139,7 @@ class PersonModel {
   double gap(const PersonView&) const;
   Vector3 keep_point() const;
   double height_above_furniture(const Vector3& hand) const;
-  void keep_above_furniture();
+  void keep_above_furniture(const Vector3& robot_hand);
   double since() const { return clock_ - phase_since_; }
   Vector3 hand_point() const { return hands_[index()].T_world_body.translation(); }
   int index() const { return side_ == Side::left ? 0 : 1; }

@@ -20,8 +20,9 @@ constexpr double kStepNearer = 0.12;  // ... and comes nearer by this [m] ...
 constexpr int kMostSteps = 2;         // ... so often
 // [m] What somebody holds passes furniture with the hand so far above it, up to so far beside it, and lower with every step away from
 // there.
-constexpr double kAbove = 0.16, kBeside = 0.12;
-constexpr double kLift = 1.2;  // to where that is, for who takes something beside furniture: gently, the robot only lets go [s]
+constexpr double kAbove = 0.12, kBeside = 0.12;
+// Who takes something draws it away from the robot's hand before it is lifted: within so long [s], and from so far off on [m].
+constexpr double kLift = 1.2, kClearOfHand = 0.30, kOffHand = 0.15;
 
 }  // namespace
 
@@ -112,11 +113,12 @@ double PersonModel::height_above_furniture(const Vector3& hand) const {
 }
 
 /// Only what nobody else has hold of.
-void PersonModel::keep_above_furniture() {
+void PersonModel::keep_above_furniture(const Vector3& robot_hand) {
   const bool alone = phase_ == PersonPhase::withdrawing || phase_ == PersonPhase::keeping || phase_ == PersonPhase::leaving ||
                      (phase_ == PersonPhase::offering && lost_time_ <= 0);
   if (!alone) return;
-  const double share = phase_ == PersonPhase::withdrawing ? min_jerk(since() / kLift) : 1.0;
+  const double away = ((hand_target_ - robot_hand).norm() - kClearOfHand) / kOffHand;
+  const double share = phase_ == PersonPhase::withdrawing ? std::min(min_jerk(since() / kLift), min_jerk(away)) : 1.0;
   hand_target_.z() += share * std::max(0.0, height_above_furniture(hand_target_) - hand_target_.z());
 }
 
