@@ -47,7 +47,7 @@ class CollisionWorld {
   CollisionWorld(CollisionWorld&&) noexcept;
 
   void set_base(const Pose& T_world_base);
-  void set_scene(const Scene&);  ///< objects (held ones are ignored) and boxes; takes Scene::T_world_base when robot_known
+  void set_scene(const Scene&);  ///< boxes, and objects the robot does not hold; takes T_world_base when robot_known
   void set_people(const HumanState&, PeopleParts parts = PeopleParts::all);  ///< capsules, inflated
   void set_obstacles(const std::vector<Obstacle>&);  ///< further fixed obstacles, besides the scene; named "box <id>"
   /// The object moves with the palm of the hand that holds it. Links of that hand may touch it, each other around it, and the `allowed`
@@ -67,7 +67,7 @@ class CollisionWorld {
 
   CollisionVerdict check(const Vector& q);  ///< all axes
   bool is_free(const Vector& q);            ///< the same without the names
-  /// Contact with people only, as set_people and the allowed contacts make them obstacles; cheap when they are far.
+  /// Contact with people and what they hold, as set_people and the allowed contacts make them obstacles; cheap when they are far.
   CollisionVerdict check_people(const Vector& q);
   /// Contact with scene, obstacles and itself only.
   CollisionVerdict check_scene(const Vector& q);
