@@ -150,8 +150,9 @@ class ManipulationPlanner {
   Routine<Outcome> lower(const PuttingPosture& posture);
   /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
-  Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp);
-  Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp) const;
+  /// `any_way`: however long the arm's way there is.
+  Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp, bool any_way);
+  Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp, bool any_way) const;
   /// Leaves the grasps whose way in and closing fingers keep off the giver's hand, as it is seen now; with none left it says so.
   Routine<Outcome> keep_off_fingers(const std::string& object, const std::string& giver, std::vector<Grasp>& grasps);
   /// From the offered object with the hand opened, the way it came; the result is `why`.

@@ -17,16 +17,18 @@ constexpr double kLookAgain = 0.02;  // [s]
 constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
 constexpr double kAimed = 0.02;      // [m] before the object the hand stands where the straight way in begins, up to this
 constexpr double kHandLength = 0.3;  // [m] palm to what is beyond the open fingers
+constexpr double kLoadStays = 0.6;   // [s] before what was taken is drawn away
 constexpr double kInHand = 0.05;     // [m] what weighs on the hand lies in it, when so near to where it is grasped
 constexpr double kNear = 0.5;        // [m] palm to what is offered
 // [m] While a new way is sought, an offer may be shifted by this share of the way that is left to there, and at its end by this.
 constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 // [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and this.
 constexpr double kDetour = 1.5, kMoreThan = 2.0;
-constexpr double kThink = 0.6;        // [s] of a way to one grasp, before the next is tried
-constexpr double kSameWay = 0.5;      // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
-constexpr int kMostAims = 6;          // so often the hand follows before it waits for the offer anew
-constexpr double kOffFingers = 0.01;  // [m] kept from the giver's hand, closing included
+constexpr double kThink = 0.6;         // [s] of a way to one grasp, before the next is tried
+constexpr double kSameWay = 0.5;       // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
+constexpr std::uint32_t kHurried = 2;  // after so many attempts a long way is better than none
+constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
+constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
 // More than `held_out` [m] and toward the robot by this cosine: held out by who was asked for it, though the arm is not stretched. The
 // second is less than `held_out`, and means it when nothing else has been offered for long.
 constexpr double kBentArm = 0.05, kBeforeBody = 0.03, kTowardRobot = 0.7;
@@ -164,7 +166,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       did_not_hold.clear();
     for (const Grasp& grasp : list.grasps) {
       if (did_not_hold.count(grasp.id) > 0) continue;
-      last = co_await take(offer->object, offer->giver, grasp);
+      last = co_await take(offer->object, offer->giver, grasp, attempt > kHurried);
       if (last.good) co_return last;
       refuse("grasp " + std::to_string(grasp.id), last.reason);
       if (!last.strayed) did_not_hold.insert(grasp.id);
@@ -175,14 +177,14 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
   co_return last;
 }
 
-Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const std::string& giver, const Grasp& chosen) {
+Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const std::string& giver, const Grasp& chosen, bool any_way) {
   status_.phase = "planning";
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
   if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
   const Outcome out_of_reach = Outcome::failure("no posture of the arm reaches it where it is held now");
   std::optional<Grasp> grasp = aimed(object_id, chosen);
   if (!grasp) co_return out_of_reach;
-  Motion approach = approach_to(object_id, giver, *grasp);
+  Motion approach = approach_to(object_id, giver, *grasp, any_way);
   const Vector opened = RobotModel::with(set_point_, fingers_, chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
   if (!way.outcome.good) co_return Outcome::failure("approach: " + way.outcome.reason);
@@ -199,7 +201,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   };
   bool there = false;
   for (int aims = 0; aims < kMostAims && !there; ++aims) {
-    approach = approach_to(object_id, giver, *grasp);
+    approach = approach_to(object_id, giver, *grasp, any_way);
     last = co_await move(approach);
     if (there = put_into_hand(); there) break;
     if (!last.good && !last.strayed) break;
@@ -264,8 +266,14 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     const SceneObject* taken = object(object_id);
     return taken != nullptr && taken->holder == Holder::robot;
   };
-  const bool let_go = co_await waiting_.until(mine, settings_.let_go_timeout());
-  if (!let_go) {
+  // The load comes over while both have hold of it: it is the robot's when it has stayed.
+  const TimePoint until = waiting_.now() + from_seconds(settings_.let_go_timeout());
+  TimePoint since = waiting_.now();
+  while (waiting_.now() < until && to_seconds(waiting_.now() - since) < kLoadStays) {
+    if (!mine()) since = waiting_.now();
+    co_await waiting_.pause(kLookAgain);
+  }
+  if (!mine()) {
     const Outcome why = Outcome::failure(giver + " does not let go of " + object_id);
     moved = co_await back_off(object_id, giver, *grasp, why);
     co_return moved;
@@ -284,8 +292,8 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   co_return Outcome{};
 }
 
-ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& object_id, const std::string& giver,
-                                                             const Grasp& grasp) const {
+ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& object_id, const std::string& giver, const Grasp& grasp,
+                                                             bool any_way) const {
   Motion approach;
   approach.phase = "approach";
   approach.goals = {grasp.approach_joints};
@@ -294,6 +302,7 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
   approach.p_world_aim = object(object_id)->T_world_object.translation();
   approach.aim_slack = settings_.approach_slack();
   approach.follows = grasp;
+  if (any_way) return approach;
   approach.think = kThink;
   approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + kMoreThan;
   return approach;
