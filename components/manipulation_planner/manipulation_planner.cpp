@@ -457,15 +457,18 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
   co_return last;
 }
 
+bool ManipulationPlanner::at_hand_of(const std::string& who, const std::string& object_id) const {
+  const SceneObject* thing = object(object_id);
+  const Person* them = person(who);
+  return thing != nullptr && them != nullptr && std::any_of(std::begin(kHands), std::end(kHands), [&](const char* hand) {
+           const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
+           return (p - thing->T_world_object.translation()).norm() < kAtHand;
+         });
+}
+
 bool ManipulationPlanner::takes_hold(const std::string& who) const {
   const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : object(attachment_.object);
-  const Person* them = held == nullptr ? nullptr : person(who);
-  if (them == nullptr || held->holder == Holder::surface) return false;
-  for (const char* hand : kHands) {
-    const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
-    if ((p - held->T_world_object.translation()).norm() < kAtHand) return true;
-  }
-  return false;
+  return held != nullptr && held->holder != Holder::surface && at_hand_of(who, held->id);
 }
 
 bool ManipulationPlanner::lost(const std::string& id) const {

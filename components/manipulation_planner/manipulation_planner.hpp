@@ -180,6 +180,7 @@ class ManipulationPlanner {
   /// A hand of that person has come to what the robot holds.
   bool comes_to_hand() const;
   bool takes_hold(const std::string& who) const;
+  bool at_hand_of(const std::string& who, const std::string& object) const;  ///< a hand of theirs is at it
   /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or the arm does not reach there.
   std::optional<Vector3> follow_offer(Motion& motion);
   Routine<Outcome> go_to_rest();

@@ -17,7 +17,7 @@ constexpr double kLookAgain = 0.02;  // [s]
 constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
 constexpr double kAimed = 0.02;      // [m] before the object the hand stands where the straight way in begins, up to this
 constexpr double kHandLength = 0.3;  // [m] palm to what is beyond the open fingers
-constexpr double kLoadStays = 0.6;   // [s] before what was taken is drawn away
+constexpr double kLoadStays = 0.2;   // [s] before what was taken is drawn away
 constexpr double kInHand = 0.05;     // [m] what weighs on the hand lies in it, when so near to where it is grasped
 constexpr double kNear = 0.5;        // [m] palm to what is offered
 // [m] While a new way is sought, an offer may be shifted by this share of the way that is left to there, and at its end by this.
@@ -266,14 +266,15 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     const SceneObject* taken = object(object_id);
     return taken != nullptr && taken->holder == Holder::robot;
   };
-  // The load comes over while both have hold of it: it is the robot's when it has stayed.
+  // Fingers that press on it feel some of its weight, too: it is the robot's when that stays and the giver's hand has gone.
+  const auto given = [this, &object_id, &giver, &mine] { return mine() && !at_hand_of(giver, object_id); };
   const TimePoint until = waiting_.now() + from_seconds(settings_.let_go_timeout());
   TimePoint since = waiting_.now();
   while (waiting_.now() < until && to_seconds(waiting_.now() - since) < kLoadStays) {
-    if (!mine()) since = waiting_.now();
+    if (!given()) since = waiting_.now();
     co_await waiting_.pause(kLookAgain);
   }
-  if (!mine()) {
+  if (!given()) {
     const Outcome why = Outcome::failure(giver + " does not let go of " + object_id);
     moved = co_await back_off(object_id, giver, *grasp, why);
     co_return moved;
