@@ -1,1 +1,1 @@
-handsel_test(manipulation_planner SOURCES ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner_test.cpp ${CMAKE_CURRENT_LIST_DIR}/way_out_test.cpp ${CMAKE_CURRENT_LIST_DIR}/placing_test.cpp LINK handsel_manipulation_planner_core LABEL unit)
+handsel_test(manipulation_planner SOURCES ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner_test.cpp ${CMAKE_CURRENT_LIST_DIR}/receive_test.cpp ${CMAKE_CURRENT_LIST_DIR}/exchange_test.cpp ${CMAKE_CURRENT_LIST_DIR}/way_out_test.cpp ${CMAKE_CURRENT_LIST_DIR}/placing_test.cpp LINK handsel_manipulation_planner_core LABEL unit)
