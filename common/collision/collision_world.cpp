@@ -4,21 +4,19 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <set>
 
 #include "common/collision/enclosing.hpp"
+#include "common/collision/scene_bodies.hpp"
 #include "common/collision/wide_capsules.hpp"
 #include "common/collision/wide_world.hpp"
 #include "common/model/manipulator.hpp"
-#include "common/model/object_extent.hpp"
 #include "common/model/robot_capsules.hpp"
 
 namespace handsel {
 namespace {
 
-constexpr int kSweepFrom = 64;        // lines of more states are looked at in stretches first
-constexpr double kSurePlace = 0.002;  // an object no more uncertain than this keeps its mesh [m]
+constexpr int kSweepFrom = 64;  // lines of more states are looked at in stretches first
 
 struct RobotBody {
   int link{};
@@ -34,14 +32,6 @@ struct RobotBody {
 struct SelfPair {
   int a{}, b{};
   std::vector<int> axes;
-};
-
-struct SceneBody {
-  std::string id;
-  bool is_object{}, supports{};
-  CollisionShapePtr shape, lowered;  ///< lowered: for what the hand holds, see kSupportSlack
-  Pose T_world_shape{Pose::Identity()}, T_world_lowered{Pose::Identity()};
-  bool allowed{};
 };
 
 struct PersonBody {
@@ -71,7 +61,7 @@ Pose along(const Vector3& a, const Vector3& b) {
 
 struct CollisionWorld::Impl {
   const RobotModel& robot;
-  ObjectLibrary library;
+  SceneBodies made;
   Pose T_world_base{Pose::Identity()};
   std::vector<RobotBody> bodies;  // links; what the hand holds is appended
   std::size_t link_bodies{};
@@ -88,7 +78,6 @@ struct CollisionWorld::Impl {
   std::vector<int> hand_link;  // of each link the hand it belongs to, or -1
   std::vector<char> at_held;   // of each hand: it holds the object, or is there for it
   std::vector<std::set<int>> joints_above;
-  std::map<std::string, CollisionShapePtr> meshes;
   std::uint64_t checks{}, exact_checks{};
   double turning_margin{};
 
@@ -108,7 +97,7 @@ struct CollisionWorld::Impl {
   Vector self_free;  // configuration last found free of self collision, empty if none
   std::vector<bool> changed;
 
-  Impl(const RobotModel& model, ObjectLibrary objects) : robot(model), library(std::move(objects)) {
+  Impl(const RobotModel& model, ObjectLibrary objects) : robot(model), made(std::move(objects)) {
     const auto& links = robot.links();
     joints_above.resize(links.size());
     for (std::size_t i = 0; i < links.size(); ++i) {
@@ -153,79 +142,9 @@ struct CollisionWorld::Impl {
     if (!axes.empty()) pairs.push_back({static_cast<int>(i), static_cast<int>(j), {axes.begin(), axes.end()}});
   }
 
-  /// A described object, or the primitive of an unknown one, larger by `margin` [m].
-  CollisionShapePtr object_shape(const SceneObject& object, double margin) {
-    if (CollisionShapePtr shape = model_shape(object.model)) return shape;
-    const std::optional<Shape> shape = primitive_shape(object.primitive, margin);
-    return shape ? CollisionShape::make(*shape) : nullptr;
-  }
-
-  /// Instead of a mesh with a margin the box around it; T becomes its pose.
-  CollisionShapePtr object_shape(const SceneObject& object, double margin, Pose& T) {
-    CollisionShapePtr shape = object_shape(object, margin);
-    return shape && shape->is_mesh() && margin > kSurePlace ? widened(shape, margin, T) : shape;
-  }
-
-  std::vector<Vector3> corners(const SceneObject& object) const {
-    const Eigen::AlignedBox3d box = object_extent(nullptr, object.primitive);
-    std::vector<Vector3> out;
-    for (int i = 0; i < 8; ++i) out.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
-    return out;
-  }
-
-  CollisionShapePtr model_shape(const std::string& model_name) {
-    auto found = meshes.find(model_name);
-    if (found != meshes.end()) return found->second;
-    const ObjectModel* model = library ? library(model_name) : nullptr;
-    CollisionShapePtr shape;
-    if (model != nullptr && !model->mesh.triangles.empty()) shape = CollisionShape::make(std::make_shared<const TriangleMesh>(model->mesh));
-    meshes.emplace(model_name, shape);
-    return shape;
-  }
-
   void rebuild_scene() {
-    std::vector<SceneBody> bodies_now;
     in_peoples_hands.clear();
-    for (const SceneBox& box : last_scene.boxes) {
-      SceneBody body;
-      body.id = box.id;
-      body.supports = box.supports;
-      body.T_world_shape = box.T_world_box;
-      const auto same = std::find_if(scene.begin(), scene.end(), [&](const SceneBody& b) {
-        return !b.is_object && b.id == box.id && b.supports == box.supports && std::get<Box>(b.shape->shape()).size == box.size;
-      });
-      if (same != scene.end()) {
-        body.shape = same->shape;
-        body.lowered = same->lowered;
-      } else {
-        body.shape = CollisionShape::make(Box{box.size});
-        if (box.supports && box.size.z() > kSupportSlack) body.lowered = CollisionShape::make(Box{box.size - Vector3(0, 0, kSupportSlack)});
-      }
-      if (body.lowered) body.T_world_lowered = box.T_world_box * Eigen::Translation3d(0, 0, -0.5 * kSupportSlack);
-      body.allowed = allowed.count(box.id) > 0;
-      bodies_now.push_back(std::move(body));
-    }
-    for (const SceneObject& object : last_scene.objects) {
-      if (object.holder == Holder::robot || object.id == attachment.object) continue;
-      SceneBody body;
-      body.id = object.id;
-      body.is_object = true;
-      body.T_world_shape = object.T_world_object;
-      body.allowed = allowed.count(object.id) > 0;
-      const ObjectModel* model = library && object.holder == Holder::human ? library(object.model) : nullptr;
-      for (const PlacedShape& part : model != nullptr ? model->parts : std::vector<PlacedShape>{}) {
-        SceneBody solid = body;
-        solid.T_world_shape = object.T_world_object * part.T_parent_shape;
-        solid.shape = CollisionShape::make(part.shape);
-        if (!body.allowed && object.uncertainty > kSurePlace) solid.shape = widened(solid.shape, object.uncertainty, solid.T_world_shape);
-        in_peoples_hands.push_back(std::move(solid));
-      }
-      if (model != nullptr && !model->parts.empty()) continue;
-      body.shape = body.allowed ? object_shape(object, 0) : object_shape(object, object.uncertainty, body.T_world_shape);
-      if (!body.shape) continue;
-      (object.holder == Holder::human ? in_peoples_hands : bodies_now).push_back(std::move(body));
-    }
-    scene = std::move(bodies_now);
+    scene = made.bodies(last_scene, attachment.object, allowed, scene, in_peoples_hands);
   }
 
   bool may_touch_held(int hand) const { return hand >= 0 && at_held[static_cast<std::size_t>(hand)] != 0; }
@@ -245,8 +164,8 @@ struct CollisionWorld::Impl {
       held.model = attachment.object;
       for (const SceneObject& object : last_scene.objects)
         if (object.id == attachment.object) held = object;
-      if (CollisionShapePtr shape = object_shape(held, 0)) {
-        LinkCapsule capsule = enclosing_capsule(shape->is_mesh() ? std::get<MeshPtr>(shape->shape())->vertices : corners(held));
+      if (CollisionShapePtr shape = made.shape_of(held)) {
+        LinkCapsule capsule = enclosing_capsule(shape->is_mesh() ? std::get<MeshPtr>(shape->shape())->vertices : corners_of(held));
         capsule.link = palm;
         capsule.a = attachment.T_tool_object * capsule.a;
         capsule.b = attachment.T_tool_object * capsule.b;
