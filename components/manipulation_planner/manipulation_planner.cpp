@@ -107,6 +107,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   if (!blocked) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
+  watch_offer();
   halt(out);
   if (drop_path_) {
     PathRequest request;
@@ -132,7 +133,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
     taken_up_ = {};
     action_ = {};
   }
-  if (!taken_up_.giver.empty()) status_.exchange_engaged = exchanges();
+  if (!taken_up_.giver.empty()) status_.exchange_engaged = at_offer_ || still_offered();
   status_.time_to_exchange = time_to_exchange();
   out_ = nullptr;
 }

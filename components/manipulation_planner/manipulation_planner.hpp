@@ -172,7 +172,8 @@ class ManipulationPlanner {
   double room_before(const Person&, const Vector& posture) const;
   bool crowds(const std::string& giver) const;
   bool holds_out(const Person& who, const SceneObject& held) const;
-  bool exchanges() const;  ///< the giver holds it out, or the hand is at it
+  void watch_offer();
+  bool still_offered() const;  ///< what was taken up is held out, or was so just now
   std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
   /// The grasp for where the object is now; nullopt: the arm does not reach it there.
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
@@ -329,7 +330,7 @@ class ManipulationPlanner {
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;
   ActiveTrajectory active_;
-  TimePoint free_at_{}, held_at_{};
+  TimePoint free_at_{}, held_at_{}, offered_at_{};
   double blocked_for_{0};  // how long the forecast, or a person too near, has held the robot back [s]
   bool too_near_{false};
   std::optional<GraspReply> grasp_reply_;

@@ -31,7 +31,9 @@ constexpr int kMostAims = 6;           // so often the hand follows before it wa
 constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
 // More than `held_out` [m] and toward the robot by this cosine: held out by who was asked for it, though the arm is not stretched. The
 // second is less than `held_out`, and means it when nothing else has been offered for long.
-constexpr double kBentArm = 0.05, kBeforeBody = 0.03, kTowardRobot = 0.7;
+constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kTowardRobot = 0.7;
+// [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it is.
+constexpr double kFlicker = 0.2, kDrawnBack = 0.6;
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 const Vector3& torso_of(const Person& who) { return who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
@@ -46,15 +48,18 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
   // Who was asked for it and holds it out toward the robot means it, with a bent arm too.
   const bool asked = goal_.human == who.id && goal_.object == held.id;
   const Vector3 to_robot = level(scene_.T_world_base.translation() - torso_of(who));
-  const double least = settings_.held_out() + (waited_long_ ? -kBeforeBody : kBentArm);
+  const bool taken_up = taken_up_.object == held.id && taken_up_.giver == who.id;
+  const double least = settings_.held_out() + (waited_long_ ? -kBeforeBody : taken_up ? 0.0 : kBentArm);
   return asked && out.norm() >= least && out.dot(to_robot) > kTowardRobot * out.norm() * to_robot.norm();
 }
 
-bool ManipulationPlanner::exchanges() const {
+void ManipulationPlanner::watch_offer() {
   const SceneObject* held = object(taken_up_.object);
-  const Person* who = held == nullptr || held->holder != Holder::human ? nullptr : person(taken_up_.giver);
-  return at_offer_ || (who != nullptr && holds_out(*who, *held));
+  const Person* who = held == nullptr ? nullptr : person(taken_up_.giver);
+  if (who != nullptr && holds_out(*who, *held)) offered_at_ = waiting_.now();
 }
+
+bool ManipulationPlanner::still_offered() const { return to_seconds(waiting_.now() - offered_at_) < kFlicker; }
 
 std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std::string& wanted, const std::string& giver) const {
   for (const SceneObject& held : scene_.objects) {
@@ -74,8 +79,7 @@ bool ManipulationPlanner::strayed(const Motion& motion) const {
   const double shifted = (aim->T_world_object.translation() - motion.p_world_aim).norm();
   if (!motion.follows) return shifted > motion.aim_slack;
   const double ahead = (aim->T_world_object.translation() - T_world_tool().translation()).norm() - kHandLength;
-  const Person* giver = aim->holder == Holder::human ? person(aim->holder_id) : nullptr;
-  return shifted > std::clamp(kOfTheWay * ahead, kBesideHand, motion.aim_slack) || giver == nullptr || !holds_out(*giver, *aim);
+  return shifted > std::clamp(kOfTheWay * ahead, kBesideHand, motion.aim_slack) || !still_offered();
 }
 
 std::optional<Vector3> ManipulationPlanner::follow_offer(Motion& motion) {
@@ -111,6 +115,8 @@ Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_fo
                                                                                         TimePoint patience) {
   std::optional<Offer> offer;
   bool made_room = false;
+  taken_up_ = {};
+  status_.exchange_engaged = false;
   waited_long_ = false;
   const TimePoint began = waiting_.now();
   for (TimePoint since = began; waiting_.now() < patience;) {
@@ -142,6 +148,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     std::optional<Offer> offer = co_await watch_for_offer(wanted, giver, patience);
     if (!offer) break;
     taken_up_ = *offer;
+    offered_at_ = waiting_.now();
     at_offer_ = false;
     status_.object = offer->object;
     status_.human = offer->giver;
@@ -172,6 +179,8 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       if (!last.strayed) did_not_hold.insert(grasp.id);
       if (last.strayed || !offered(offer->object, offer->giver)) break;
     }
+    // Who has drawn it back offers it anew where the hand leaves room for it.
+    if (!still_offered() && crowds(offer->giver)) co_await make_room(offer->giver);
     patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   }
   co_return last;
@@ -206,10 +215,10 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     if (there = put_into_hand(); there) break;
     if (!last.good && !last.strayed) break;
     if (last.strayed) waited_long_ = false;
-    const bool settled =
-        co_await waiting_.until([&steady, &put_into_hand] { return steady() || put_into_hand(); }, settings_.sight_timeout());
+    const auto drawn_back = [this] { return to_seconds(waiting_.now() - offered_at_) > kDrawnBack; };
+    co_await waiting_.until([&] { return steady() || put_into_hand() || drawn_back(); }, settings_.sight_timeout());
     if (there = put_into_hand(); there) break;
-    const bool offers = settled && steady();
+    const bool offers = steady();
     last = offers ? out_of_reach : Outcome::failure(giver + " has drawn " + object_id + " back");
     last.strayed = !offers;
     grasp = offers ? aimed(object_id, chosen) : std::nullopt;
