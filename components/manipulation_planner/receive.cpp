@@ -14,6 +14,7 @@ constexpr double kSteady = 0.25;     // [s] an offer must last before the hand g
 constexpr double kFirstOffer = 3.0;  // [s] without an offer, before what is held still before the body counts as one ...
 constexpr double kKeptStill = 1.0;   // [s] ... when it has lasted so long; and if there is none, room is made for one
 constexpr double kLookAgain = 0.02;  // [s]
+constexpr double kMovedOn = 0.03;    // [m] grasps of what has gone farther since they were asked for tell nothing about it
 constexpr double kAnotherTry = 1.0;  // [s] before an offer that could not be reached is looked at again
 constexpr double kAimed = 0.02;      // [m] before the object the hand stands where the straight way in begins, up to this
 constexpr double kHandLength = 0.3;  // [m] palm to what is beyond the open fingers
@@ -152,10 +153,12 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     at_offer_ = false;
     status_.object = offer->object;
     status_.human = offer->giver;
-    status_.exchange_point = object(offer->object)->T_world_object.translation();
+    const Vector3 p_asked = status_.exchange_point = object(offer->object)->T_world_object.translation();
     GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps());
     if (!list.grasps.empty()) list.outcome = co_await keep_off_fingers(offer->object, offer->giver, list.grasps);
     if (!list.outcome.good || list.grasps.empty()) {
+      const SceneObject* held = object(offer->object);
+      if (held == nullptr || (held->T_world_object.translation() - p_asked).norm() > kMovedOn) continue;
       // Who is not come for holds it out elsewhere, nearer, or farther out where there is room.
       if (list.outcome.reason != last.reason) refuse("offer", list.outcome.reason);
       last = list.outcome;
@@ -179,8 +182,8 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       if (!last.strayed) did_not_hold.insert(grasp.id);
       if (last.strayed || !offered(offer->object, offer->giver)) break;
     }
-    // Who has drawn it back offers it anew where the hand leaves room for it.
-    if (!still_offered() && crowds(offer->giver)) co_await make_room(offer->giver);
+    // Who has drawn it back offers it anew where the hand leaves room for it; and from farther back other ways lead to what is held out.
+    if (still_offered() ? !last.strayed : crowds(offer->giver)) co_await make_room(offer->giver);
     patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   }
   co_return last;
