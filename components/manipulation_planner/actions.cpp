@@ -113,10 +113,11 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   PlannedPath first_part = co_await plan_path(opened, approach);
   if (!first_part.outcome.good) co_return Outcome::failure("approach: " + first_part.outcome.reason);
 
-  status_.phase = "opening the hand";
-  HandResult open = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
-  if (!open.outcome.good) co_return open.outcome;
-  Outcome moved = co_await move(approach);
+  Outcome moved = co_await tell_hand(HandAction::move, grasp.pregrasp_joints);
+  if (!moved.good) co_return moved;
+  moved = co_await move(approach);
+  if (!moved.good) co_return moved;
+  moved = co_await hand_opened();
   if (!moved.good) co_return moved;
   moved = co_await move(reach_object);
   if (!moved.good) co_return moved;

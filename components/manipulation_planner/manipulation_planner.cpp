@@ -204,7 +204,8 @@ Vector ManipulationPlanner::posture() const {
   for (const Manipulator& other : hands_)
     if (other.arm != nullptr)
       for (const int axis : other.arm->axes) q[axis] = set_point_[axis];
-  return q;
+  const bool opens = opens_to_ && execution_ && hand_state() == HandState::moving;
+  return opens ? RobotModel::with(q, fingers_, *opens_to_) : q;
 }
 
 bool ManipulationPlanner::may_move() const { return !halt_ && execution_ && execution_->mode < Mode::hold; }
@@ -553,8 +554,15 @@ Routine<Outcome> ManipulationPlanner::tell_hand(HandAction action, const Vector&
     out_->hand_commands.push_back(command);
     heard = co_await waiting_.until([this, id] { return execution_->hand_command == id && hand_state() != HandState::refused; }, 0.3);
   }
+  opens_to_.reset();
+  if (heard && action == HandAction::move) opens_to_ = position;
   if (!heard) co_return Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
   co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::hand_opened() {
+  const bool open = co_await waiting_.until([this] { return hand_state() != HandState::moving; }, settings_.hand_timeout());
+  co_return open ? Outcome{} : Outcome::failure("the hand does not open");
 }
 
 Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction action, const Vector& position, double timeout,

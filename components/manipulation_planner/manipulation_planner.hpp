@@ -150,9 +150,9 @@ class ManipulationPlanner {
   Routine<Outcome> lower(const PuttingPosture& posture);
   /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
-  /// `any_way`: however long the arm's way there is.
-  Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp, bool any_way);
-  Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp, bool any_way) const;
+  /// `attempt`, from 1: the later, the longer may the arm's way there be.
+  Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp, std::uint32_t attempt);
+  Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp, std::uint32_t attempt) const;
   /// Leaves the grasps whose way in and closing fingers keep off the giver's hand, as it is seen now; with none left it says so.
   Routine<Outcome> keep_off_fingers(const std::string& object, const std::string& giver, std::vector<Grasp>& grasps);
   /// From the offered object with the hand opened, the way it came; the result is `why`.
@@ -279,6 +279,7 @@ class ManipulationPlanner {
                            double share_of_mass = 1.0);
   /// The same, only until the controller has heard of it.
   Routine<Outcome> tell_hand(HandAction action, const Vector& position, const Vector* effort = nullptr, double share_of_mass = 1.0);
+  Routine<Outcome> hand_opened();  ///< which was told to move
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);
@@ -319,6 +320,7 @@ class ManipulationPlanner {
   ActionGoal goal_;
   Offer taken_up_;      // by receive; empty: none
   bool waited_long_{};  // nothing was held out farther for so long that what is held before the body counts as offered
+  std::optional<Vector> opens_to_;  // the hand, while it moves: motions are planned for what it will be
   bool at_offer_{};     // the hand, from the straight way in until it has drawn back
   ActionStatus status_;
   Outbox* out_{nullptr};

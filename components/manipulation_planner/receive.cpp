@@ -23,16 +23,18 @@ constexpr double kInHand = 0.05;     // [m] what weighs on the hand lies in it, 
 constexpr double kNear = 0.5;        // [m] palm to what is offered
 // [m] While a new way is sought, an offer may be shifted by this share of the way that is left to there, and at its end by this.
 constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
-// [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and this.
-constexpr double kDetour = 1.5, kMoreThan = 2.0;
+// [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and the
+// second, which each attempt gives again ...
+constexpr double kDetour = 1.3, kMoreThan = 1.0;
 constexpr double kThink = 0.6;         // [s] of a way to one grasp, before the next is tried
 constexpr double kSameWay = 0.5;       // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
-constexpr std::uint32_t kHurried = 2;  // after so many attempts a long way is better than none
+constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a long way is better than none
 constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
-// More than `held_out` [m] and toward the robot by this cosine: held out by who was asked for it, though the arm is not stretched. The
+// More than `held_out` [m] and toward the robot or its hand by this cosine: held out by who was asked for it, though the arm is not stretched. The
 // second is less than `held_out`, and means it when nothing else has been offered for long.
-constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kTowardRobot = 0.7;
+// Farther out than kFarOut nothing is kept, wherever that is.
+constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kFarOut = 0.4, kTowardRobot = 0.7;
 // [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it is.
 constexpr double kFlicker = 0.2, kDrawnBack = 0.6;
 
@@ -48,10 +50,14 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
   if (fact) return out.norm() >= settings_.held_out();
   // Who was asked for it and holds it out toward the robot means it, with a bent arm too.
   const bool asked = goal_.human == who.id && goal_.object == held.id;
-  const Vector3 to_robot = level(scene_.T_world_base.translation() - torso_of(who));
+  const auto toward = [&out, &who](const Vector3& there) {
+    const Vector3 way = level(there - torso_of(who));
+    return out.dot(way) > kTowardRobot * out.norm() * way.norm();
+  };
+  if (asked && out.norm() > kFarOut) return true;
   const bool taken_up = taken_up_.object == held.id && taken_up_.giver == who.id;
   const double least = settings_.held_out() + (waited_long_ ? -kBeforeBody : taken_up ? 0.0 : kBentArm);
-  return asked && out.norm() >= least && out.dot(to_robot) > kTowardRobot * out.norm() * to_robot.norm();
+  return asked && out.norm() >= least && (toward(scene_.T_world_base.translation()) || toward(T_world_tool().translation()));
 }
 
 void ManipulationPlanner::watch_offer() {
@@ -176,7 +182,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       did_not_hold.clear();
     for (const Grasp& grasp : list.grasps) {
       if (did_not_hold.count(grasp.id) > 0) continue;
-      last = co_await take(offer->object, offer->giver, grasp, attempt > kHurried);
+      last = co_await take(offer->object, offer->giver, grasp, attempt);
       if (last.good) co_return last;
       refuse("grasp " + std::to_string(grasp.id), last.reason);
       if (!last.strayed) did_not_hold.insert(grasp.id);
@@ -189,14 +195,15 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
   co_return last;
 }
 
-Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const std::string& giver, const Grasp& chosen, bool any_way) {
+Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const std::string& giver, const Grasp& chosen,
+                                            std::uint32_t attempt) {
   status_.phase = "planning";
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
   if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
   const Outcome out_of_reach = Outcome::failure("no posture of the arm reaches it where it is held now");
   std::optional<Grasp> grasp = aimed(object_id, chosen);
   if (!grasp) co_return out_of_reach;
-  Motion approach = approach_to(object_id, giver, *grasp, any_way);
+  Motion approach = approach_to(object_id, giver, *grasp, attempt);
   const Vector opened = RobotModel::with(set_point_, fingers_, chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
   if (!way.outcome.good) co_return Outcome::failure("approach: " + way.outcome.reason);
@@ -213,7 +220,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   };
   bool there = false;
   for (int aims = 0; aims < kMostAims && !there; ++aims) {
-    approach = approach_to(object_id, giver, *grasp, any_way);
+    approach = approach_to(object_id, giver, *grasp, attempt);
     last = co_await move(approach);
     if (there = put_into_hand(); there) break;
     if (!last.good && !last.strayed) break;
@@ -231,11 +238,8 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     last = Outcome::failure(object_id + " is moved about");
     last.strayed = true;
     if ((T_before.translation() - T_world_tool().translation()).norm() > kAimed) continue;
-    const bool open = co_await waiting_.until([this] { return hand_state() != HandState::moving; }, settings_.hand_timeout());
-    if (!open) {
-      last = Outcome::failure("the hand does not open");
-      break;
-    }
+    last = co_await hand_opened();
+    if (!last.good) break;
     std::vector<Grasp> this_one{*grasp};
     last = co_await keep_off_fingers(object_id, giver, this_one);
     if (last.good && object(object_id) == nullptr) last = Outcome::failure(object_id + " is out of sight");
@@ -306,7 +310,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
 }
 
 ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& object_id, const std::string& giver, const Grasp& grasp,
-                                                             bool any_way) const {
+                                                             std::uint32_t attempt) const {
   Motion approach;
   approach.phase = "approach";
   approach.goals = {grasp.approach_joints};
@@ -315,9 +319,9 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
   approach.p_world_aim = object(object_id)->T_world_object.translation();
   approach.aim_slack = settings_.approach_slack();
   approach.follows = grasp;
-  if (any_way) return approach;
+  if (attempt > kHurried) return approach;
   approach.think = kThink;
-  approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + kMoreThan;
+  approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + attempt * kMoreThan;
   return approach;
 }
 

@@ -39,6 +39,7 @@ Routine<Outcome> ManipulationPlanner::use_arm(const std::string& arm) {
   if (!free) co_return Outcome::failure("a computation for the other arm does not end");
   hand_ = index;
   arm_ = *hands_[index].arm;
+  opens_to_.reset();
   fingers_ = hands_[index].fingers != nullptr ? *hands_[index].fingers : Group{};
   palm_ = hands_[index].palm;
   grasp_.reset();

@@ -281,7 +281,7 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   wanted = std::min(wanted, cost_share());
   if (forecast_.collides && forecast_.trajectory == piece().id) {
     const double share = (forecast_.time_to_collision - settings_.forecast_hold) / (settings_.forecast_slow - settings_.forecast_hold);
-    wanted = std::min(wanted, exchanging_.empty() ? std::clamp(share, 0.0, 1.0) : 0.5);
+    wanted = std::min(wanted, std::clamp(share, 0.0, 1.0));
   }
   return wanted >= 0.0 ? wanted : std::max({wanted, guard_verdict_.backward, -settings_.recoil_limit});
 }
@@ -317,7 +317,7 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
 
   if (in.running && forecast_.collides && forecast_.trajectory == piece().id) {
     const bool soon = forecast_.time_to_collision < settings_.forecast_hold;
-    in.forecast_collision_hold = soon && exchanging_.empty();
+    in.forecast_collision_hold = soon;
     in.forecast_collision_slow = !in.forecast_collision_hold && forecast_.time_to_collision < settings_.forecast_slow;
   }
   in.separation_slow = guard_verdict_.separation && guard_verdict_.forward < 0.999;
