@@ -189,7 +189,8 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       if (last.strayed || !offered(offer->object, offer->giver)) break;
     }
     // Who has drawn it back offers it anew where the hand leaves room for it; and from farther back other ways lead to what is held out.
-    if (still_offered() ? !last.strayed : crowds(offer->giver)) co_await make_room(offer->giver);
+    const bool again = attempt < settings_.receive_attempts() && (still_offered() ? !last.strayed : crowds(offer->giver));
+    if (again) co_await make_room(offer->giver);
     patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   }
   co_return last;
