@@ -1,0 +1,166 @@
+// The receiver steps aside while the object is carried to them: how long until a trajectory leads to the new exchange point from the motion
+// that runs - choosing the point, the path, the soft motion, and what joins them - against stopping and planning anew from there. Jido; one
+// process, alternating. Time of the thread. Usage: bench_retarget [cases]
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <random>
+
+#include "common/config/located.hpp"
+#include "common/config/resources.hpp"
+#include "common/model/object_model.hpp"
+#include "common/trajectory/switch.hpp"
+#include "components/manipulation_planner/exchange.hpp"
+#include "components/path_planner/live_path.hpp"
+#include "components/trajectory_planner/trajectory_planner.hpp"
+#include "tests/support/standing_person.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr unsigned kSeed = 21;
+constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
+constexpr double kUnderWay = 0.4;         // share of the time of the carrying motion when it is left
+
+struct Times {
+  std::vector<double> all;
+  void add(double t) { all.push_back(t * 1e3); }
+  double at(double share) {
+    std::sort(all.begin(), all.end());
+    return all.empty() ? 0.0 : all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
+  }
+  void print(const char* what) {
+    std::printf("%-34s median %7.2f  p95 %7.2f  largest %7.2f ms\n", what, at(0.5), at(0.95), at(1));
+  }
+};
+
+/// Of this thread: others on the machine do not count.
+double seconds(const std::function<void()>& work) {
+  const auto now = [] {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  };
+  const double begin = now();
+  work();
+  return now() - begin;
+}
+
+int run(int cases) {
+  const RobotModel robot = RobotModel::load(robot_description("jido"));
+  const Group& arm = robot.require_group("arm");
+  const ObjectModel mug = ObjectModel::load(object_description("mug"));
+  config::ManipulationPlannerSettings settings;
+  load_text_proto(resource("config/manipulation_planner.txtpb"), settings);
+  CollisionWorld world(robot, [&mug](const std::string& name) { return name == "mug" ? &mug : nullptr; });
+  HumanCost cost(robot, {});
+  Scene scene;
+  scene.robot_known = true;
+  scene.robot_position = robot.rest_posture();
+  scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
+  Attachment attachment;
+  attachment.object = "mug";
+  attachment.T_tool_object = make_pose({0.08, 0.02, 0.23});
+  scene.objects.push_back({"mug", "mug", make_pose({0.7, 0, 1.2}), Holder::robot, "jido", 0});
+  world.set_scene(scene);
+  world.set_attachment(attachment, {});
+  const auto put = [&](const HumanState& people) {
+    world.set_people(people);
+    cost.set_people(people);
+  };
+  const auto tool_at = [&](const Vector& q) { return Pose(robot.link_pose(q, robot.tool_link()) * attachment.T_tool_object); };
+  const auto choose = [&](const HumanState& people, const Vector& q) {
+    return manipulation_planner::find_exchange(robot, scene, people.people[0], {}, q, tool_at(q), attachment.T_tool_object, settings);
+  };
+  const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes, const Vector& start) {
+    TrajectoryRequest request;
+    request.group = "arm";
+    request.nodes = nodes;
+    request.start = start;
+    request.attachment = attachment;
+    return trajectory_planner::plan(robot, world, cost, {people, scene.T_world_base}, request, {}).reply;
+  };
+
+  std::mt19937 engine(kSeed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  Times point, path, motion, join, whole, anew;
+  int tried = 0, led = 0, led_anew = 0;
+  for (int k = 0; k < cases; ++k) {
+    const Vector3 feet{1.35 + 0.3 * unit(engine), -0.4 + 0.8 * unit(engine), 0};
+    const double way = 6.283185307179586 * unit(engine), step = 0.15 + 0.25 * unit(engine);
+    const HumanState before = test::person_at(feet),
+                     after = test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
+    const Vector rest = robot.rest_posture();
+    put(before);
+    path_planner::Problem problem;
+    problem.axes = arm.axes;
+    problem.seed = kSeed + static_cast<unsigned>(k);
+    problem.start = rest;
+    for (const auto& pose : choose(before, rest).poses) problem.goals.push_back(pose.arm_joints);
+    if (problem.goals.empty()) continue;
+    const path_planner::Result first = path_planner::plan(robot, world, cost, problem, {});
+    if (!first.solved) continue;
+    const TrajectoryReply running = smooth(before, first.path, rest);
+    if (!running.solved) continue;
+    const MotionState3 now = running.trajectory.at(kUnderWay * running.trajectory.duration());
+    problem.start = RobotModel::with(rest, arm, now.position);
+    problem.budget = kBudget;
+    ++tried;
+
+    manipulation_planner::ExchangeSearch search;
+    path_planner::LiveResult live;
+    TrajectoryReply soft;
+    bool joined = false;
+    const auto goals_of_search = [&] {
+      problem.goals.clear();
+      for (const auto& pose : search.poses) problem.goals.push_back(pose.arm_joints);
+    };
+    const double t_point = seconds([&] {
+      put(after);
+      search = choose(after, problem.start);
+    });
+    goals_of_search();
+    if (!problem.goals.empty()) {
+      const double t_path = seconds([&] { live = go_on(robot, world, cost, problem, first.path, {}, {}); });
+      const double t_motion = seconds([&] {
+        if (live.result.solved) soft = smooth(after, live.result.path, problem.start);
+      });
+      const double t_join = seconds([&] {
+        if (!soft.solved) return;
+        KinematicLimits limits = robot.comfort_limits();
+        for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = 1.1 * RobotModel::part(*part, arm);
+        joined = switch_to(now, soft.trajectory, limits).ok();
+      });
+      led += joined;
+      point.add(t_point), path.add(t_path), motion.add(t_motion), join.add(t_join);
+      whole.add(t_point + t_path + t_motion + t_join);
+    }
+    bool reached = false;
+    const double t_anew = seconds([&] {
+      put(after);
+      search = choose(after, problem.start);
+      goals_of_search();
+      if (problem.goals.empty()) return;
+      const path_planner::Result again = path_planner::plan(robot, world, cost, problem, {});
+      reached = again.solved && smooth(after, again.path, problem.start).solved;
+    });
+    led_anew += reached;
+    anew.add(t_anew);
+  }
+  std::printf("seed %u, %d cases: led to the new point %d, from rest %d\n", kSeed, tried, led, led_anew);
+  point.print("exchange point");
+  path.print("path");
+  motion.print("soft motion");
+  join.print("joining what runs");
+  whole.print("retarget while moving");
+  anew.print("planned anew from rest");
+  std::printf("ratio of medians, planned anew / retarget: %.2f\n", anew.at(0.5) / whole.at(0.5));
+  return 0;
+}
+
+}  // namespace
+}  // namespace handsel
+
+int main(int argc, char** argv) { return handsel::run(argc > 1 ? std::atoi(argv[1]) : 200); }
