@@ -133,7 +133,13 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
     co_return Outcome::failure(closed.outcome.good ? "the hand closed on nothing" : closed.outcome.reason);
   }
   grasp_ = grasp;
-  co_await waiting_.pause(settings_.settle_time());
+  // Where the fingers have pushed it to: as soon as it is seen to be still.
+  const Stamp seen = scene_.stamp;
+  const auto still = [this, &object_id, seen] {
+    const SceneObject* thing = object(object_id);
+    return scene_.stamp != seen && thing != nullptr && thing->velocity.norm() < settings_.offer_still();
+  };
+  co_await waiting_.until(still, settings_.settle_time());
   const SceneObject* held = object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);

@@ -318,10 +318,10 @@ class ManipulationPlanner {
   Waiting waiting_;
   Routine<Outcome> action_;
   ActionGoal goal_;
-  Offer taken_up_;      // by receive; empty: none
-  bool waited_long_{};  // nothing was held out farther for so long that what is held before the body counts as offered
+  Offer taken_up_;                  // by receive; empty: none
+  bool waited_long_{};              // nothing was held out farther for so long that what is held before the body counts as offered
   std::optional<Vector> opens_to_;  // the hand, while it moves: motions are planned for what it will be
-  bool at_offer_{};     // the hand, from the straight way in until it has drawn back
+  bool at_offer_{};                 // the hand, from the straight way in until it has drawn back
   ActionStatus status_;
   Outbox* out_{nullptr};
 

@@ -31,11 +31,12 @@ constexpr double kSameWay = 0.5;       // [rad] ways of the arm that differ by l
 constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a long way is better than none
 constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
-// More than `held_out` [m] and toward the robot or its hand by this cosine: held out by who was asked for it, though the arm is not stretched. The
-// second is less than `held_out`, and means it when nothing else has been offered for long.
-// Farther out than kFarOut nothing is kept, wherever that is.
+// More than `held_out` [m] and toward the robot or its hand by this cosine: held out by who was asked for it, though the arm is not
+// stretched. The second is less than `held_out`, and means it when nothing else has been offered for long. Farther out than kFarOut nothing
+// is kept, wherever that is.
 constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kFarOut = 0.4, kTowardRobot = 0.7;
-// [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it is.
+// [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it
+// is.
 constexpr double kFlicker = 0.2, kDrawnBack = 0.6;
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
@@ -197,7 +198,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
 }
 
 Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const std::string& giver, const Grasp& chosen,
-                                            std::uint32_t attempt) {
+                                           std::uint32_t attempt) {
   status_.phase = "planning";
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
   if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);

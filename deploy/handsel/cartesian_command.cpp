@@ -6,6 +6,7 @@
 #include "common/config/resources.hpp"
 #include "common/model/platform.hpp"
 #include "components/trajectory_planner/cartesian_motion.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/canvas.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/scene_lines.hpp"
@@ -167,9 +168,7 @@ Where a node cannot be reached the motion ends at the one before, "reached" coun
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
   command->add_option("--group", options->group, "of the arm")->capture_default_str();
   command->add_option("--tip", options->tip, "link that carries the tool, where the group names none");
-  command->add_option("--period", options->period, "the joints are computed this often [s]")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  command->add_option("--period", options->period, "the joints are computed this often [s]")->check(kAboveZero)->capture_default_str();
   command->add_flag("--platform", options->platform,
                     "\"also\" may name platform_x, platform_y and platform_heading; poses are in the world");
   command->add_option("--png", options->png, "file to draw the first motion to");

@@ -15,6 +15,7 @@
 #include "common/base/errors.hpp"
 #include "common/config/attention.pb.h"
 #include "common/config/resources.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "deploy/handsel/study.hpp"
@@ -295,12 +296,9 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("eval", "randomised trials in lock-step: one JSON line each, a table at the end");
   command->add_option("--scenario", options->scenarios, "scenarios: names or files")->capture_default_str();
   command->add_option("--robot", options->robot, "robot description (default: the scenario's)");
-  command->add_option("--trials", options->trials, "of each scenario")->check(CLI::PositiveNumber)->capture_default_str();
-  command->add_option("--seed", options->seed, "of the first trial; each next has one more")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--replay", options->replay, "one trial with this seed, bit for bit, telling what happens")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--trials", options->trials, "of each scenario")->check(kAboveZero)->capture_default_str();
+  command->add_option("--seed", options->seed, "of the first trial; each next has one more")->check(kAboveZero)->capture_default_str();
+  command->add_option("--replay", options->replay, "one trial with this seed, bit for bit, telling what happens")->check(kAboveZero);
   command
       ->add_option("--attention", options->modes,
                    "how its clocks run: adaptive; max: all at their shortest period; mean: each at the mean period of the adaptive ones, "
@@ -322,10 +320,9 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->add_option("--from", options->from, "report on these files of lines instead of trials, e.g. on those of all shards");
   command->add_option("--participant", options->participant, "pseudonym that the lines carry");
   add_no_weld_option(*command);
-  command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")->check(CLI::PositiveNumber);
+  command->add_option("--jobs", options->jobs, "trials at a time (default: one a core)")->check(kAboveZero);
   command->add_option("--shard", options->shard, "i/n: only every n-th trial, from the i-th (0 <= i < n)");
-  command->add_option("--timeout", options->timeout, "[s] of virtual time for all tasks (default: the scenario's)")
-      ->check(CLI::PositiveNumber);
+  command->add_option("--timeout", options->timeout, "[s] of virtual time for all tasks (default: the scenario's)")->check(kAboveZero);
   command->add_option("--out", options->out, "write the lines to this file");
   command->callback([options, &exit_code] { exit_code = evaluate(*options); });
 }

@@ -9,6 +9,7 @@
 
 #include "components/grasp_planner/epsilon.hpp"
 #include "components/grasp_planner/placement.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/grasp_input.hpp"
 #include "deploy/handsel/grasp_pair_command.hpp"
 #include "deploy/handsel/grasp_show_command.hpp"
@@ -207,10 +208,8 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
   tabling->add_option("--hand", t->hands, "hand description: name or file; may be repeated")->capture_default_str();
   tabling->add_option("--object", t->objects, "mesh file or object description; may be repeated")->required();
   tabling->add_flag("--fit", t->fit, "scale an object that is too large or too small for the hand");
-  tabling->add_option("--positions", t->positions, "grasp frames: positions in the object's box")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  tabling->add_option("--orientations", t->orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
+  tabling->add_option("--positions", t->positions, "grasp frames: positions in the object's box")->check(kAboveZero)->capture_default_str();
+  tabling->add_option("--orientations", t->orientations, "and orientations at each")->check(kAboveZero)->capture_default_str();
   tabling->add_flag("--json", t->as_json, "JSON Lines also on a terminal");
   tabling->callback([t, &exit_code] { exit_code = table(*t); });
 
@@ -218,7 +217,7 @@ void add_grasp_commands(CLI::App& app, int& exit_code) {
       grasp->add_subcommand("placements", "How an object stands by itself, hardest to tip over first, and how its mass is spread");
   auto s = std::make_shared<ListOptions>();
   standing->add_option("--object", s->object, "mesh file or object description")->required();
-  standing->add_option("--scale", s->scale, "of the mesh")->check(CLI::PositiveNumber);
+  standing->add_option("--scale", s->scale, "of the mesh")->check(kAboveZero);
   standing->add_flag("--json", s->as_json, "JSON Lines also on a terminal");
   standing->callback([s, &exit_code] { exit_code = placements(*s); });
 

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "common/config/resources.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/terminal.hpp"
 
 namespace handsel {
@@ -97,12 +98,10 @@ Listed list_with(const std::string& hand, const ListOptions& o, bool quiet) {
 void add_list_options(CLI::App& command, ListOptions& o) {
   command.add_option("--hand", o.hand, "hand description: name or file")->capture_default_str();
   command.add_option("--object", o.object, "mesh file (OBJ, STL, DAE), or an object description: name or file")->required();
-  command.add_option("--scale", o.scale, "factor on the object's size")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--orientations", o.orientations, "and orientations at each")->check(CLI::PositiveNumber)->capture_default_str();
-  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")->check(CLI::PositiveNumber);
+  command.add_option("--scale", o.scale, "factor on the object's size")->check(kAboveZero)->capture_default_str();
+  command.add_option("--positions", o.positions, "grasp frames: positions in the object's box")->check(kAboveZero)->capture_default_str();
+  command.add_option("--orientations", o.orientations, "and orientations at each")->check(kAboveZero)->capture_default_str();
+  command.add_option("--mu", o.friction, "Coulomb friction; the object's when left out")->check(kAboveZero);
   command.add_option("--seed", o.seed, "of the contact points")->capture_default_str();
   command.add_flag("--json", o.as_json, "JSON Lines also on a terminal");
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/base/errors.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/grasp_input.hpp"
 #include "deploy/handsel/grasp_picture.hpp"
 
@@ -151,7 +152,7 @@ void add_grasp_show(CLI::App& grasp, int& exit_code) {
           "workspace: of a finger, as grid and as spheres")
       ->check(CLI::IsMember({"grasp", "ellipsoids", "candidates", "curvature", "points", "workspace"}))
       ->capture_default_str();
-  command->add_option("--rank", o->rank, "which grasp: 1 is the best")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--rank", o->rank, "which grasp: 1 is the best")->check(kAboveZero)->capture_default_str();
   command->add_option("--id", o->id, "which grasp, by its id in `grasp list`")->check(CLI::NonNegativeNumber);
   command->add_option("--finger", o->finger, "whose workspace: 0 is the thumb")->capture_default_str();
   command->add_option("--depth", o->depth, "of the boxes of the tree")->check(CLI::Range(0, 12))->capture_default_str();

@@ -2,6 +2,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/bus/dds_bus.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/processes.hpp"
 #include "deploy/handsel/session.hpp"
@@ -49,7 +50,7 @@ void add_health_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("health", "is a process, or without a name the whole system, there and ok? 0 yes, 1 no, 3 nobody is heard");
   add_domain_option(*command, options->domain);
-  command->add_option("--within", options->within, "[s] wait so long for a yes")->capture_default_str()->check(CLI::PositiveNumber);
+  command->add_option("--within", options->within, "[s] wait so long for a yes")->capture_default_str()->check(kAboveZero);
   command->add_option("component", options->component, "as `handsel status` names it: spark, supervisor, ...");
   command->callback([options, &exit_code] { exit_code = ask(*options); });
 }

@@ -6,6 +6,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/performer.hpp"
 #include "deploy/handsel/report.hpp"
@@ -148,7 +149,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--condition", options->condition, "of a study: in the report and, as a mark at begin and end, in the record");
   command->add_option("--participant", options->participant, "pseudonym, likewise");
   command->add_option("--trial", options->trial, "number of the trial, likewise");
-  command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")->check(CLI::PositiveNumber);
+  command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")->check(kAboveZero);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }
 

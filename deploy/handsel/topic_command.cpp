@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/errors.hpp"
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/session.hpp"
 #include "deploy/handsel/system_options.hpp"
@@ -120,7 +121,7 @@ void add_topic_commands(CLI::App& app, int& exit_code) {
     if (named) {
       add_domain_option(*command, options->domain);
       command->add_option("topic", options->topic, "topic or message type, e.g. robot_state")->required();
-      command->add_option("--seconds", options->seconds, "listen for so long")->check(CLI::PositiveNumber);
+      command->add_option("--seconds", options->seconds, "listen for so long")->check(kAboveZero);
       if (action == echo) command->add_option("--count", options->count, "stop after so many samples");
     }
     command->callback([options, action, &exit_code] { exit_code = action(*options); });

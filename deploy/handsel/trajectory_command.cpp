@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 
+#include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/trajectory_lines.hpp"
 
@@ -32,7 +33,7 @@ void add_trajectory_commands(CLI::App& app, int& exit_code) {
   batch(group, "sample", "States of trajectories (as solve and smooth write them) at regular times", exit_code,
         [period](const json& line) { return sample_line(line, *period); })
       ->add_option("--period", *period, "[s]")
-      ->check(CLI::PositiveNumber)
+      ->check(kAboveZero)
       ->capture_default_str();
   add_cartesian_command(*group, exit_code);
   add_timed_command(*group, exit_code);

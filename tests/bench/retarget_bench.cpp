@@ -31,9 +31,7 @@ struct Times {
     std::sort(all.begin(), all.end());
     return all.empty() ? 0.0 : all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
   }
-  void print(const char* what) {
-    std::printf("%-34s median %7.2f  p95 %7.2f  largest %7.2f ms\n", what, at(0.5), at(0.95), at(1));
-  }
+  void print(const char* what) { std::printf("%-34s median %7.2f  p95 %7.2f  largest %7.2f ms\n", what, at(0.5), at(0.95), at(1)); }
 };
 
 /// Of this thread: others on the machine do not count.
@@ -90,8 +88,7 @@ int run(int cases) {
   for (int k = 0; k < cases; ++k) {
     const Vector3 feet{1.35 + 0.3 * unit(engine), -0.4 + 0.8 * unit(engine), 0};
     const double way = 6.283185307179586 * unit(engine), step = 0.15 + 0.25 * unit(engine);
-    const HumanState before = test::person_at(feet),
-                     after = test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
+    const HumanState before = test::person_at(feet), after = test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
     const Vector rest = robot.rest_posture();
     put(before);
     path_planner::Problem problem;
