@@ -5,6 +5,26 @@ namespace {
 
 using rig::Rig;
 
+TEST(ManipulationPlanner, TheHandOpensOnItsWayWhichIsPlannedForItOpened) {
+  Rig rig;
+  rig.moves = true;
+  rig.opens_for = 20;
+  rig.opens_by = 0.1;
+  const double closed = RobotModel::part(rig.q, rig.robot->require_group("hand"))[0];
+  rig.start(ActionKind::pick);
+  rig.run_until("approach");
+  ASSERT_EQ(rig.planner.status().phase, "approach");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  EXPECT_EQ(rig.execution.motion, MotionState::running);
+  EXPECT_EQ(rig.execution.hand, HandState::moving);
+  EXPECT_NEAR(RobotModel::part(rig.last_path.start, rig.robot->require_group("hand"))[0], closed + 0.1, 1e-9);
+  rig.opening = 200;
+  for (int i = 0; i < 150; ++i) rig.cycle();
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0) << "with the hand half open";
+  rig.run_until("reaching the object");
+  EXPECT_EQ(rig.execution.hand, HandState::idle);
+}
+
 TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
   Rig rig;
   rig.start(ActionKind::pick);

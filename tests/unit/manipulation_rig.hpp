@@ -93,6 +93,7 @@ class Rig {
     for (auto& request : out.trajectory_requests) answer(request);
     for (auto& command : out.trajectories) obey(command);
     for (auto& command : out.hand_commands) obey(command);
+    if (execution.hand == HandState::moving && --opening == 0) execution.hand = HandState::idle;
     if (out.hand_commands.empty() && planner.status().phase == "offer" && person_takes) execution.hand = HandState::released;
   }
 
@@ -106,6 +107,7 @@ class Rig {
     grasp.approach_joints = grasp.arm_joints;
     grasp.approach_joints[1] += 0.1;
     grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(q, robot->require_group("hand"));
+    grasp.pregrasp_joints[0] += opens_by;
     grasp.T_object_hand = scene.objects[0].T_world_object.inverse() * scene.T_world_base *
                           robot->link_pose(RobotModel::with(q, robot->require_group("arm"), grasp.arm_joints), robot->tool_link());
     if (grasps_exist)
@@ -189,7 +191,9 @@ class Rig {
     execution.hand_command = command.id;
     execution.hand = command.action == HandAction::grasp             ? (grasp_holds ? HandState::grasped : HandState::empty)
                      : command.action == HandAction::release_on_pull ? HandState::grasped
+                     : opens_for > 0                                 ? HandState::moving
                                                                      : HandState::idle;
+    opening = opens_for;
     if (command.action == HandAction::grasp && grasp_holds) {
       if (object_comes) scene.objects[0].holder = Holder::robot;
       T_tool_mug = grasped_as_it_stands ? Pose(tool().inverse() * scene.objects[0].T_world_object) : make_pose({0.08, 0.02, 0.23});
@@ -232,9 +236,11 @@ class Rig {
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;
-  bool moves{};     // trajectories take their time, paths are kept
-  double share{1};  // of the velocity limits, because of people
-  Trajectory way;   // that runs
+  int opens_for{}, opening{};  // the hand, told to move: cycles that it takes, and that are left
+  double opens_by{};           // the first axis of the hand before a grasp [rad]
+  bool moves{};                // trajectories take their time, paths are kept
+  double share{1};             // of the velocity limits, because of people
+  Trajectory way;              // that runs
   double along{}, latest{};
   std::vector<TrajectoryCommand> commands;
   std::vector<double> jumps;  // where one command took over from another

@@ -46,6 +46,26 @@ TEST(ManipulationPlanner, WhoWasAskedForItOffersItWithABentArmToo) {
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
 }
 
+TEST(ManipulationPlanner, AnOfferWhoseMeasureTremblesDoesNotEnd) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  rig.facts.facts.clear();
+  Vector3 p_mug{1.145, 0, 1.1};  // 2.5 cm beyond what is kept before the body
+  rig.scene.objects[0].T_world_object.translation() = p_mug;
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  ASSERT_EQ(rig.planner.status().phase, "approach");
+  for (int i = 0; rig.planner.status().phase == "approach" && i < 1000; ++i) {
+    rig.scene.objects[0].T_world_object.translation().x() = p_mug.x() + (i % 2 == 0 ? 0.02 : 0.03);
+    rig.cycle();
+    EXPECT_TRUE(rig.planner.status().exchange_engaged) << "in cycle " << i;
+  }
+  EXPECT_NE(rig.planner.status().phase, "watching for an offer");
+  EXPECT_TRUE(rig.planner.status().refusals.empty()) << rig.planner.status().refusals.front().reason;
+}
+
 TEST(ManipulationPlanner, AnOfferThatIsShiftedIsFollowedWhileTheArmMoves) {
   Rig rig;
   rig.moves = true;
