@@ -340,20 +340,27 @@ TEST(Controller, five_late_cycles_in_a_row_hold) {
   EXPECT_EQ(b.core.status().late_cycles, 9u);
 }
 
-TEST(Controller, a_collision_ahead_slows_and_then_holds) {
-  ControllerBench b;
-  b.start();
-  ASSERT_EQ(b.go_to(goal(), 4), "");
-  b.forecast.trajectory = 4;
-  b.forecast.collides = true;
-  b.forecast.time_to_collision = 1.3;
-  b.run(0.8);
-  EXPECT_EQ(b.core.mode(), Mode::slow);
-  EXPECT_NEAR(b.core.speed_factor(), 0.5, 0.02);
-  b.forecast.time_to_collision = 0.3;
-  b.run(1.2);
-  EXPECT_EQ(b.core.mode(), Mode::hold);
-  EXPECT_TRUE(b.at_rest());
+TEST(Controller, a_collision_ahead_slows_and_then_holds_at_an_exchange_too) {
+  for (const bool exchange : {false, true}) {
+    SCOPED_TRACE(exchange);
+    ControllerBench b;
+    b.start();
+    ActionStatus action;
+    action.exchange_engaged = exchange;
+    action.human = "anna";
+    b.core.on(action, b.now);
+    ASSERT_EQ(b.go_to(goal(), 4), "");
+    b.forecast.trajectory = 4;
+    b.forecast.collides = true;
+    b.forecast.time_to_collision = 1.3;
+    b.run(0.8);
+    EXPECT_EQ(b.core.mode(), Mode::slow);
+    EXPECT_NEAR(b.core.speed_factor(), 0.5, 0.02);
+    b.forecast.time_to_collision = 0.3;
+    b.run(1.2);
+    EXPECT_EQ(b.core.mode(), Mode::hold);
+    EXPECT_TRUE(b.at_rest());
+  }
 }
 
 TEST(Controller, override_and_advice_combine_by_the_least) {
