@@ -1,48 +1,24 @@
 // A person moved: how long until the running path leads around them, or until it is cheaper for them, against planning anew from where the
 // arm is. Jido beside its table; the person comes so near that something of the path is blocked (repair) or only dear (improve). One
 // process, alternating. Time of the thread. Usage: bench_live [cases]
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <functional>
 #include <random>
 
 #include "common/trajectory/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "tests/support/standing_person.hpp"
+#include "tests/support/thread_times.hpp"
 
 namespace handsel::path_planner {
 namespace {
 
+using test::seconds;
+using test::Times;
+
 constexpr unsigned kSeed = 20;
 constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
-
-struct Times {
-  std::vector<double> all;
-  void add(double t) { all.push_back(t); }
-  double at(double share) {
-    std::sort(all.begin(), all.end());
-    return all.empty() ? 0.0 : all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))] * 1e3;
-  }
-  void print(const char* what) {
-    std::printf("%-24s %4zu cases  median %7.2f  p95 %7.2f  p99 %7.2f  largest %7.2f ms\n", what, all.size(), at(0.5), at(0.95), at(0.99),
-                at(1));
-  }
-};
-
-/// Of this thread: others on the machine do not count.
-double seconds(const std::function<void()>& work) {
-  const auto now = [] {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  };
-  const double begin = now();
-  work();
-  return now() - begin;
-}
 
 int run(int cases) {
   const RobotModel robot = RobotModel::load(std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/robots/jido/jido.txtpb");

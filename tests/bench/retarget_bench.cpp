@@ -1,11 +1,8 @@
 // The receiver steps aside while the object is carried to them: how long until a trajectory leads to the new exchange point from the motion
 // that runs - choosing the point, the path, the soft motion, and what joins them - against stopping and planning anew from there. Jido; one
 // process, alternating. Time of the thread. Usage: bench_retarget [cases]
-#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <functional>
 #include <random>
 
 #include "common/config/located.hpp"
@@ -16,35 +13,17 @@
 #include "components/path_planner/live_path.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
 #include "tests/support/standing_person.hpp"
+#include "tests/support/thread_times.hpp"
 
 namespace handsel {
 namespace {
 
+using test::seconds;
+using test::Times;
+
 constexpr unsigned kSeed = 21;
 constexpr std::uint64_t kBudget = 10000;  // what a live request is given as shipped
 constexpr double kUnderWay = 0.4;         // share of the time of the carrying motion when it is left
-
-struct Times {
-  std::vector<double> all;
-  void add(double t) { all.push_back(t * 1e3); }
-  double at(double share) {
-    std::sort(all.begin(), all.end());
-    return all.empty() ? 0.0 : all[static_cast<std::size_t>(share * static_cast<double>(all.size() - 1))];
-  }
-  void print(const char* what) { std::printf("%-34s median %7.2f  p95 %7.2f  largest %7.2f ms\n", what, at(0.5), at(0.95), at(1)); }
-};
-
-/// Of this thread: others on the machine do not count.
-double seconds(const std::function<void()>& work) {
-  const auto now = [] {
-    timespec t{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  };
-  const double begin = now();
-  work();
-  return now() - begin;
-}
 
 int run(int cases) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
