@@ -18,7 +18,8 @@ class Pace {
     advised_ = period;
     advised_at_ = now;
   }
-  double period(TimePoint now) const { return now - advised_at_ > kHeard ? fastest_ : std::clamp(advised_, fastest_, slowest_); }
+  bool heard(TimePoint now) const { return now - advised_at_ <= kHeard; }  ///< advice that still holds
+  double period(TimePoint now) const { return heard(now) ? std::clamp(advised_, fastest_, slowest_) : fastest_; }
   bool due(TimePoint now) const { return !begun_ || to_seconds(now - done_) + slack_ >= period(now); }
   void done(TimePoint now) {
     begun_ = true;

@@ -58,11 +58,8 @@ double positive(const char* key, double value) {
   return value;
 }
 
-// Modelled time of the work done, from the counts: about what one core needs.
-Duration list_time(const GraspList& list) {
-  return from_seconds(3e-6 * static_cast<double>(list.finger_solutions) + 6e-6 * static_cast<double>(list.touch_tests) +
-                      12e-6 * static_cast<double>(list.closure_tests) + 10e-6 * static_cast<double>(list.frames));
-}
+// Modelled time of the work done, from the counts: about what one core needs. A list is read, as it is from an object's second day on.
+constexpr Duration kReadList = std::chrono::milliseconds(5);
 Duration regrasp_time(const RegraspAnswer& answer) {
   return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.judged) + 2e-4 * static_cast<double>(answer.listed));
 }
@@ -194,14 +191,14 @@ void Node::prepare(const Scene& scene) {
     for (const auto& each : books)
       prepare_by([book = each, model](const std::function<bool()>& cancelled) {
         const auto page = book->page(*model, cancelled);
-        return page ? list_time(page->list) : Duration{};
+        return page ? kReadList : Duration{};
       });
     if (!transfers_) continue;
     prepare_by([book = book_, transfers = transfers_, model](const std::function<bool()>& cancelled) {
       const auto page = book->page(*model, cancelled);
       const auto taken = page ? transfers->taker_page(*model, cancelled) : nullptr;
       const auto table = taken ? transfers->table(*model, *page, cancelled) : nullptr;
-      return table ? list_time(taken->list) + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs)) : Duration{};
+      return table ? kReadList + from_seconds(2e-6 * static_cast<double>(table->doubles().pairs)) : Duration{};
     });
   }
 }

@@ -46,6 +46,9 @@ bool slower_ahead(const Vector& before, const Vector& now, std::size_t legs, dou
   return false;
 }
 
+/// From speed it takes longer than from rest: it would go past where it joins, and come back.
+bool turns_back(const Switched& over, const Trajectory& to) { return over.ok() && over.trajectory.duration() > to.duration(); }
+
 }  // namespace
 
 /// From a state in motion onto the trajectory.
@@ -106,10 +109,13 @@ double ManipulationPlanner::cost_along(const Trajectory& trajectory, const Vecto
 
 /// Both ways as the arm would really go: what leads over to a path may leave out what makes it cheaper.
 void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const {
+  const double from_rest = ways.over->duration();
   if (!standing) {
     ways.over = lead_over(world, around, from, ways);
-    if (ways.along)
-      if (Switched along = join(from, *ways.along, ways); along.ok()) ways.along = std::move(along.trajectory);
+    if (ways.along) {
+      Switched along = join(from, *ways.along, ways);
+      if (along.ok() && !turns_back(along, *ways.along)) ways.along = std::move(along.trajectory);
+    }
   }
   if (!ways.over || !ways.along) return;
   cost_->set_people(around.people);
@@ -119,8 +125,9 @@ void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around&
   for (const Trajectory* way : {&*ways.over, &*ways.along})
     level = std::min(level, cost_at(way->at(way->duration()).position, around.posture));
   const double before = cost_along(*ways.along, around.posture, level),
-               gain = before > 0 ? 1 - cost_along(*ways.over, around.posture, level) / before : 0;
-  ways.worth = gain >= settings_.live_gain() && ways.over->duration() <= (1 + settings_.live_slower() * gain) * ways.along->duration();
+               saved = before > 0 ? around.cost_gain * (1 - cost_along(*ways.over, around.posture, level) / before) : 0;
+  const double longest = std::min(from_rest, (1 + settings_.live_slower() * saved) * ways.along->duration());
+  ways.worth = saved >= settings_.live_gain() && ways.over->duration() <= longest;
 }
 
 Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
@@ -221,14 +228,19 @@ Routine<Outcome> ManipulationPlanner::retime(Running& running, const Motion& mot
   auto ways = std::make_shared<Ways>();
   ways->over = reply.trajectory;
   ways->share = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
-  ways->reach = kRetimed;
+  Switched along;
+  along.trajectory = reply.trajectory;
+  for (const double reach : {kRetimed, settings_.live_reach()}) {
+    if (leave.standing) break;
+    ways->reach = reach;
+    along = join(leave.from, reply.trajectory, *ways);
+    if (along.ok() && !turns_back(along, reply.trajectory)) break;
+  }
+  if (!along.ok() || turns_back(along, reply.trajectory)) co_return Outcome::failure("the arm is too fast to go over");
   const double share = 1 - settings_.live_pace();
   if (!slower_ahead(running.speeds, reply.speeds, nodes.size() - 1, share)) {
-    if (!slower_ahead(reply.speeds, running.speeds, nodes.size() - 1, share)) co_return Outcome::failure("it would go as before");
-    std::optional<double> lasts = leave.standing ? reply.trajectory.duration() : std::optional<double>();
-    if (const Switched along = join(leave.from, reply.trajectory, *ways); !leave.standing && along.ok())
-      lasts = along.trajectory.duration();
-    if (!lasts || *lasts > share * leave.rest) co_return Outcome::failure("it would go as before");
+    const bool faster = slower_ahead(reply.speeds, running.speeds, nodes.size() - 1, share);
+    if (!faster || along.trajectory.duration() > share * leave.rest) co_return Outcome::failure("it would go as before");
   }
   Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
   co_return over;
@@ -241,7 +253,8 @@ Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& mo
   if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
   const std::function<void()> job = [this, ways, standing, from = leave.from, world = world_,
                                      around = Around{scene_, people_, layers_.at(waiting_.now()), attachment_, motion.allowed,
-                                                     RobotModel::with(posture(), arm_, leave.from.position)}] {
+                                                     RobotModel::with(posture(), arm_, leave.from.position),
+                                                     live_pace_.heard(waiting_.now()) ? cost_gain_ : 1.0}] {
     weigh(*ways, *world, around, from, standing);
   };
   Outcome worked = co_await work(job);

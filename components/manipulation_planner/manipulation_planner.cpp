@@ -381,7 +381,8 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   };
   const Motion* moving = &motion;
   const auto over = [this, ended, moving] {
-    return ended() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving) || takes_hold(moving->yields_to);
+    return ended() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving) || takes_hold(moving->yields_to) ||
+           room_is_made(*moving);
   };
   const bool live = settings_.live_period() > 0 && !motion.straight;
   for (bool done = false; !done;) {
@@ -394,12 +395,13 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
       motion.p_world_aim = status_.exchange_point = *shifted_to;
   }
   if (!ended()) {
-    const bool taken = takes_hold(motion.yields_to);
+    const bool taken = takes_hold(motion.yields_to), room_made = room_is_made(motion);
     Outcome blocked = Outcome::failure(taken             ? motion.yields_to + " takes hold of " + attachment_.object
                                        : strayed(motion) ? motion.aims_at + " was moved away"
                                                          : "the way is blocked: " + execution_->reason);
     blocked.too_near = too_near_;
     blocked.strayed = strayed(motion);
+    blocked.came_on = blocked.strayed && motion.follows && comes_on(taken_up_.giver);
     blocked.taken = taken;
     TrajectoryCommand stop;
     stop.id = ++commands_;
@@ -409,6 +411,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
       out_->trajectories.push_back(stop);
       co_await waiting_.pause(0.3);
     }
+    if (room_made) co_return Outcome{};
     co_return blocked;
   }
   if (execution_->trajectory != running.command) co_return Outcome::failure("the trajectory controller lost the trajectory");

@@ -45,6 +45,7 @@ struct Outcome {
   std::string reason;    ///< why not, one sentence
   bool too_near{false};  ///< because a person is so near that the controller lets it go no further
   bool strayed{false};   ///< because what it aimed at was moved
+  bool came_on{false};   ///< likewise, by a step toward the hand
   bool taken{false};     ///< because who is to have it takes hold of it already
   static Outcome failure(std::string why) { return {false, std::move(why), false, false, false}; }
 };
@@ -61,7 +62,10 @@ class ManipulationPlanner {
   void on(const Facts& facts) { facts_ = facts; }
   /// `sent`: when its writer sent the layer.
   void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
-  void on(const AttentionAdvice& advice, TimePoint now) { live_pace_.advise(advice.replan_period, now); }
+  void on(const AttentionAdvice& advice, TimePoint now) {
+    live_pace_.advise(advice.replan_period, now);
+    cost_gain_ = advice.cost_gain;
+  }
   void on(const ExecutionStatus& status);
   void on(const ActiveTrajectory& active);
   void on(const GraspReply& reply);
@@ -98,6 +102,8 @@ class ManipulationPlanner {
     std::string aims_at;                   // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
     Vector3 p_world_aim{Vector3::Zero()};
     double aim_slack{};
+    std::string makes_room_for;    // ends when this person offers what the goal is about ...
+    bool any_offer{};              // ... however little room they have
     std::optional<Grasp> follows;  // led before where that grasp is now, while it moves
   };
   struct PlannedPath {
@@ -157,6 +163,7 @@ class ManipulationPlanner {
   Routine<Outcome> keep_off_fingers(const std::string& object, const std::string& giver, std::vector<Grasp>& grasps);
   /// From the offered object with the hand opened, the way it came; the result is `why`.
   Routine<Outcome> draw_back(const std::string& object, const std::string& giver);
+  Routine<Outcome> step_back(const std::string& object, const std::string& giver);
   Routine<Outcome> back_off(const std::string& object, const std::string& giver, const Grasp& grasp, const Outcome& why);
   /// Who holds out what.
   struct Offer {
@@ -166,14 +173,16 @@ class ManipulationPlanner {
   Routine<std::optional<Offer>> watch_for_offer(const std::string& wanted, const std::string& giver, TimePoint patience);
   /// The arm at rest, or moved from there as little as gives room before this person, else as far as it goes; nearest to rest first.
   std::vector<Vector> postures_before(const Person&) const;
-  /// To one of these.
-  Routine<Outcome> make_room(const std::string& giver);
+  /// To one of these. `for_offer`: only until there is one.
+  Routine<Outcome> make_room(const std::string& giver, bool for_offer = false);
   /// How much farther than it must be hand and arm are, in this posture, from where this person would hold something out [m].
   double room_before(const Person&, const Vector& posture) const;
   bool crowds(const std::string& giver) const;
+  bool room_is_made(const Motion& motion) const;
   bool holds_out(const Person& who, const SceneObject& held) const;
   void watch_offer();
-  bool still_offered() const;  ///< what was taken up is held out, or was so just now
+  bool comes_on(const std::string& giver) const;  ///< a step toward the hand that is near what they hold
+  bool still_offered() const;                     ///< what was taken up is held out, or was so just now
   std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
   /// The grasp for where the object is now; nullopt: the arm does not reach it there.
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
@@ -267,7 +276,8 @@ class ManipulationPlanner {
     LayersNow layers;
     Attachment attachment;
     std::vector<std::string> allowed;
-    Vector posture;  // axes that are not the arm's
+    Vector posture;       // axes that are not the arm's
+    double cost_gain{1};  // what a share of the human-aware cost counts for more, as attention has it
   };
   void weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const;
   double cost_at(const Vector& q, const Vector& posture) const;
@@ -312,6 +322,7 @@ class ManipulationPlanner {
   int palm_;
   WayOut way_out_;
   Pace live_pace_;  // of looking at the motion that runs
+  double cost_gain_{1};
   std::uint64_t client_, requests_{0}, commands_;
   std::uint64_t jobs_started_{0}, jobs_done_{0};
 

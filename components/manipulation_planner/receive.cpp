@@ -32,12 +32,14 @@ constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a lon
 constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
 // More than `held_out` [m] and toward the robot or its hand by this cosine: held out by who was asked for it, though the arm is not
-// stretched. The second is less than `held_out`, and means it when nothing else has been offered for long. Farther out than kFarOut nothing
-// is kept, wherever that is.
+// stretched. The second is less than `held_out`, and means it when nothing else has been offered for long, or it is taken up already.
+// Farther out than kFarOut nothing is kept, wherever that is.
 constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kFarOut = 0.4, kTowardRobot = 0.7;
 // [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it
 // is.
 constexpr double kFlicker = 0.2, kDrawnBack = 0.6;
+// [m/s] Who comes on faster, before the hand, makes it step back by kStepBack [m]: what they hold would be pressed against it.
+constexpr double kComesOn = 0.35, kStepBack = 0.15;
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 const Vector3& torso_of(const Person& who) { return who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
@@ -48,7 +50,10 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
   const Vector3 out = level(held.T_world_object.translation() - torso_of(who));
   const bool fact = std::any_of(facts_.facts.begin(), facts_.facts.end(),
                                 [&](const Fact& f) { return f.kind == FactKind::offering && f.subject == who.id && f.object == held.id; });
-  if (fact) return out.norm() >= settings_.held_out();
+  // What is taken up is held out until it clearly is not.
+  const bool lenient = waited_long_ || (taken_up_.object == held.id && taken_up_.giver == who.id);
+  const double least = settings_.held_out() + (lenient ? -kBeforeBody : fact ? 0.0 : kBentArm);
+  if (fact) return out.norm() >= least;
   // Who was asked for it and holds it out toward the robot means it, with a bent arm too.
   const bool asked = goal_.human == who.id && goal_.object == held.id;
   const auto toward = [&out, &who](const Vector3& there) {
@@ -56,8 +61,6 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
     return out.dot(way) > kTowardRobot * out.norm() * way.norm();
   };
   if (asked && out.norm() > kFarOut) return true;
-  const bool taken_up = taken_up_.object == held.id && taken_up_.giver == who.id;
-  const double least = settings_.held_out() + (waited_long_ ? -kBeforeBody : taken_up ? 0.0 : kBentArm);
   return asked && out.norm() >= least && (toward(scene_.T_world_base.translation()) || toward(T_world_tool().translation()));
 }
 
@@ -80,8 +83,19 @@ std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std
   return std::nullopt;
 }
 
+bool ManipulationPlanner::comes_on(const std::string& giver) const {
+  const Person* who = person(giver);
+  const SceneObject* held = object(taken_up_.object);
+  if (who == nullptr || held == nullptr) return false;
+  const Vector3 p_hand = T_world_tool().translation();
+  const BodyJoint& torso = who->joints[static_cast<std::size_t>(body_joint_index("torso"))];
+  return (held->T_world_object.translation() - p_hand).norm() < kNear &&
+         torso.velocity.dot((p_hand - torso.position).stableNormalized()) > kComesOn;
+}
+
 bool ManipulationPlanner::strayed(const Motion& motion) const {
   if (motion.aims_at.empty()) return false;
+  if (motion.follows && comes_on(taken_up_.giver)) return true;
   const SceneObject* aim = object(motion.aims_at);
   if (aim == nullptr) return true;
   const double shifted = (aim->T_world_object.translation() - motion.p_world_aim).norm();
@@ -137,7 +151,7 @@ Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_fo
     waited_long_ = waited > kFirstOffer;
     if (!offer && !made_room && waited > kFirstOffer + kKeptStill && crowds(giver)) {
       made_room = true;
-      Outcome made = co_await make_room(giver);
+      Outcome made = co_await make_room(giver, true);
       if (!made.good) refuse("making room", made.reason);
       continue;
     }
@@ -164,13 +178,16 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps());
     if (!list.grasps.empty()) list.outcome = co_await keep_off_fingers(offer->object, offer->giver, list.grasps);
     if (!list.outcome.good || list.grasps.empty()) {
-      const SceneObject* held = object(offer->object);
-      if (held == nullptr || (held->T_world_object.translation() - p_asked).norm() > kMovedOn) continue;
+      const auto moved_on = [this, &offer, &p_asked] {
+        const SceneObject* held = object(offer->object);
+        return held == nullptr || (held->T_world_object.translation() - p_asked).norm() > kMovedOn;
+      };
+      if (moved_on()) continue;
       // Who is not come for holds it out elsewhere, nearer, or farther out where there is room.
       if (list.outcome.reason != last.reason) refuse("offer", list.outcome.reason);
       last = list.outcome;
       if (crowds(offer->giver)) co_await make_room(offer->giver);
-      co_await waiting_.pause(kAnotherTry);
+      co_await waiting_.until(moved_on, kAnotherTry);
       continue;
     }
     ++attempt;
@@ -227,6 +244,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     if (there = put_into_hand(); there) break;
     if (!last.good && !last.strayed) break;
     if (last.strayed) waited_long_ = false;
+    if (last.came_on) co_await step_back(object_id, giver);
     const auto drawn_back = [this] { return to_seconds(waiting_.now() - offered_at_) > kDrawnBack; };
     co_await waiting_.until([&] { return steady() || put_into_hand() || drawn_back(); }, settings_.sight_timeout());
     if (there = put_into_hand(); there) break;
@@ -272,10 +290,11 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   status_.phase = "grasp";
   at_offer_ = true;
   // What lies in the hand otherwise than planned is pressed on where the fingers are.
-  const Vector closing = put_into_hand() ? RobotModel::part(set_point_, robot_->require_group("hand")) : grasp->hand_joints;
+  const bool laid_in = put_into_hand();
+  const Vector closing = laid_in ? RobotModel::part(set_point_, robot_->require_group("hand")) : grasp->hand_joints;
   HandResult closed = co_await hand(HandAction::grasp, closing, settings_.hand_timeout(), &grasp->hand_effort);
-  if (!closed.outcome.good || closed.state != HandState::grasped) {
-    const Outcome why = closed.outcome.good ? Outcome::failure("the hand closed on nothing") : closed.outcome;
+  if (!closed.outcome.good || (closed.state != HandState::grasped && !laid_in)) {
+    const Outcome why = closed.outcome.good ? Outcome::failure("the hand did not get hold of it") : closed.outcome;
     moved = co_await back_off(object_id, giver, *grasp, why);
     co_return moved;
   }
@@ -378,6 +397,32 @@ Routine<Outcome> ManipulationPlanner::draw_back(const std::string& object_id, co
   Outcome drawn = co_await withdraw(giver, next);
   if (!drawn.good) refuse("drawing back", drawn.reason);
   co_return drawn;
+}
+
+/// At once, and only far enough to leave room for what they hold.
+Routine<Outcome> ManipulationPlanner::step_back(const std::string& object_id, const std::string& giver) {
+  const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
+  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+  const Vector start = posture();
+  Motion back;
+  back.phase = "stepping back";
+  back.straight = true;
+  back.allowed = {object_id, giver};
+  for (const Vector3& way : ways_out(giver)) {
+    Pose T = T_world_tool();
+    T.translation() += kStepBack * way;
+    const auto joints = reach(T);
+    if (!joints || !way_out_.leads_away(start, RobotModel::with(start, arm_, *joints), scene_.T_world_base, people_)) continue;
+    back.goals = {*joints};
+    PlannedPath planned = co_await plan_path(start, back);
+    if (!planned.outcome.good) continue;
+    status_.phase = back.phase;
+    Outcome stepped = co_await execute(planned.nodes, back);
+    co_return stepped;
+  }
+  Outcome none = Outcome::failure("no straight way leads off " + giver);
+  refuse("stepping back", none.reason);
+  co_return none;
 }
 
 Routine<Outcome> ManipulationPlanner::back_off(const std::string& object_id, const std::string& giver, const Grasp& grasp,

@@ -32,6 +32,11 @@ bool ManipulationPlanner::crowds(const std::string& id) const {
   return who != nullptr && room_before(*who, posture()) < -kCrowded;
 }
 
+bool ManipulationPlanner::room_is_made(const Motion& motion) const {
+  const std::string& who = motion.makes_room_for;
+  return !who.empty() && offered(goal_.object, who) && (motion.any_offer || !crowds(who));
+}
+
 std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) const {
   struct Place {
     Vector joints;
@@ -75,12 +80,14 @@ Routine<Outcome> ManipulationPlanner::go_to_rest() {
   co_return outcome;
 }
 
-Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver) {
+Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver, bool for_offer) {
   const Person* who = person(giver);
   if (who == nullptr) co_return Outcome::failure("nobody is in sight");
   Motion back;
   back.phase = "making room";
   back.goals = postures_before(*who);
+  back.makes_room_for = giver;
+  back.any_offer = for_offer;
   if (back.goals.empty()) co_return Outcome::failure("no posture of the arm lies farther back");
   Outcome made = co_await move(back);
   co_return made;

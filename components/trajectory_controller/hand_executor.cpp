@@ -7,7 +7,7 @@ namespace handsel::trajectory_controller {
 
 namespace {
 constexpr double kMinor = 0.2;  // of the largest effort: axes with less only hold
-}
+}  // namespace
 
 HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
                            const KinematicLimits& comfort, const KinematicLimits& stop, std::vector<char> sliding)
@@ -191,7 +191,8 @@ void HandExecutor::squeeze(const RobotState& robot, double dt) noexcept {
     f.held = f.target;
     f.grip = std::abs(f.effort) < kMinor * most_effort_ ? 0.0 : std::copysign(1.0, f.effort);
   }
-  state_ = pressing(robot) >= settings_.least_contacts ? HandState::grasped : HandState::empty;
+  const bool held = pressing(robot) >= settings_.least_contacts && (!person_near_ || pushes(robot));
+  state_ = held ? HandState::grasped : HandState::empty;
   phase_ = Phase::hold;
 }
 
@@ -224,6 +225,16 @@ int HandExecutor::pressing(const RobotState& robot) const noexcept {
     if (f.grip != 0.0 && f.grip * pressed(robot, i) > settings_.touch_effort / f.lever) ++count;
   }
   return count;
+}
+
+/// A finger that something keeps from what it should push on leaves the others unbalanced: only who else holds the object keeps it there.
+bool HandExecutor::pushes(const RobotState& robot) const noexcept {
+  for (std::size_t i = 0; i < fingers_.size(); ++i) {
+    const double effort = std::abs(fingers_[i].effort);
+    if (effort < settings_.squeeze_effort / fingers_[i].lever) continue;
+    if (std::copysign(1.0, fingers_[i].effort) * pressed(robot, i) < settings_.least_push * effort) return false;
+  }
+  return true;
 }
 
 void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
@@ -267,6 +278,7 @@ void HandExecutor::give_way(const RobotState& robot, double dt) noexcept {
 
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
   const RobotState& robot = *in.robot;
+  if (in.new_state) person_near_ = in.person_distance <= settings_.person_range;
   if (!in.may_move && !paused_) {
     paused_ = true;
     for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].mover.stop(limits(i, in.stop ? stop_ : comfort_, 1.0));

@@ -22,6 +22,7 @@ struct HandSettings {
   double squeeze_effort{0.5};  ///< of a command that names none, axis with the longest way [Nm]
   double squeeze_time{0.4};    ///< of the squeeze's growth, and of its decay when the hand opens [s]
   double settle_time{0.15};    ///< at rest for this long before the outcome is told [s]
+  double least_push{0.7};      ///< what a person holds too is grasped when axes with more than that push with this share of their effort
   int least_contacts{2};       ///< axes in contact that make a grasp; all of a hand that has fewer
   double lost_payload{0.02};   ///< payload once felt, now below this: lost [kg]
   double lost_time{0.3};       ///< for this long [s]
@@ -100,6 +101,7 @@ class HandExecutor {
   void give_way(const RobotState& robot, double dt) noexcept;
   void judge(const RobotState& robot, double payload, double dt) noexcept;
   int pressing(const RobotState& robot) const noexcept;
+  bool pushes(const RobotState& robot) const noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;
 
   HandSettings settings_;
@@ -109,7 +111,7 @@ class HandExecutor {
   std::vector<Finger> fingers_;
   Phase phase_{Phase::hold};
   HandState state_{HandState::idle};
-  bool paused_{}, payload_felt_{};
+  bool paused_{}, payload_felt_{}, person_near_{};
   double settled_for_{}, lost_for_{};
   double level_{}, most_effort_{};  // share of the squeeze in force; its largest effort
   Vector release_to_;

@@ -90,6 +90,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.squeeze_time = read(h.squeeze_time(), "squeeze_time", kTiny, 10);
   s.hand.settle_time = read(h.settle_time(), "settle_time", 0, 10);
   s.hand.least_contacts = static_cast<int>(read(h.least_contacts(), "least_contacts", 1, 100));
+  s.hand.least_push = read(h.least_push(), "least_push", 0, 1);
   s.hand.lost_payload = read(h.lost_payload(), "lost_payload", 0, 100);
   s.hand.lost_time = read(h.lost_time(), "lost_time", 0, 10);
   s.hand.loosen_share = read(h.loosen_share(), "loosen_share", 0, 1);

@@ -95,6 +95,7 @@ json line_of(const ListedGrasp& listed, const HandModel& hand) {
           {"pregrasp", open},
           {"contacts", contacts},
           {"epsilon", g.epsilon},
+          {"margin", g.margin},
           {"scores",
            {{"stability", listed.scores.stability},
             {"centre", listed.scores.centre},
