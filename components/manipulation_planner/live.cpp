@@ -19,7 +19,8 @@ constexpr double kReserve = 1.1;    // what a switch keeps of the limits it is g
 constexpr double kLook = 0.1;       // costs along a trajectory are looked at this often [s]
 constexpr double kEarly = 0.04;     // the command must be with the controller this long before it is due [s]
 
-constexpr double kRetimed = 0.3;  // the same path at another pace is joined at most this far from where it is, max norm [rad]
+// [rad, max norm] The same path at another pace is joined at most so far from where the arm is, or so much farther as it needs to brake.
+constexpr double kRetimed = 0.3, kFarther = 0.1;
 
 constexpr double kStepAside = 0.1;     // a receiver who moved less is where they were [m]
 constexpr double kWorthMoving = 0.05;  // an exchange posture is kept until another costs less by this
@@ -230,8 +231,7 @@ Routine<Outcome> ManipulationPlanner::retime(Running& running, const Motion& mot
   ways->share = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
   Switched along;
   along.trajectory = reply.trajectory;
-  for (const double reach : {kRetimed, settings_.live_reach()}) {
-    if (leave.standing) break;
+  for (double reach = kRetimed; !leave.standing && reach <= settings_.live_reach(); reach += kFarther) {
     ways->reach = reach;
     along = join(leave.from, reply.trajectory, *ways);
     if (along.ok() && !turns_back(along, reply.trajectory)) break;

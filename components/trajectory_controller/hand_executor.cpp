@@ -231,7 +231,7 @@ int HandExecutor::pressing(const RobotState& robot) const noexcept {
 bool HandExecutor::pushes(const RobotState& robot) const noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const double effort = std::abs(fingers_[i].effort);
-    if (effort < settings_.squeeze_effort / fingers_[i].lever) continue;
+    if (effort <= settings_.squeeze_effort / fingers_[i].lever) continue;
     if (std::copysign(1.0, fingers_[i].effort) * pressed(robot, i) < settings_.least_push * effort) return false;
   }
   return true;

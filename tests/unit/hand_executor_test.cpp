@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <random>
 
@@ -41,7 +42,7 @@ class HandTest : public testing::Test {
         const double before = robot_.position[i];
         robot_.position[i] = std::min(out_.position[i] + hand_.effort(i) / kStiffness, block_[static_cast<std::size_t>(i)]);
         robot_.velocity[i] = (robot_.position[i] - before) / kDt;
-        robot_.effort[i] = kStiffness * (out_.position[i] - robot_.position[i]) + hand_.effort(i);
+        robot_.effort[i] = jammed_[static_cast<std::size_t>(i)] * (kStiffness * (out_.position[i] - robot_.position[i]) + hand_.effort(i));
       }
       HandInputs in;
       in.robot = &robot_;
@@ -64,6 +65,7 @@ class HandTest : public testing::Test {
   MotionState3 out_;
   RobotState robot_;
   std::vector<double> block_;
+  std::array<double, 4> jammed_{1, 1, 1, 1};  // share of the effort that reaches the object
   Vector3 force_{0, 0, -3.0};
   double person_distance_{0.1};
   bool may_move_{true};
@@ -203,6 +205,26 @@ TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_
   EXPECT_DOUBLE_EQ(hand_.effort(1), 0.0);
   run(1.5);
   EXPECT_EQ(hand_.state(), HandState::released);
+}
+
+TEST_F(HandTest, what_a_person_holds_too_is_grasped_only_when_every_finger_pushes_as_it_should) {
+  const auto squeeze = [this](double person_distance) {
+    command(HandAction::release, 0.0);
+    run(2.0);
+    person_distance_ = person_distance;
+    jammed_ = {1.0, 1.0, 0.3, 1.0};
+    block_ = {0.5, 0.5, 0.5, 0.5};
+    HandCommand c;
+    c.action = HandAction::grasp;
+    c.position = Vector::Constant(4, 0.5);
+    c.effort = Eigen::Vector4d(1.2, 1.2, 1.2, 0.3);
+    ASSERT_EQ(hand_.accept(c), "");
+    run(2.5);
+  };
+  squeeze(0.1);
+  EXPECT_EQ(hand_.state(), HandState::empty) << "one finger pushes with a third of its effort: it lies against something else";
+  squeeze(10.0);
+  EXPECT_EQ(hand_.state(), HandState::grasped) << "nobody else keeps it where it is: it has come to rest in the hand";
 }
 
 TEST_F(HandTest, closing_on_nothing_is_empty) {

@@ -115,8 +115,13 @@ TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave
   rig.q[rig.robot->require_group("arm").axes[0]] += 2.2;
   rig.start(ActionKind::go_to);
   const auto left = [&] { return rig.way.duration() - rig.along; };
+  const int turning = rig.robot->require_group("arm").axes[0];
   const auto runs = [&](double duration) {
-    for (double t = 0; t < duration && (rig.way.size() == 0 || left() > 0.02); t += 0.02) rig.cycle();
+    for (double t = 0; t < duration && (rig.way.size() == 0 || left() > 0.02); t += 0.02) {
+      const double at = rig.q[turning];
+      rig.cycle();
+      EXPECT_LT(rig.q[turning], at + 1e-6) << "the arm turned back";
+    }
   };
   runs(1.0);
   EXPECT_EQ(rig.commands.size(), 1u);
@@ -127,13 +132,13 @@ TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave
   runs(0.6);
   const auto& counts = rig.planner.live_counts();
   ASSERT_EQ(rig.commands.size(), 2u) << counts.looks << " looks, " << counts.refused << " refused";
-  EXPECT_GT(left() + 0.6, before + 0.4);
+  EXPECT_GT(left() + 0.6, before + 0.15);
   rig.share = 0.97;  // and has gone
   const double slow = left();
-  EXPECT_GT(slow, 2) << "the test needs a longer way";
+  EXPECT_GT(slow, 1.5) << "the test needs a longer way";
   runs(0.6);
   ASSERT_EQ(rig.commands.size(), 3u) << counts.looks << " looks, " << counts.refused << " refused";
-  EXPECT_LT(left() + 0.6, slow - 0.2);
+  EXPECT_LT(left() + 0.6, slow - 0.08);
   EXPECT_EQ(rig.planner.live_counts().retimed, 2u);
   for (const double jump : rig.jumps) EXPECT_LT(jump, 1e-9);
   runs(20);

@@ -141,6 +141,44 @@ TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
   EXPECT_EQ(rig.planner.status().refusals.back().reason, "anna has drawn mug back");
 }
 
+TEST(ManipulationPlanner, WhoStepsTowardTheHandThatIsNearIsSteppedBackFrom) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  rig.scene.objects[0].T_world_object.translation() = rig.tool().translation() + Vector3(0.35, 0, 0);
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  const auto step = [&rig](double speed) {
+    for (BodyJoint& joint : rig.people.people.front().joints) joint.velocity = {-speed, 0, 0};
+    for (int i = 0; i < 5; ++i) rig.cycle();
+  };
+  step(0.2);
+  EXPECT_EQ(rig.planner.status().phase, "approach") << "they only sway";
+  EXPECT_EQ(rig.phases, std::vector<std::string>{"approach"});
+  step(1.0);
+  step(0.0);
+  rig.run_until("reaching the object");
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "stepping back"), 1);
+  EXPECT_EQ(rig.planner.status().phase, "reaching the object") << "it comes again: " << rig.planner.status().reason;
+}
+
+TEST(ManipulationPlanner, RoomIsMadeOnlyUntilThereIsAnOffer) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.02;
+  rig.scene.objects[0].holder = Holder::human;
+  rig.scene.objects[0].holder_id = "anna";
+  rig.draw_back();
+  rig.start(ActionKind::receive);
+  rig.run_until("making room");
+  ASSERT_EQ(rig.planner.status().phase, "making room");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  rig.hold_out();
+  for (int i = 0; i < 50 && rig.planner.status().phase == "making room"; ++i) rig.cycle();
+  EXPECT_NE(rig.planner.status().phase, "making room") << "it goes all the way though she waits";
+}
+
 TEST(ManipulationPlanner, WhereFingersAreInTheWayOfTheHandItDoesNotGo) {
   Rig rig;
   rig.hold_out();
