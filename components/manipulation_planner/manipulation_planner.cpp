@@ -380,8 +380,10 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
            (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
   };
   const Motion* moving = &motion;
-  const auto over = [this, ended, moving] {
-    return ended() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving) || takes_hold(moving->yields_to) ||
+  const TimePoint began = waiting_.now();
+  const auto late = [this, began, moving] { return to_seconds(waiting_.now() - began) > moving->patience; };
+  const auto over = [this, ended, late, moving] {
+    return ended() || late() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving) || takes_hold(moving->yields_to) ||
            room_is_made(*moving);
   };
   const bool live = settings_.live_period() > 0 && !motion.straight;
@@ -399,7 +401,8 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     Outcome blocked = Outcome::failure(taken             ? motion.yields_to + " takes hold of " + attachment_.object
                                        : strayed(motion) ? motion.aims_at + " was moved away"
                                                          : "the way is blocked: " + execution_->reason);
-    blocked.too_near = too_near_;
+    blocked.too_near = too_near_ && !late();
+    blocked.late = late();
     blocked.strayed = strayed(motion);
     blocked.came_on = blocked.strayed && motion.follows && comes_on(taken_up_.giver);
     blocked.taken = taken;
@@ -432,7 +435,7 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
     PlannedPath planned = co_await plan_path(start, motion);
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
-      if (last.good || last.strayed || last.taken) co_return last;
+      if (last.good || last.strayed || last.taken || last.late) co_return last;
       const Person* in_the_way = last.too_near ? person("") : nullptr;
       if (in_the_way != nullptr) {
         refuse(motion.phase, last.reason);

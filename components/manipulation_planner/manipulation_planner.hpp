@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +47,7 @@ struct Outcome {
   bool too_near{false};  ///< because a person is so near that the controller lets it go no further
   bool strayed{false};   ///< because what it aimed at was moved
   bool came_on{false};   ///< likewise, by a step toward the hand
+  bool late{false};      ///< it took longer than it may
   bool taken{false};     ///< because who is to have it takes hold of it already
   static Outcome failure(std::string why) { return {false, std::move(why), false, false, false}; }
 };
@@ -102,9 +104,10 @@ class ManipulationPlanner {
     std::string aims_at;                   // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
     Vector3 p_world_aim{Vector3::Zero()};
     double aim_slack{};
-    std::string makes_room_for;    // ends when this person offers what the goal is about ...
-    bool any_offer{};              // ... however little room they have
-    std::optional<Grasp> follows;  // led before where that grasp is now, while it moves
+    double patience{std::numeric_limits<double>::infinity()};  // given up when it takes longer [s]
+    std::string makes_room_for;                                // ends when this person offers what the goal is about ...
+    bool any_offer{};                                          // ... however little room they have
+    std::optional<Grasp> follows;                              // led before where that grasp is now, while it moves
   };
   struct PlannedPath {
     Outcome outcome;

@@ -26,6 +26,8 @@ constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 // [rad, sum of max norms] Who waits does not watch an arm go all around: the way is no longer than so many times the straight one and the
 // second, which each attempt gives again ...
 constexpr double kDetour = 1.3, kMoreThan = 1.0;
+constexpr double kApproachPatience = 10,
+                 kReachPatience = 5;   // [s] where people leave so little room that the arm creeps, another way is tried
 constexpr double kThink = 0.6;         // [s] of a way to one grasp, before the next is tried
 constexpr double kSameWay = 0.5;       // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
 constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a long way is better than none
@@ -38,8 +40,9 @@ constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kFarOut = 0.4, kTowardRobo
 // [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it
 // is.
 constexpr double kFlicker = 0.2, kDrawnBack = 0.6;
-// [m/s] Who comes on faster, before the hand, makes it step back by kStepBack [m]: what they hold would be pressed against it.
-constexpr double kComesOn = 0.35, kStepBack = 0.15;
+// [m/s] Who comes on faster before the hand, or so near [m] holds something into it, makes it step back by kStepBack [m]: what they hold
+// would be pressed against the fingers.
+constexpr double kComesOn = 0.35, kAtFingers = 0.4, kStepBack = 0.15;
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 const Vector3& torso_of(const Person& who) { return who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
@@ -87,10 +90,11 @@ bool ManipulationPlanner::comes_on(const std::string& giver) const {
   const Person* who = person(giver);
   const SceneObject* held = object(taken_up_.object);
   if (who == nullptr || held == nullptr) return false;
-  const Vector3 p_hand = T_world_tool().translation();
+  const Vector3 p_hand = T_world_tool().translation(), p_held = held->T_world_object.translation();
+  const auto toward_hand = [&p_hand](const Vector3& p, const Vector3& v) { return v.dot((p_hand - p).stableNormalized()) > kComesOn; };
   const BodyJoint& torso = who->joints[static_cast<std::size_t>(body_joint_index("torso"))];
-  return (held->T_world_object.translation() - p_hand).norm() < kNear &&
-         torso.velocity.dot((p_hand - torso.position).stableNormalized()) > kComesOn;
+  const double apart = (p_held - p_hand).norm();
+  return (apart < kNear && toward_hand(torso.position, torso.velocity)) || (apart < kAtFingers && toward_hand(p_held, held->velocity));
 }
 
 bool ManipulationPlanner::strayed(const Motion& motion) const {
@@ -272,6 +276,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     reach_object.aims_at = object_id;
     reach_object.p_world_aim = status_.exchange_point = object(object_id)->T_world_object.translation();
     reach_object.aim_slack = settings_.aim_slack();
+    reach_object.patience = kReachPatience;
     at_offer_ = true;
     last = co_await move(reach_object);
     there = last.good;
@@ -340,6 +345,7 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
   approach.p_world_aim = object(object_id)->T_world_object.translation();
   approach.aim_slack = settings_.approach_slack();
   approach.follows = grasp;
+  approach.patience = kApproachPatience;
   if (attempt > kHurried) return approach;
   approach.think = kThink;
   approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + attempt * kMoreThan;
