@@ -27,9 +27,11 @@ constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 // second, which each attempt gives again ...
 constexpr double kDetour = 1.3, kMoreThan = 1.0;
 constexpr double kApproachPatience = 10,
-                 kReachPatience = 5;   // [s] where people leave so little room that the arm creeps, another way is tried
-constexpr double kThink = 0.6;         // [s] of a way to one grasp, before the next is tried
-constexpr double kSameWay = 0.5;       // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
+                 kReachPatience = 5;  // [s] where people leave so little room that the arm creeps, another way is tried
+constexpr double kThink = 0.6;        // [s] of a way to one grasp, before the next is tried
+constexpr double kSameWay = 0.5;      // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
+// A grasp of less than this epsilon is taken where it saves so long a way [rad]: what is held by luck slips as it is carried.
+constexpr double kWeak = 0.03, kForStrength = 1.5;
 constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a long way is better than none
 constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
@@ -195,9 +197,10 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       continue;
     }
     ++attempt;
-    // Who holds something out does not wait long: what the arm is at sooner comes first.
+    // Who holds something out does not wait long: what the arm is at sooner comes first, unless it is a weak grasp.
     const auto way = [this](const Grasp& g) {
-      return std::floor((g.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() / kSameWay);
+      const double farther = g.epsilon < kWeak ? kForStrength : 0.0;
+      return std::floor(((g.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + farther) / kSameWay);
     };
     std::stable_sort(list.grasps.begin(), list.grasps.end(), [&way](const Grasp& a, const Grasp& b) { return way(a) < way(b); });
     if (std::all_of(list.grasps.begin(), list.grasps.end(), [&](const Grasp& g) { return did_not_hold.count(g.id) > 0; }))
