@@ -78,7 +78,8 @@ export interface AttentionAdvice {
   replan_period: number;
 }
 
-export interface TaskStatus { id: bigint; kind: number; state: number; plan: string[]; step: number; reason: string }
+export interface PlanStep { text: string; depth: number; state: number; reason: string }
+export interface TaskStatus { id: bigint; kind: number; state: number; plan: string[]; step: number; reason: string; tree: PlanStep[] }
 export interface ActionStatus {
   kind: number;
   state: number;

@@ -47,6 +47,8 @@ function rows(id: string, cells: Cell[][]): void {
   });
 }
 
+const kDeepest = 6; // that the tree of a plan is indented
+
 export class Panels {
   constructor(private readonly link: Link, private readonly axes: string[]) {}
 
@@ -100,8 +102,11 @@ export class Panels {
     byId("task-state").dataset.state = state;
     const running = action && link.word("ActionState", action.state) === "running";
     put("phase", running ? action.phase : "");
-    const marks = (i: number): string => (!task ? "" : i < task.step || state === "succeeded" ? "done" : i === task.step ? (state === "running" ? "now" : state) : "later");
-    rows("plan", (task?.plan ?? []).map((text, i) => [{ text: "", kind: `mark ${marks(i)}` }, { text, kind: marks(i) }]));
+    rows("plan", (task?.tree ?? []).map(({ text, depth, state, reason }) => {
+      const how = link.word("StepState", state);
+      const why = depth > 0 && reason ? ` (${reason})` : "";
+      return [{ text: "", kind: `mark ${how}` }, { text: text + why, kind: `${how} depth-${Math.min(depth, kDeepest)}` }];
+    }));
     const held = action?.holding ? `holding ${action.object}` : "";
     const engaged = action?.exchange_engaged ? `${action.human} takes it` : "";
     put("task-note", [held, engaged, task?.reason ?? ""].filter(Boolean).join(" · "));
