@@ -92,7 +92,14 @@ test("while it hands over, the angles drawn are those on DDS at the same stamp, 
 
 test("at rest the angles drawn and written are those on DDS", async () => {
   await until(page, () => document.querySelector("#task-state").textContent === "succeeded" && document.querySelector("#speed").textContent === "at rest");
-  assert.deepEqual(await page.$$eval("#plan td:last-child", (cells) => cells.map((cell) => cell.textContent)), ["pick mug for anna", "give mug to anna", "go to rest"]);
+  assert.deepEqual(await page.$$eval("#plan td:last-child", (cells) => cells.map((cell) => `${cell.className}: ${cell.textContent}`)), [
+    "done depth-0: give mug to somebody",
+    "done depth-1: give mug to anna",
+    "done depth-2: fetch mug",
+    "done depth-3: pick mug for anna",
+    "done depth-2: give mug to anna",
+    "done depth-2: go to rest",
+  ]);
   // The picture is drawn a little after what is written: it comes to rest after the words.
   await until(page, (most) => {
     const drawn = Object.values(window.handsel.angles), written = [...document.querySelectorAll("#joints tr")].map((row) => Number(row.lastElementChild.textContent));
