@@ -36,9 +36,9 @@ constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a lon
 constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
 constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
 // More than `held_out` [m] and toward the robot or its hand by this cosine: held out by who was asked for it, though the arm is not
-// stretched. The second is less than `held_out`, and means it when nothing else has been offered for long, or it is taken up already.
+// stretched. The second is less than `held_out`, and means it when nothing else has been offered for long, the third when it is taken up.
 // Farther out than kFarOut nothing is kept, wherever that is.
-constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kFarOut = 0.4, kTowardRobot = 0.7;
+constexpr double kBentArm = 0.02, kBeforeBody = 0.03, kDrawnIn = 0.015, kFarOut = 0.4, kTowardRobot = 0.7;
 // [s] An offer that is taken up may seem drawn back for so long, as what is measured trembles about its bounds; longer than the second, it
 // is.
 constexpr double kFlicker = 0.2, kDrawnBack = 0.6;
@@ -56,8 +56,8 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
   const bool fact = std::any_of(facts_.facts.begin(), facts_.facts.end(),
                                 [&](const Fact& f) { return f.kind == FactKind::offering && f.subject == who.id && f.object == held.id; });
   // What is taken up is held out until it clearly is not.
-  const bool lenient = waited_long_ || (taken_up_.object == held.id && taken_up_.giver == who.id);
-  const double least = settings_.held_out() + (lenient ? -kBeforeBody : fact ? 0.0 : kBentArm);
+  const bool taken_up = taken_up_.object == held.id && taken_up_.giver == who.id;
+  const double least = settings_.held_out() + (waited_long_ ? -kBeforeBody : taken_up ? -kDrawnIn : fact ? 0.0 : kBentArm);
   if (fact) return out.norm() >= least;
   // Who was asked for it and holds it out toward the robot means it, with a bent arm too.
   const bool asked = goal_.human == who.id && goal_.object == held.id;
@@ -211,7 +211,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       if (last.good) co_return last;
       refuse("grasp " + std::to_string(grasp.id), last.reason);
       if (!last.strayed) did_not_hold.insert(grasp.id);
-      if (last.strayed || !offered(offer->object, offer->giver)) break;
+      if (last.strayed || last.late || !offered(offer->object, offer->giver)) break;
     }
     // Who has drawn it back offers it anew where the hand leaves room for it; and from farther back other ways lead to what is held out.
     const bool again = attempt < settings_.receive_attempts() && (still_offered() ? !last.strayed : crowds(offer->giver));
