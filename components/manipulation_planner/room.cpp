@@ -12,7 +12,6 @@ namespace {
 // [m] The waiting hand keeps so far, level, from where a person would hold something out comfortably: nobody puts it into a hand that is
 // there already; the arm keeps the second. Less room by more than the third makes it draw back.
 constexpr double kRoom = 0.55, kArmRoom = 0.35, kCrowded = 0.05;
-constexpr double kAlike = 0.02;       // [m] of room
 constexpr std::size_t kPostures = 6;  // to wait in that are looked for
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
@@ -64,8 +63,6 @@ std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) cons
     return enough ? a.from_rest < b.from_rest : a.room > b.room;
   });
   if (places.size() > kPostures) places.resize(kPostures);
-  // All are goals of one path, and it leads to the nearest: what leaves less room than there could be is none.
-  while (!places.empty() && places.back().room < std::min(0.0, places.front().room) - kAlike) places.pop_back();
   std::vector<Vector> out;
   for (Place& place : places) out.push_back(std::move(place.joints));
   return out;
