@@ -6,16 +6,24 @@
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "common/wire/message_type.hpp"
 
 namespace handsel::test {
 
+/// A domain of this process alone, without a network: no port of the machine is needed, none can be taken.
+inline dds_entity_t participant_without_network() {
+  constexpr dds_domainid_t kDomain = 200;
+  static const dds_entity_t domain =
+      dds_create_domain(kDomain, "<CycloneDDS><Domain><General><Transport>none</Transport></General></Domain></CycloneDDS>");
+  EXPECT_GT(domain, 0) << dds_strretcode(domain);
+  return dds_create_participant(kDomain, nullptr, nullptr);
+}
+
 /// A sample of the IDL struct, written and read back through DDS: the bytes of its CDR form; 0 when that fails.
 inline std::size_t cdr_size(const MessageType& type, const void* wire) {
-  const dds_entity_t participant = dds_create_participant(100 + static_cast<dds_domainid_t>(getpid()) % 100, nullptr, nullptr);
-  EXPECT_GT(participant, 0);
+  const dds_entity_t participant = participant_without_network();
+  EXPECT_GT(participant, 0) << dds_strretcode(participant);
   dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   const auto* descriptor = static_cast<const dds_topic_descriptor_t*>(type.descriptor());
