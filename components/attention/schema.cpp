@@ -35,6 +35,7 @@ class Search : public Schema {
     if (seen || !started_) last_seen_ = now;
     started_ = true;
     searching_ = !seen;
+    if (seen) return kInfinity;
     const double since = to_seconds(now - last_seen_);
     if (w.active) {
       const double angle = 0.9 * std::sin(0.6 * since);
