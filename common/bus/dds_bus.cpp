@@ -382,8 +382,8 @@ const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::fu
   return reader->intake.status();
 }
 
-std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type) {
-  const Qos qos = observer_qos(type.row());
+std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type, RawDepth depth) {
+  const Qos qos = depth == RawDepth::many ? recorder_qos(type.row()) : observer_qos(type.row());
   return std::make_unique<DdsRawReader>(
       need(dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr), std::string("reader of ") + type.row().topic));
 }

@@ -58,7 +58,7 @@ class DdsBus : public Bus, public RawBus {
   const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
                                           const SubscribeOptions& options) override;
   Duration lag_any(const MessageType& type) const override;
-  std::unique_ptr<RawReader> read_raw(const MessageType& type) override;
+  std::unique_ptr<RawReader> read_raw(const MessageType& type, RawDepth depth = RawDepth::newest) override;
   std::uint32_t domain() const override;
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) override;
   void after(Duration delay, std::function<void(TimePoint)> on_time) override;

@@ -120,6 +120,7 @@ struct LocalNetwork::Impl {
   std::map<std::string, std::size_t, std::less<>> foreign;  // topic -> index
   bool metered{false}, hashed{false}, at_work{false};
   std::uint64_t outputs{kHashBasis};
+  std::function<void(const MessageType&, const void*, Stamp)> tapped;
 
   explicit Impl(const LocalNetworkSettings& s) : settings(s), random(mix(s.seed)) {}
 
@@ -255,6 +256,7 @@ class LocalPublisher final : public AnyPublisher {
     }
     ++writer_->sent;
     if (net_.hashed) net_.take_down(*writer_->type, sample.get());
+    if (net_.tapped) net_.tapped(*writer_->type, sample.get(), bus.stamp_now());
     net_.send(*writer_, sample);
     return true;
   }
@@ -474,6 +476,7 @@ std::vector<LocalNetwork::Endpoint> LocalNetwork::endpoints() const {
 
 void LocalNetwork::meter() { impl_->metered = true; }
 void LocalNetwork::hash_outputs() { impl_->hashed = true; }
+void LocalNetwork::tap(std::function<void(const MessageType&, const void*, Stamp)> on_sample) { impl_->tapped = std::move(on_sample); }
 std::uint64_t LocalNetwork::output_hash() const { return impl_->outputs; }
 
 double LocalNetwork::cpu(const std::string& component) const { return impl_->find(component).cpu_; }

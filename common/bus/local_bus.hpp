@@ -56,6 +56,8 @@ class LocalNetwork {
   /// From now on every value that is sent, and when, goes into one number: equal numbers, equal runs.
   void hash_outputs();
   std::uint64_t output_hash() const;
+  /// From now on calls with every sample that is sent, in its IDL struct, and when. What it does enters nothing that is computed here.
+  void tap(std::function<void(const MessageType&, const void* wire, Stamp sent)> on_sample);
 
   /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after the lease.
   void kill(const std::string& component);

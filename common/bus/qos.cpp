@@ -142,6 +142,14 @@ Qos observer_qos(const TopicRow& row) {
   return qos;
 }
 
+Qos recorder_qos(const TopicRow& row) {
+  constexpr int kMany = 256;
+  Qos qos = observer_qos(row);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, kMany);
+  dds_qset_resource_limits(qos.get(), kInstances * kMany, kInstances, kMany);
+  return qos;
+}
+
 Qos writer_qos(const TopicRow& row, int strength) {
   const Meaning m = meaning(row.profile);
   Qos qos = common(row);

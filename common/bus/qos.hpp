@@ -21,6 +21,8 @@ inline constexpr dds_duration_t kHealthLease = DDS_MSECS(300);
 Qos reader_qos(const TopicRow& row);
 /// Of a reader that must not hold up a writer, however slow or stopped it is: nothing is kept for it beyond the last samples.
 Qos observer_qos(const TopicRow& row);
+/// As observer_qos, for who wants all there is: the last 256 of each instance are kept.
+Qos recorder_qos(const TopicRow& row);
 /// `strength` is used on topics with exclusive ownership.
 Qos writer_qos(const TopicRow& row, int strength);
 Qos topic_qos(const TopicRow& row);

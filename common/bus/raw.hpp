@@ -17,8 +17,14 @@ struct RawSample {
   std::vector<std::uint8_t> cdr;  ///< the serialised sample with its encapsulation header; well-formed, its values not judged
 };
 
-/// Reads one topic until it is destroyed. It never holds up a writer: requests and replies are read best-effort, and what is not
-/// taken in time gives way to what is newer (the last 64 of a queue, the last 1 or 8 of each instance elsewhere).
+/// What waits for a raw reader that does not take it: it never holds up a writer, so requests and replies are read best-effort, and what
+/// is not taken in time gives way to what is newer.
+enum class RawDepth {
+  newest,  ///< the last 64 of a queue, the last 1 or 8 of each instance elsewhere: for viewers
+  many,    ///< the last 256 of each instance: for recordings
+};
+
+/// Reads one topic until it is destroyed.
 class RawReader {
  public:
   virtual ~RawReader() = default;
@@ -31,7 +37,7 @@ class RawBus {
  public:
   virtual ~RawBus() = default;
   /// On the bus's own thread; the bus must outlive the reader. Throws MissingError when the transport refuses.
-  virtual std::unique_ptr<RawReader> read_raw(const MessageType& type) = 0;
+  virtual std::unique_ptr<RawReader> read_raw(const MessageType& type, RawDepth depth = RawDepth::newest) = 0;
   virtual std::uint32_t domain() const = 0;
 };
 

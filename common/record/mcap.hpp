@@ -13,16 +13,16 @@
 namespace handsel::mcap {
 
 struct Channel {
-  std::string topic;             ///< "handsel/robot_state"
-  std::string encoding;          ///< of messages: "cdr"
-  std::string schema_name;       ///< "handsel::RobotState"
-  std::string schema_encoding;   ///< "omgidl"
-  std::string schema;            ///< its text
+  std::string topic;            ///< "handsel/robot_state"
+  std::string encoding;         ///< of messages: "cdr"
+  std::string schema_name;      ///< "handsel::RobotState"
+  std::string schema_encoding;  ///< "omgidl"
+  std::string schema;           ///< its text
 };
 
 struct Message {
-  std::uint16_t channel{};          ///< place in the list of channels
-  std::int64_t time{};              ///< when it was written [ns, system clock], >= 0
+  std::uint16_t channel{};  ///< place in the list of channels
+  std::int64_t time{};      ///< when it was written [ns, system clock], >= 0
   std::vector<std::uint8_t> data;
 };
 
@@ -53,9 +53,9 @@ class Writer {
   std::filesystem::path file_;
   std::ofstream out_;
   std::uint64_t written_{}, messages_{};
-  std::string announced_;   // the records of schemas and channels, which stand in front and in the summary
+  std::string announced_;  // the records of schemas and channels, which stand in front and in the summary
   std::string metadata_index_;
-  std::string chunk_;       // records of the chunk that is being filled
+  std::string chunk_;                                                                    // records of the chunk that is being filled
   std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;  // of the chunk: time and offset
   std::vector<ChunkPlace> chunks_;
   std::vector<std::uint64_t> counts_;

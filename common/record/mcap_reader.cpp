@@ -125,7 +125,8 @@ void Reader::take(const Record& record) {
       fields.number<std::uint32_t>();
       message.time = static_cast<std::int64_t>(fields.number<std::uint64_t>());
       fields.number<std::uint64_t>();
-      if (!channels_.contains(message.channel)) damaged(record.at, "a message of channel " + std::to_string(message.channel) + ", which was not announced");
+      if (!channels_.contains(message.channel))
+        damaged(record.at, "a message of channel " + std::to_string(message.channel) + ", which was not announced");
       if (message.time < 0) damaged(record.at, "a message from after the year 2262");
       message.data.assign(fields.rest().begin(), fields.rest().end());
       waiting_.push_back(std::move(message));
@@ -152,7 +153,8 @@ void Reader::take_chunk(const Record& record) {
   const std::string_view records = fields.part(fields.number<std::uint64_t>());
   if (fields.short_of()) damaged(record.at, "a chunk is shorter than its fields");
   if (!compression.empty())
-    damaged(record.at, "a chunk compressed with " + std::string(compression) + "; `mcap compress --compression none` makes it readable here");
+    damaged(record.at,
+            "a chunk compressed with " + std::string(compression) + "; `mcap compress --compression none` makes it readable here");
   if (crc != 0 && crc != crc32(records)) damaged(record.at, "a chunk is damaged: its checksum does not fit");
   Record inner;
   for (std::size_t at = 0; at < records.size();) {

@@ -36,6 +36,7 @@ class MessageType {
   /// IDL -> domain, validated; `message` is reused and undefined after a rejection.
   virtual bool from_wire(const void* wire, void* message, std::string& why) const = 0;
   virtual Stamp stamp(const void* wire) const = 0;
+  virtual void set_stamp(void* wire, Stamp stamp) const = 0;
   /// Value of the key field; empty for topics without key.
   virtual std::string_view key(const void* wire) const = 0;
   virtual std::string to_json(const void* message) const = 0;

@@ -57,6 +57,7 @@ class DescribedType final : public MessageType {
     return io.ok();
   }
   Stamp stamp(const void* wire) const override { return static_cast<const W*>(wire)->stamp; }
+  void set_stamp(void* wire, Stamp stamp) const override { static_cast<W*>(wire)->stamp = stamp; }
   std::string_view key(const void* wire) const override { return key_ ? key_(*static_cast<const W*>(wire)) : std::string_view(); }
   std::string to_json(const void* message) const override {
     std::string out;

@@ -237,6 +237,7 @@ class RosType final : public MessageType {
     return false;
   }
   Stamp stamp(const void* wire) const override { return stamp_in(*static_cast<const W*>(wire)); }
+  void set_stamp(void*, Stamp) const override {}
   std::string_view key(const void*) const override { return {}; }
   /// Of our own messages only; those of others have no viewer and no tests that walk them.
   std::string to_json(const void*) const override { return std::string("{\"type\":\"") + row_.type + "\"}"; }

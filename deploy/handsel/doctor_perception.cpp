@@ -49,6 +49,7 @@ class Lenient final : public MessageType {
     return good;
   }
   Stamp stamp(const void* wire) const override { return type_.stamp(wire); }
+  void set_stamp(void* wire, Stamp stamp) const override { type_.set_stamp(wire, stamp); }
   std::string_view key(const void* wire) const override { return type_.key(wire); }
   std::string to_json(const void* message) const override { return type_.to_json(message); }
   void leaves(void* wire, const std::function<void(const WireLeaf&)>& visit) const override { type_.leaves(wire, visit); }

@@ -32,6 +32,7 @@ struct EvalOptions {
   int trials{10}, jobs{0};
   std::uint64_t seed{1};
   std::uint64_t replay{0};
+  std::string record;
   double timeout{0.0};
 };
 
@@ -166,6 +167,7 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
         trial.options.law = condition.law.empty() ? "as set" : condition.law;
         if (options.replay) {
           trial.options.hash_outputs = true;
+          trial.options.record = options.record;
           trial.options.on_event = [](double at, const std::string& text) { std::fprintf(stderr, "%8.3f s  %s\n", at, text.c_str()); };
         }
         trials.push_back(std::move(trial));
@@ -185,6 +187,7 @@ Periods mean_periods(const EvalOptions& options, const std::string& law) {
   EvalOptions pilot = options;
   pilot.shard.clear();
   pilot.replay = 0;
+  pilot.record.clear();
   const std::vector<Condition> adaptive{{"adaptive", "adaptive", law, std::make_shared<DerivedSettings>(law, "adaptive", Periods{})}};
   std::map<std::string, double> looks;
   double time = 0;
@@ -255,6 +258,7 @@ int evaluate(const EvalOptions& options) {
   if (!options.from.empty()) return report_files(options);
   if (options.replay && options.modes.size() * std::max<std::size_t>(1, options.laws.size()) > 1)
     throw ConfigError("--replay repeats one trial: name one mode and one law");
+  if (!options.record.empty() && !options.replay) throw ConfigError("--record is for the one trial of --replay");
   const std::vector<Condition> conditions = conditions_of(options);
   const std::vector<Trial> trials =
       plan_trials(options, conditions, options.replay ? options.replay : options.seed, options.replay ? 1 : options.trials);
@@ -299,6 +303,7 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->add_option("--trials", options->trials, "of each scenario")->check(kAboveZero)->capture_default_str();
   command->add_option("--seed", options->seed, "of the first trial; each next has one more")->check(kAboveZero)->capture_default_str();
   command->add_option("--replay", options->replay, "one trial with this seed, bit for bit, telling what happens")->check(kAboveZero);
+  command->add_option("--record", options->record, "with --replay: write everything that is said into this MCAP file");
   command
       ->add_option("--attention", options->modes,
                    "how its clocks run: adaptive; max: all at their shortest period; mean: each at the mean period of the adaptive ones, "

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   handsel::add_health_command(app, exit_code);
   handsel::add_topic_commands(app, exit_code);
   handsel::add_doctor_command(app, exit_code);
+  handsel::add_record_commands(app, exit_code);
   handsel::add_eval_command(app, exit_code);
   handsel::add_bench_command(app, exit_code);
   handsel::add_trajectory_commands(app, exit_code);

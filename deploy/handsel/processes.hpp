@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,8 @@ struct SystemOptions {
   std::uint64_t seed{1};
   bool ros2{false};                        ///< with the lane to ROS 2
   int web_port{-1};                        ///< of the bridge; 0: any free one; -1: as its settings say
+  std::string record;                      ///< file to record into; empty: none
+  std::map<std::string, std::string> notes;  ///< of a study, for the record's metadata
   std::vector<std::string> only, without;  ///< of kProcesses, when the others run on another host; both empty: all
   bool whole() const { return only.empty() && without.empty(); }
 };

@@ -91,6 +91,9 @@ int run(RunOptions& options) {
     options.system.scenario = derived.path;
   }
 
+  if (!options.condition.empty()) options.system.notes["condition"] = options.condition;
+  if (!options.participant.empty()) options.system.notes["participant"] = options.participant;
+  if (options.trial > 0) options.system.notes["trial"] = std::to_string(options.trial);
   System system(options.system);
   std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n", kProcesses.size(),
                options.system.domain, shown.c_str(), static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "common/base/errors.hpp"
+#include "common/wire/interface_id.hpp"
 #include "deploy/handsel/status.hpp"
 
 namespace handsel {
@@ -20,6 +21,16 @@ LauncherOptions launcher_options(const SystemOptions& options, const std::filesy
   return {.processes = system_processes(options), .log_directory = log_directory, .on_event = [](const std::string& sentence) {
             std::fprintf(stderr, "handsel: %s\n", sentence.c_str());
           }};
+}
+
+mcap::Metadata record_notes(const SystemOptions& options) {
+  mcap::Metadata notes = options.notes;
+  notes["robot"] = robot_of(options);
+  notes["scenario"] = options.scenario;
+  notes["seed"] = std::to_string(options.seed);
+  notes["domain"] = std::to_string(options.domain);
+  notes["version"] = version_text();
+  return notes;
 }
 
 std::string join(const std::vector<std::string>& items) {
@@ -54,6 +65,7 @@ System::System(const SystemOptions& options)
       lock_(options_.domain),
       log_directory_(new_run_directory(options_.domain)),
       session_(options_.domain),
+      recording_(session_.bus(), options_.record, record_notes(options_)),
       launcher_(launcher_options(options_, log_directory_)) {}
 
 void System::require_alive() const {

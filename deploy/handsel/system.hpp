@@ -8,6 +8,7 @@
 
 #include "deploy/handsel/launcher.hpp"
 #include "deploy/handsel/processes.hpp"
+#include "deploy/handsel/recorder.hpp"
 #include "deploy/handsel/session.hpp"
 
 namespace handsel {
@@ -43,6 +44,7 @@ class System {
   DomainLock lock_;
   std::filesystem::path log_directory_;
   Session session_;
+  Recording recording_;  // until every process has stopped
   Launcher launcher_;
 };
 

@@ -24,6 +24,7 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
   command.add_option("--seed", options.seed, "of every random choice")->capture_default_str();
   command.add_option("--port", options.web_port, "of the page; 0: any free one (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
+  command.add_option("--record", options.record, "write everything that is said into this MCAP file");
   command.add_flag("--ros2", options.ros2, "with the lane to ROS 2 (docs/ros2.md)");
   add_no_weld_option(command);
 }

@@ -13,7 +13,7 @@ inline constexpr Duration kReadyPatience = std::chrono::seconds(15);
 
 /// --domain N (default: $HANDSEL_DOMAIN, else 0).
 void add_domain_option(CLI::App& command, int& domain);
-/// --robot, --scenario, --seed, --domain, --port, --ros2, --no-weld.
+/// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --no-weld.
 void add_system_options(CLI::App& command, SystemOptions& options);
 /// --no-weld, told to the simulator through the environment's HANDSEL_NO_WELD.
 void add_no_weld_option(CLI::App& command);

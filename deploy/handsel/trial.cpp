@@ -15,6 +15,7 @@
 #include "deploy/handsel/criteria.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "deploy/handsel/performer.hpp"
+#include "deploy/handsel/recorder.hpp"
 #include "deploy/handsel/report.hpp"
 #include "deploy/handsel/system.hpp"
 
@@ -101,6 +102,14 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   LockstepSystem system(context);
   const Criteria criteria(system.seat(), system.network());
   if (options.hash_outputs) system.network().hash_outputs();
+  std::unique_ptr<LocalRecording> recording;
+  if (!options.record.empty()) {
+    recording = std::make_unique<LocalRecording>(system.network(), options.record,
+                                                 mcap::Metadata{{"robot", context.robot->name()},
+                                                                {"scenario", options.scenario},
+                                                                {"seed", std::to_string(context.seed)},
+                                                                {"attention", options.attention}});
+  }
   bool is_ready = false;
   const auto ready = [&] {
     is_ready = is_ready || not_ready(system.snapshot(), false).empty();
@@ -151,6 +160,7 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
        {"events", system.network().events()},
        {"hash", hash}});
   line.update(criteria.fields());
+  if (recording) recording->close();
   if (options.hash_outputs) {
     std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(system.network().output_hash()));
     line["output_hash"] = hash;

@@ -18,6 +18,7 @@ struct TrialOptions {
   std::string condition, participant;                        ///< of a study; empty: the attention's mode; nobody
   std::size_t order{};                                       ///< number among the trials asked for, from 1; 0: none
   bool hash_outputs{};                                       ///< adds "output_hash": of every value every component sent, and when
+  std::string record;                                        ///< file that all that is said goes into; empty: none
   double timeout{};                                          ///< [s] of virtual time; 0: the scenario's
   std::function<void(double, const std::string&)> on_event;  ///< time [s] and text of each event; may be empty
 };

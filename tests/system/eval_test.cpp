@@ -44,6 +44,9 @@ TEST(Eval, a_replayed_trial_is_the_same_bit_for_bit_from_another_folder_too) {
   EXPECT_GT(a["events"].get<int>(), 10000);
   const Json other = lines_of(shell(kHandsel + " eval --scenario give_mug --replay 6 --timeout 5").out).at(0);
   EXPECT_NE(other["output_hash"], a["output_hash"]);
+  const std::string file = (root / "trial.mcap").string();
+  EXPECT_EQ(lines_of(shell(kHandsel + arguments + " --record " + file).out).at(0)["output_hash"], a["output_hash"]) << "who listens changes it";
+  EXPECT_GT(fs::file_size(file), 1'000'000u);
 }
 
 TEST(Eval, conditions_share_their_seeds_and_come_in_a_drawn_order) {
@@ -103,6 +106,7 @@ TEST(Eval, a_mode_that_cannot_be_is_refused) {
   refused("--attention some", "is none of adaptive, max, mean, off, fixed:SHARE");
   refused("--attention fixed:2", "must be a number from 0 to 1");
   refused("--replay 4 --attention max off", "name one mode and one law");
+  refused("--trials 2 --record x.mcap", "--record is for the one trial of --replay");
 }
 
 }  // namespace

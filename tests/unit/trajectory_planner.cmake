@@ -3,4 +3,4 @@ handsel_test(cartesian_motion SOURCES ${CMAKE_CURRENT_LIST_DIR}/cartesian_motion
              LABEL property)
 handsel_test(broken_lines SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/broken_lines_test.cpp LINK handsel_trajectory_planner_core
              LABEL property)
-handsel_test(trajectory_size SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_size_test.cpp LINK handsel_trajectory_planner_core handsel_wire LABEL unit)
+handsel_test(trajectory_size SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_size_test.cpp LINK handsel_trajectory_planner_core handsel_bus LABEL unit)
