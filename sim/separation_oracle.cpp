@@ -98,13 +98,17 @@ TrueSeparation SeparationOracle::separation(const RobotBody& robot, const std::v
   best.distance = std::numeric_limits<double>::infinity();
   for (const PersonVolume& volume : people) {
     const std::vector<BodyCapsule> body = body_capsules(*volume.person);
+    // What a sphere about each part leaves no hope for is passed over.
+    std::vector<std::pair<Vector3, double>> spheres;
+    for (const BodyCapsule& part : body) spheres.emplace_back((part.a + part.b) / 2, (part.b - part.a).norm() / 2 + part.radius);
     for (const LinkVolume& link : volumes_) {
       const Pose& T = robot.T_world_link(link.link);
       const Vector3 a = T * link.a, b = T * link.b, middle = (a + b) / 2;
-      for (const BodyCapsule& part : body) {
+      for (std::size_t i = 0; i < body.size(); ++i) {
+        const BodyCapsule& part = body[i];
         if (volume.exception && exchanging_part(part.part, volume.side)) continue;
-        const double rough = (middle - (part.a + part.b) / 2).norm() - link.bound - (part.b - part.a).norm() / 2 - part.radius;
-        if (rough >= best.distance) continue;
+        const double hopeless = best.distance + link.bound + spheres[i].second;
+        if (hopeless < 0 || (middle - spheres[i].first).squaredNorm() >= hopeless * hopeless) continue;
         double s = 0, t = 0;
         const double d = closest(a, b, part.a, part.b, s, t) - link.radius - part.radius;
         if (d >= best.distance) continue;
