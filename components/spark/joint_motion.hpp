@@ -11,6 +11,11 @@ namespace handsel::spark {
 
 class JointMotion {
  public:
+  /// Standard deviations of its acceleration, on each axis [m/s^2]: as usual, and when it surprises.
+  struct Agility {
+    double calm, sudden;
+  };
+  explicit JointMotion(const Agility& agility) : agility_(agility) {}
   const Vector3& velocity() const { return velocity_; }  ///< world [m/s]
   void reset(const Vector3& position, double noise) {
     position_ = position;
@@ -27,9 +32,9 @@ class JointMotion {
       const double q = acceleration * acceleration * dt * dt;
       return std::array<double, 3>{pp_ + 2 * dt * pv_ + dt * dt * vv_ + q * dt * dt / 4, pv_ + dt * vv_ + q * dt / 2, vv_ + q};
     };
-    auto p = predicted(kCalm);
+    auto p = predicted(agility_.calm);
     const Vector3 surprise = seen - expected;
-    if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (p[0] + r)) p = predicted(kSudden);
+    if (surprise.squaredNorm() > 3 * kSurprise * kSurprise * (p[0] + r)) p = predicted(agility_.sudden);
     const double gain = p[0] / (p[0] + r), gain_velocity = p[1] / (p[0] + r);
     position_ = expected + gain * surprise;
     velocity_ += gain_velocity * surprise;
@@ -39,8 +44,8 @@ class JointMotion {
   }
 
  private:
-  static constexpr double kCalm = 2, kSudden = 40;  // accelerations of a body part [m/s^2]
-  static constexpr double kSurprise = 2;            // standard deviations
+  static constexpr double kSurprise = 2;  // standard deviations
+  Agility agility_;
   Vector3 position_{Vector3::Zero()}, velocity_{Vector3::Zero()};
   double pp_{0}, pv_{0}, vv_{1};
 };

@@ -11,13 +11,13 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameId = 0.15;        // a body with the id they had is preferred by this [m]
-constexpr double kPause = 0.3;          // under another id a person comes back no farther than they walk in this time [s]
-constexpr double kFresh = 0.1;          // sights of joints this much apart are one body [s]
-constexpr double kFastest = 2.2;        // [m/s]
-constexpr double kSettled = 0.08;       // a body moves by this between two looks without a doubt [m]
-constexpr double kConfirmed = 0.15;     // where a lost person may have been counts so long after the first look [s]
-constexpr double kGapOfVelocity = 0.5;  // beyond this a velocity is found anew [s]
+constexpr double kSameId = 0.15;     // a body with the id they had is preferred by this [m]
+constexpr double kPause = 0.3;       // under another id a person comes back no farther than they walk in this time [s]
+constexpr double kFresh = 0.1;       // sights of joints this much apart are one body [s]
+constexpr double kFastest = 2.2;     // [m/s]
+constexpr double kSettled = 0.08;    // a body moves by this between two looks without a doubt [m]
+constexpr double kConfirmed = 0.15;  // where a lost person may have been counts so long after the first look [s]
+constexpr double kGapOfHand = 0.5;   // beyond this a hand's motion is found anew [s]
 constexpr double kLeastConfidence = 0.05;
 constexpr double kGuessed = 3;   // a joint that was not seen is this much noisier
 constexpr double kGrid = 0.3;    // places of a lost person are tried this far apart [m]
@@ -35,12 +35,6 @@ const std::vector<const char*> kLimbs[] = {{"l_shoulder", "l_elbow", "l_wrist", 
                                            {"r_shoulder", "r_elbow", "r_wrist", "r_hand"},
                                            {"l_hip", "l_knee", "l_ankle"},
                                            {"r_hip", "r_knee", "r_ankle"}};
-
-bool of_trunk(int joint) {
-  static const std::array trunk = {index("neck"),       index("torso"), index("waist"), index("l_shoulder"),
-                                   index("r_shoulder"), index("l_hip"), index("r_hip")};
-  return std::find(trunk.begin(), trunk.end(), joint) != trunk.end();
-}
 
 const Vector3& position(const Person& person, int joint) { return person.joints[static_cast<std::size_t>(joint)].position; }
 
@@ -67,7 +61,7 @@ double PeopleTracker::distance(const Track& track, const ObservedPerson& body) c
   for (const ObservedJoint& joint : body.joints) {
     const int i = body_joint_index(joint.name);
     if (i < 0 || !joint.position.allFinite()) continue;
-    const double w = joint.confidence * (of_trunk(i) ? 5 : 1);
+    const double w = joint.confidence * (of_trunk(static_cast<std::size_t>(i)) ? 5 : 1);
     sum += w * (joint.position - position(track.person, i));
     weight += w;
   }
@@ -164,16 +158,9 @@ void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint s
   std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
   if (fitted.empty()) return;
   guess_unseen(track, fitted);
-  for (std::size_t i = 0; i < kJoints; ++i) {
-    const double noise = settings_.joint_noise() * (told[i] ? 1.0 : kGuessed);
-    const double since = known ? to_seconds(at - track.moved[i]) : 0.0;
-    if (!known || since > kGapOfVelocity)
-      track.motion[i].reset(fitted[i].position, noise);
-    else if (!lately[i] && since > 1e-4)
-      track.motion[i].update(fitted[i].position, since, noise);
-    if (!known || !lately[i]) track.moved[i] = at;
-    fitted[i].velocity = track.motion[i].velocity();
-  }
+  std::array<double, kJoints> noise{};
+  for (std::size_t i = 0; i < kJoints; ++i) noise[i] = lately[i] ? 0.0 : settings_.joint_noise() * (told[i] ? 1.0 : kGuessed);
+  track.motion.update(fitted, noise, at);
   const auto doubt = [&](double by, double time) {
     track.doubt = seen < track.doubted_until ? track.doubt + by : by;
     track.doubted_until = std::max(track.doubted_until, seen + from_seconds(time));
@@ -197,8 +184,8 @@ void PeopleTracker::follow_hands(Track& track, const std::array<bool, kJoints>& 
     if (!told[static_cast<std::size_t>(kHands[side])] && !told[static_cast<std::size_t>(kWrists[side])]) continue;
     const Vector3& hand = position(track.person, kHands[side]);
     std::optional<TimePoint>& last = track.hand_seen[side];
-    const double dt = last ? to_seconds(at - *last) : kGapOfVelocity;
-    if (dt >= kGapOfVelocity)
+    const double dt = last ? to_seconds(at - *last) : kGapOfHand;
+    if (dt >= kGapOfHand)
       track.hands[side].reset(hand, trunk, settings_.joint_noise());
     else if (dt > 1e-4)
       track.hands[side].update(hand, trunk, dt, settings_.joint_noise());

@@ -11,9 +11,9 @@
 #include "common/config/spark.pb.h"
 #include "common/messages/world.hpp"
 #include "common/model/human_body.hpp"
+#include "components/spark/body_motion.hpp"
 #include "components/spark/body_size.hpp"
 #include "components/spark/hand_predictor.hpp"
-#include "components/spark/joint_motion.hpp"
 #include "components/spark/sources.hpp"
 
 namespace handsel::spark {
@@ -52,8 +52,7 @@ class PeopleTracker {
     TimePoint born{}, seen{};
     std::optional<TimePoint> gaze_seen;
     std::array<std::optional<TimePoint>, kJoints> joint_seen;
-    std::array<JointMotion, kJoints> motion;
-    std::array<TimePoint, kJoints> moved{};  // when the motion was last told
+    BodyMotion motion;
     BodySize size;
     std::array<HandPredictor, 2> hands;  // left, right
     std::array<std::optional<TimePoint>, 2> hand_seen;
