@@ -118,7 +118,8 @@ struct LocalNetwork::Impl {
   std::deque<std::vector<Subscription*>> subscriptions{std::size(kTopics)};  // in the order of the table, then foreign ones
   std::deque<std::vector<Sample>> pools{std::size(kTopics)};
   std::map<std::string, std::size_t, std::less<>> foreign;  // topic -> index
-  bool metered{false}, hashed{false}, at_work{false};
+  std::set<std::string> metered;
+  bool hashed{false}, at_work{false};
   std::uint64_t outputs{kHashBasis};
   std::function<void(const MessageType&, const void*, Stamp)> tapped;
 
@@ -180,7 +181,8 @@ class Meter {
 
 class LocalBus final : public Bus {
  public:
-  LocalBus(LocalNetwork::Impl& network, std::string component) : net_(network), component_(std::move(component)) {
+  LocalBus(LocalNetwork::Impl& network, std::string component)
+      : net_(network), component_(std::move(component)), metered_(net_.metered.contains(component_)) {
     health_ = advertise<ComponentHealth>();
     every(kHealthPeriod, [this](TimePoint now) { publish_health(now); });
   }
@@ -227,7 +229,7 @@ class LocalBus final : public Bus {
 
   LocalNetwork::Impl& net_;
   std::string component_;
-  bool killed_{false}, paused_{false}, isolated_{false};
+  bool metered_, killed_{false}, paused_{false}, isolated_{false};
   std::string degraded_, refusal_;
   TimePoint worker_free_{};
   double cpu_{0};
@@ -267,7 +269,7 @@ class LocalPublisher final : public AnyPublisher {
   std::shared_ptr<Writer> writer_;
 };
 
-Meter::Meter(LocalNetwork::Impl& network, LocalBus* bus) : net_(network), bus_(network.metered && !network.at_work ? bus : nullptr) {
+Meter::Meter(LocalNetwork::Impl& network, LocalBus* bus) : net_(network), bus_(bus && bus->metered_ && !network.at_work ? bus : nullptr) {
   if (bus_ == nullptr) return;
   net_.at_work = true;
   begin_ = thread_seconds();
@@ -474,7 +476,10 @@ std::vector<LocalNetwork::Endpoint> LocalNetwork::endpoints() const {
   return out;
 }
 
-void LocalNetwork::meter() { impl_->metered = true; }
+void LocalNetwork::meter(const std::set<std::string>& components) {
+  impl_->metered = components;
+  for (const auto& bus : impl_->buses) bus->metered_ = components.contains(bus->component_);
+}
 void LocalNetwork::hash_outputs() { impl_->hashed = true; }
 void LocalNetwork::tap(std::function<void(const MessageType&, const void*, Stamp)> on_sample) { impl_->tapped = std::move(on_sample); }
 std::uint64_t LocalNetwork::output_hash() const { return impl_->outputs; }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -49,8 +50,8 @@ class LocalNetwork {
   };
   std::vector<Endpoint> endpoints() const;
 
-  /// From now on the CPU time of each component's callbacks and jobs is counted. It enters nothing that is computed here.
-  void meter();
+  /// From now on the CPU time of these components' callbacks and jobs is counted. It enters nothing that is computed here.
+  void meter(const std::set<std::string>& components);
   /// CPU time counted so far [s].
   double cpu(const std::string& component) const;
   /// From now on every value that is sent, and when, goes into one number: equal numbers, equal runs.

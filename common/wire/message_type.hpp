@@ -12,13 +12,18 @@
 
 namespace handsel {
 
-/// A leaf of a wire sample, for tests that damage samples field by field.
+class WireIo;
+
+/// A leaf of a wire sample while it is visited, for a hash over all of them and for tests that damage samples field by field.
 struct WireLeaf {
   enum class Kind { number, integer, choice, text, flag };
-  std::string path;  ///< "position[3]"
   Kind kind{};
   void* value{};       ///< double*, the integer, the IDL enum, char*, bool*
   std::size_t size{};  ///< [bytes] of the value
+  const WireIo* visitor{};
+  const char* field{};
+
+  std::string path() const;  ///< "position[3]"; put together when asked for, for a map has 10^5 leaves
 };
 
 /// Conversion of one message between its domain struct and its IDL struct. Both are passed as untyped pointers to the right struct.

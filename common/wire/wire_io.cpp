@@ -139,8 +139,10 @@ bool WireIo::in_range(const char* field, double value, Range range) {
 }
 
 void WireIo::leaf(const char* field, WireLeaf::Kind kind, void* value, std::size_t size) {
-  (*visit_)(WireLeaf{path(field), kind, value, size});
+  (*visit_)(WireLeaf{kind, value, size, this, field});
 }
+
+std::string WireLeaf::path() const { return visitor->path(field); }
 
 void WireIo::at(int index) { stack_[depth_ - 1].index = index; }
 

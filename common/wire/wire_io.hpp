@@ -42,6 +42,8 @@ class WireIo {
   static WireIo fill(bool full);
 
   bool ok() const { return !failed_; }
+  /// Of a field of what is open just now; within a list its element.
+  std::string path(const char* field) const;
 
   void stamp(Stamp& m, std::int64_t& w);
   void number(const char* field, double& m, double& w, Range range);
@@ -154,7 +156,6 @@ class WireIo {
   void leaf(const char* field, WireLeaf::Kind kind, void* value, std::size_t size);
   bool fits(const char* field, std::size_t size, std::size_t bound);
   void fail(const char* field, const std::string& sentence);
-  std::string path(const char* field) const;
   void at(int index);
   void open(const char* field);
   void close();

@@ -57,7 +57,7 @@ PersonMotion motion(const std::vector<BodyJoint>& before, const std::vector<Body
 }  // namespace
 
 Criteria::Criteria(Bus& seat, LocalNetwork& network) : network_(network) {
-  network.meter();
+  network.meter({std::begin(kChain), std::end(kChain)});
   seat.subscribe<GroundTruth>([this](const GroundTruth& truth, const Receipt& r) { on(truth, r.arrival); });
   seat.subscribe<ExecutionStatus>([this](const ExecutionStatus& status, const Receipt& r) { on(status, r.arrival); });
   seat.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt& r) {

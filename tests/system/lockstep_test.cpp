@@ -53,7 +53,7 @@ TEST(Lockstep, all_that_is_sent_is_one_number_and_looking_at_the_work_does_not_c
   const auto run = [](std::uint64_t seed, bool metered) {
     LockstepSystem system("give_mug", "", seed);
     system.network().hash_outputs();
-    if (metered) system.network().meter();
+    if (metered) system.network().meter({"collision_checker"});
     system.network().run_for(std::chrono::seconds(1));
     EXPECT_EQ(system.network().cpu("collision_checker") > 0, metered);
     return system.network().output_hash();

@@ -201,7 +201,7 @@ TEST_F(Replayed, a_sample_that_breaks_its_bounds_is_refused_and_the_rest_comes) 
     ASSERT_TRUE(type.to_wire(&state, 1, wire.get(), why)) << why;
     const auto good = codec.encode(type, wire.get());
     type.leaves(wire.get(), [](const WireLeaf& leaf) {
-      if (leaf.path == "position[3]") *static_cast<double*>(leaf.value) = 1e300;
+      if (leaf.path() == "position[3]") *static_cast<double*>(leaf.value) = 1e300;
     });
     writer.write({0, 1000, good});
     writer.write({0, 2000, codec.encode(type, wire.get())});

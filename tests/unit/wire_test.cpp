@@ -14,6 +14,7 @@
 #include "common/messages/task.hpp"
 #include "common/wire/message_type.hpp"
 #include "tests/support/cdr_size.hpp"
+#include "tests/support/wire_leaves.hpp"
 
 namespace handsel {
 namespace {
@@ -26,22 +27,18 @@ class EveryMessage : public testing::TestWithParam<std::size_t> {
     type.fill(wire.get(), full);
     return wire;
   }
-  std::vector<WireLeaf> leaves(void* wire) const {
-    std::vector<WireLeaf> out;
-    type.leaves(wire, [&](const WireLeaf& leaf) { out.push_back(leaf); });
-    return out;
-  }
+  std::vector<NamedLeaf> leaves(void* wire) const { return leaves_of(type, wire); }
   /// Accepted? The sentence of a rejection goes to `why`.
   bool accepts(void* wire, std::string& why) const {
     why.clear();
     return type.from_wire(wire, type.new_message().get(), why);
   }
-  void expect_rejected(void* wire, const WireLeaf& leaf, const std::string& with) const {
+  void expect_rejected(void* wire, const NamedLeaf& leaf, const std::string& with) const {
     std::string why;
-    EXPECT_FALSE(accepts(wire, why)) << type.row().type << '.' << leaf.path << " with " << with;
+    EXPECT_FALSE(accepts(wire, why)) << type.row().type << '.' << leaf.name << " with " << with;
     EXPECT_EQ(why.rfind(type.row().type, 0), 0u) << why;
-    const std::string field = leaf.path.substr(0, leaf.path.find_first_of(".["));
-    EXPECT_NE(why.find(field), std::string::npos) << why << " should name " << leaf.path;
+    const std::string field = leaf.name.substr(0, leaf.name.find_first_of(".["));
+    EXPECT_NE(why.find(field), std::string::npos) << why << " should name " << leaf.name;
   }
 };
 
@@ -60,7 +57,7 @@ TEST_P(EveryMessage, GoesThereAndBackWithoutLoss) {
       const bool text = a[i].kind == WireLeaf::Kind::text;
       EXPECT_TRUE(text ? std::strcmp(static_cast<char*>(a[i].value), static_cast<char*>(b[i].value)) == 0
                        : std::memcmp(a[i].value, b[i].value, a[i].size) == 0)
-          << type.row().type << a[i].path;
+          << type.row().type << a[i].name;
     }
   }
 }
@@ -79,7 +76,7 @@ TEST_P(EveryMessage, PrintsAsJson) {
 TEST_P(EveryMessage, RejectsEveryNumberThatIsNone) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   auto wire = sample();
-  for (const WireLeaf& leaf : leaves(wire.get())) {
+  for (const NamedLeaf& leaf : leaves(wire.get())) {
     if (leaf.kind != WireLeaf::Kind::number) continue;
     double& value = *static_cast<double*>(leaf.value);
     const double good = value;
@@ -96,7 +93,7 @@ TEST_P(EveryMessage, RejectsEveryNumberThatIsNone) {
       value = legal;
       const bool accepted = accepts(wire.get(), why);
       if (legal == 0.0) {
-        EXPECT_EQ(accepted, zero) << leaf.path;
+        EXPECT_EQ(accepted, zero) << leaf.name;
       } else if (zero) {
         EXPECT_TRUE(accepted) << why;
       }
@@ -109,7 +106,7 @@ TEST_P(EveryMessage, RejectsEveryNumberThatIsNone) {
 
 TEST_P(EveryMessage, RejectsUnknownChoicesBrokenTextsFlagsAndStamps) {
   auto wire = sample();
-  for (const WireLeaf& leaf : leaves(wire.get())) {
+  for (const NamedLeaf& leaf : leaves(wire.get())) {
     std::vector<char> good(static_cast<char*>(leaf.value), static_cast<char*>(leaf.value) + leaf.size);
     if (leaf.kind == WireLeaf::Kind::choice) {
       for (const std::uint32_t bad : {100u, 0x7fffffffu, 0xffffffffu}) {
@@ -127,7 +124,7 @@ TEST_P(EveryMessage, RejectsUnknownChoicesBrokenTextsFlagsAndStamps) {
     } else if (leaf.kind == WireLeaf::Kind::flag) {
       *static_cast<unsigned char*>(leaf.value) = 2;
       expect_rejected(wire.get(), leaf, "2");
-    } else if (leaf.path == "stamp") {
+    } else if (leaf.name == "stamp") {
       *static_cast<std::int64_t*>(leaf.value) = -1;
       expect_rejected(wire.get(), leaf, "-1");
     }
@@ -196,7 +193,7 @@ TEST(Wire, NormalisesNearlyUnitQuaternionsAndRejectsZeroOnes) {
   std::string why;
   const auto set_w = [&](double w) {
     type.leaves(wire.get(), [&](const WireLeaf& leaf) {
-      if (leaf.path == "T_world_base.orientation.w") *static_cast<double*>(leaf.value) = w;
+      if (leaf.path() == "T_world_base.orientation.w") *static_cast<double*>(leaf.value) = w;
     });
   };
   set_w(1.0005);

@@ -12,17 +12,12 @@
 #include <vector>
 
 #include "common/bus/dds_bus.hpp"
+#include "tests/support/wire_leaves.hpp"
 
 namespace {
 
 using namespace handsel;
-using Leaves = std::vector<WireLeaf>;
-
-Leaves leaves_of(const MessageType& type, void* wire) {
-  Leaves out;
-  type.leaves(wire, [&](const WireLeaf& leaf) { out.push_back(leaf); });
-  return out;
-}
+using Leaves = std::vector<NamedLeaf>;
 
 class Dice {
  public:
@@ -94,7 +89,7 @@ std::shared_ptr<void> random_message(const MessageType& type, Dice& dice) {
       accepted = valid(type, wire.get());
     }
     if (!accepted) std::memcpy(leaves[i].value, before.data(), before.size());
-    if (leaves[i].path.ends_with(".orientation.w")) rotate(leaves, i, dice);
+    if (leaves[i].name.ends_with(".orientation.w")) rotate(leaves, i, dice);
   }
   auto message = type.new_message();
   std::string why;
@@ -130,7 +125,7 @@ std::string printed(const MessageType& type, const void* message) {
   std::string why;
   if (!type.to_wire(message, 1, wire.get(), why)) throw std::runtime_error(why);
   nlohmann::json values;
-  for (const WireLeaf& leaf : leaves_of(type, wire.get())) values[leaf.path] = value_of(leaf);
+  for (const NamedLeaf& leaf : leaves_of(type, wire.get())) values[leaf.name] = value_of(leaf);
   return nlohmann::json{{"topic", type.row().topic}, {"type", type.row().type}, {"leaves", values}}.dump();
 }
 
