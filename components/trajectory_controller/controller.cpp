@@ -7,7 +7,6 @@
 #include "common/base/errors.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/stop.hpp"
-#include "components/trajectory_controller/gaze.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -59,6 +58,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
     : settings_(settings),
       robot_(std::move(robot)),
       capsules_(robot_capsules(*robot_)),
+      head_room_(*robot_),
       part_(static_cast<std::size_t>(robot_->dof()), Part::arm),
       runner_(settings.period),
       movers_(static_cast<std::size_t>(robot_->dof())),
@@ -166,9 +166,21 @@ void Controller::on(const AttentionAdvice& advice, TimePoint sampled) {
   advice_seen_.mark(sampled);
   constexpr double kMoved = 0.02;
   if (!ready_ || head_axes_.empty() || !advice.has_gaze_target || (advice.gaze_target - gaze_aimed_).norm() < kMoved) return;
+  std::vector<double> target =
+      aim(*robot_, *robot_->group("head"), set_point_.position, state_.T_world_base.inverse() * advice.gaze_target);
+  if (!head_room_.lets_turn(set_point_.position, target) || !head_room_.lets_turn(where_path_ends(), target)) return;
   gaze_aimed_ = advice.gaze_target;
-  head_target_ = aim(*robot_, *robot_->group("head"), set_point_.position, state_.T_world_base.inverse() * advice.gaze_target);
+  head_target_ = std::move(target);
   head_wanted_ = true;
+}
+
+/// All axes; here when no path runs.
+Vector Controller::where_path_ends() {
+  Vector q = set_point_.position;
+  if (arm_ != Arm::running) return q;
+  runner_.look(runner_.duration(), path_);
+  for (std::size_t i = 0; i < axes_.size(); ++i) q[static_cast<Eigen::Index>(axes_[i])] = path_.position[static_cast<Eigen::Index>(i)];
+  return q;
 }
 
 /// Measured positions are noisy; set-points never leave the bounds because of that.

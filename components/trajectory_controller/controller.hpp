@@ -14,6 +14,7 @@
 #include "common/model/manipulator.hpp"
 #include "components/trajectory_controller/axis_mover.hpp"
 #include "components/trajectory_controller/contact_watch.hpp"
+#include "components/trajectory_controller/gaze.hpp"
 #include "components/trajectory_controller/guard.hpp"
 #include "components/trajectory_controller/hand_executor.hpp"
 #include "components/trajectory_controller/mode_machine.hpp"
@@ -165,6 +166,7 @@ class Controller {
   void step_head() noexcept;
   void step_yield(TimePoint now) noexcept;
   void aim_away() noexcept;
+  Vector where_path_ends();
   bool attention_silent(TimePoint now) const noexcept;
   void check_last() noexcept;
   AxisState sent(int axis) const noexcept;
@@ -177,6 +179,7 @@ class Controller {
   ControllerSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   std::vector<LinkCapsule> capsules_;
+  HeadRoom head_room_;
   std::vector<int> arm_axes_, head_axes_;
   std::vector<Part> part_;  // of each axis
 

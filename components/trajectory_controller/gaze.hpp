@@ -1,8 +1,10 @@
-// Where the head must turn for the camera to look at a point. Pure.
+// Where the head must turn for the camera to look at a point, and whether it may. Pure.
 #pragma once
 
+#include <utility>
 #include <vector>
 
+#include "common/model/robot_capsules.hpp"
 #include "common/model/robot_model.hpp"
 
 namespace handsel::trajectory_controller {
@@ -10,5 +12,23 @@ namespace handsel::trajectory_controller {
 /// Positions of the axes of `head` (inside their bounds) that bring the x axis of the robot's gaze link nearest to pointing at
 /// `p_root` (root frame [m]), the other axes as in `q`. Returns the present ones when the robot has no gaze link.
 std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q, const Vector3& p_root);
+
+/// Keeps a head that turns off the arms and hands, which are planned around a head that stands. By capsules, and only pairs of links that
+/// are tested against each other at all. Ours.
+class HeadRoom {
+ public:
+  explicit HeadRoom(const RobotModel& robot);
+  /// Least distance between the head and what the other axes move [m]; +inf without one of both.
+  double clearance(const Vector& q);
+  /// On the way of its axes from q to `target`, does the head stay 2 cm off, or at least as far off as it is?
+  bool lets_turn(const Vector& q, const std::vector<double>& target);
+
+ private:
+  const RobotModel& robot_;
+  const Group* head_;
+  std::vector<LinkCapsule> capsules_;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of capsules_, one of the head and one of the rest
+  std::vector<Pose> T_root_link_;
+};
 
 }  // namespace handsel::trajectory_controller
