@@ -655,7 +655,7 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
       outcome = co_await rest_all();
       break;
     case ActionKind::receive:
-      outcome = co_await receive(goal.object, goal.human);
+      outcome = co_await receive(goal.object, goal.human, goal.surface);
       break;
     case ActionKind::regrasp:
     case ActionKind::carry:

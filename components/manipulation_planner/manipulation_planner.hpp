@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -144,6 +145,17 @@ class ManipulationPlanner {
     Outcome outcome;
     HandState state{};
   };
+  /// Where what is taken by a grasp can be put down.
+  struct Destination {
+    std::uint64_t grasp{};
+    std::string object, surface;
+    Pose T_world_object;
+  };
+  struct Serving {
+    Outcome outcome;
+    std::map<std::size_t, Destination> at;  // by the grasp's place in the list
+    std::string objections;                 // what stood in the way of the others on the last surface
+  };
 
   // Actions.
   Routine<Outcome> run(ActionGoal goal);
@@ -157,8 +169,8 @@ class ManipulationPlanner {
   Routine<Outcome> place(const std::string& object, const std::string& surface);
   /// What is held, to above its place and down to it.
   Routine<Outcome> lower(const PuttingPosture& posture);
-  /// `wanted` empty: whatever is offered; `giver` empty: whoever offers.
-  Routine<Outcome> receive(const std::string& wanted, const std::string& giver);
+  /// `wanted` empty: whatever is offered; `giver` empty: whoever offers; `onto` as of pick(), empty: any surface.
+  Routine<Outcome> receive(const std::string& wanted, const std::string& giver, const std::string& onto);
   /// `attempt`, from 1: the later, the longer may the arm's way there be.
   Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp, std::uint32_t attempt);
   Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp, std::uint32_t attempt) const;
@@ -243,6 +255,9 @@ class ManipulationPlanner {
     co_return reply.has_value();
   }
   Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human, std::uint32_t most);
+  /// Which of the grasps, the first `most` of them, serve at one of the best `places` of the surface too (`onto` empty: of any), and where.
+  Routine<Serving> serving(const std::string& object, const std::string& onto, const std::vector<Grasp>& grasps, std::size_t most,
+                           std::size_t places);
   /// Grasps that serve at a free place of that surface too, which place() then tries first; if there is none, any.
   Routine<GraspList> ask_grasps_onto(const std::string& object, const std::string& surface);
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
@@ -361,12 +376,6 @@ class ManipulationPlanner {
 
   Attachment attachment_;
   std::optional<Grasp> grasp_;
-  /// Where what is picked by a grasp can be put down.
-  struct Destination {
-    std::uint64_t grasp{};
-    std::string object, surface;
-    Pose T_world_object;
-  };
   std::vector<Destination> destinations_;
   LiveCounts live_counts_;
   // Used by jobs only, which run one after the other.

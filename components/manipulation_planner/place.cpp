@@ -1,6 +1,5 @@
 // Putting down: a place is chosen before the object is picked, so that the grasp serves there too (chapter section 3.2.9; places: ours).
 #include <algorithm>
-#include <map>
 #include <numbers>
 
 #include "components/manipulation_planner/manipulation_planner.hpp"
@@ -19,43 +18,52 @@ const SceneBox* ManipulationPlanner::surface(const std::string& id) const {
   return box == scene_.boxes.end() ? nullptr : &*box;
 }
 
-Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(const std::string& object_id, const std::string& onto) {
-  destinations_.clear();
-  GraspList list = co_await ask_grasps(object_id, "", settings_.max_grasps_onto());
-  const SceneBox* box = surface(onto);
+Routine<ManipulationPlanner::Serving> ManipulationPlanner::serving(const std::string& object_id, const std::string& onto,
+                                                                   const std::vector<Grasp>& grasps, std::size_t most, std::size_t places) {
+  auto found = std::make_shared<Serving>();
   const SceneObject* thing = object(object_id);
-  if (!list.outcome.good || box == nullptr || thing == nullptr) co_return list;
-  status_.phase = "choosing a place";
-  struct Found {
-    std::map<std::size_t, Pose> places;  // of each grasp that serves
-    std::string objections;
-  };
-  auto found = std::make_shared<Found>();
+  std::vector<SceneBox> surfaces;
+  for (const SceneBox& box : scene_.boxes)
+    if (box.supports && (onto.empty() || box.id == onto)) surfaces.push_back(box);
+  if (thing == nullptr || surfaces.empty()) co_return *found;
   if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-  const std::function<void()> job = [this, found, world = world_, scene = scene_, people = people_, box = *box, object_id,
-                                     grasps = list.grasps, q = posture(), T_now = thing->T_world_object] {
+  const std::function<void()> job = [this, found, world = world_, scene = scene_, people = people_, surfaces, object_id, grasps, most,
+                                     places, q = posture(), T_now = thing->T_world_object] {
     place_world(*world, scene, people);
     PlacingSettings placing;
     placing.reach = arm_reach(*robot_, &arm_, palm_);
-    Putting putting(*world, *robot_, arm_, scene.T_world_base,
-                    free_places(*robot_, scene, people, objects_, object_id, box, T_now, kPlaces, placing), settings_.lift_height());
-    for (std::size_t i = 0; i < grasps.size() && found->places.size() < settings_.max_grasps(); ++i) {
-      const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers_, grasps[i].hand_joints);
-      const Vector opened = RobotModel::with(closed, fingers_, grasps[i].pregrasp_joints);
-      const auto posture = putting.anywhere(closed, opened, {object_id, grasps[i].T_object_hand.inverse()}, 1);
-      if (!posture.empty()) found->places[i] = posture.front().T_world_object;
+    for (const SceneBox& box : surfaces) {
+      Putting putting(*world, *robot_, arm_, scene.T_world_base,
+                      free_places(*robot_, scene, people, objects_, object_id, box, T_now, places, placing), settings_.lift_height());
+      for (std::size_t i = 0; i < grasps.size() && found->at.size() < most; ++i) {
+        if (found->at.count(i) > 0) continue;
+        const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers_, grasps[i].hand_joints);
+        const Vector opened = RobotModel::with(closed, fingers_, grasps[i].pregrasp_joints);
+        const auto posture = putting.anywhere(closed, opened, {object_id, grasps[i].T_object_hand.inverse()}, 1);
+        if (!posture.empty()) found->at[i] = {grasps[i].id, object_id, box.id, posture.front().T_world_object};
+      }
+      found->objections = putting.objections();
     }
-    found->objections = putting.objections();
   };
-  Outcome worked = co_await work(job);
-  if (!worked.good || found->places.empty()) {
-    refuse("place", worked.good ? "no grasp of " + object_id + " serves on " + onto + " too: " + found->objections : worked.reason);
+  found->outcome = co_await work(job);
+  co_return *found;
+}
+
+Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(const std::string& object_id, const std::string& onto) {
+  destinations_.clear();
+  GraspList list = co_await ask_grasps(object_id, "", settings_.max_grasps_onto());
+  if (!list.outcome.good || surface(onto) == nullptr || object(object_id) == nullptr) co_return list;
+  status_.phase = "choosing a place";
+  const Serving found = co_await serving(object_id, onto, list.grasps, settings_.max_grasps(), kPlaces);
+  if (!found.outcome.good || found.at.empty()) {
+    refuse("place",
+           found.outcome.good ? "no grasp of " + object_id + " serves on " + onto + " too: " + found.objections : found.outcome.reason);
     co_return list;
   }
   GraspList serving;
-  for (const auto& [grasp, place] : found->places) {
+  for (const auto& [grasp, destination] : found.at) {
     serving.grasps.push_back(list.grasps[grasp]);
-    destinations_.push_back({list.grasps[grasp].id, object_id, onto, place});
+    destinations_.push_back(destination);
   }
   co_return serving;
 }

@@ -27,14 +27,16 @@ constexpr double kOfTheWay = 0.5, kBesideHand = 0.04;
 // second, which each attempt gives again ...
 constexpr double kDetour = 1.3, kMoreThan = 1.0;
 constexpr double kApproachPatience = 10,
-                 kReachPatience = 5;  // [s] where people leave so little room that the arm creeps, another way is tried
-constexpr double kThink = 0.6;        // [s] of a way to one grasp, before the next is tried
-constexpr double kSameWay = 0.5;      // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
+                 kReachPatience = 5;   // [s] where people leave so little room that the arm creeps, another way is tried
+constexpr double kThink = 0.6;         // [s] of a way to one grasp, before the next is tried
+constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a long way is better than none
+constexpr double kSameWay = 0.5;       // [rad] ways of the arm that differ by less, its farthest axis counted, count as equally long
 // A grasp of less than this epsilon is taken where it saves so long a way [rad]: what is held by luck slips as it is carried.
 constexpr double kWeak = 0.03, kForStrength = 1.5;
-constexpr std::uint32_t kHurried = 2;  // ... until after so many attempts a long way is better than none
-constexpr int kMostAims = 6;           // so often the hand follows before it waits for the offer anew
-constexpr double kOffFingers = 0.01;   // [m] kept from the giver's hand, closing included
+constexpr double kForPlacing = 2.0;      // [rad] likewise a grasp by which it cannot be put down afterwards ...
+constexpr std::size_t kPlacesAhead = 8;  // ... at any of so many places: who holds it out waits for the answer
+constexpr int kMostAims = 6;             // so often the hand follows before it waits for the offer anew
+constexpr double kOffFingers = 0.01;     // [m] kept from the giver's hand, closing included
 // More than `held_out` [m] and toward the robot or its hand by this cosine: held out by who was asked for it, though the arm is not
 // stretched. The second is less than `held_out`, and means it when nothing else has been offered for long, the third when it is taken up.
 // Farther out than kFarOut nothing is kept, wherever that is.
@@ -166,7 +168,7 @@ Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_fo
   co_return std::nullopt;
 }
 
-Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const std::string& giver) {
+Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const std::string& giver, const std::string& onto) {
   if (status_.holding && (wanted.empty() || attachment_.object == wanted)) co_return Outcome{};
   Outcome last = Outcome::failure((giver.empty() ? "nobody offers " : giver + " does not offer ") + (wanted.empty() ? "anything" : wanted) +
                                   " within " + std::to_string(static_cast<int>(settings_.receive_timeout())) + " s");
@@ -181,7 +183,8 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     status_.object = offer->object;
     status_.human = offer->giver;
     const Vector3 p_asked = status_.exchange_point = object(offer->object)->T_world_object.translation();
-    GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps());
+    destinations_.clear();
+    GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps_onto());
     if (!list.grasps.empty()) list.outcome = co_await keep_off_fingers(offer->object, offer->giver, list.grasps);
     if (!list.outcome.good || list.grasps.empty()) {
       const auto moved_on = [this, &offer, &p_asked] {
@@ -197,9 +200,14 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       continue;
     }
     ++attempt;
-    // Who holds something out does not wait long: what the arm is at sooner comes first, unless it is a weak grasp.
+    const Serving later = co_await serving(offer->object, onto, list.grasps, list.grasps.size(), kPlacesAhead);
+    for (const auto& [grasp, destination] : later.at) destinations_.push_back(destination);
+    if (later.at.empty() && !later.objections.empty())
+      refuse("place", "no grasp of " + offer->object + " as it is held serves for putting it down: " + later.objections);
+    // Who holds something out does not wait long: what the arm is at sooner comes first, unless the grasp is weak or cannot put it down.
     const auto way = [this](const Grasp& g) {
-      const double farther = g.epsilon < kWeak ? kForStrength : 0.0;
+      const bool serves = std::any_of(destinations_.begin(), destinations_.end(), [&g](const Destination& d) { return d.grasp == g.id; });
+      const double farther = (g.epsilon < kWeak ? kForStrength : 0.0) + (serves ? 0.0 : kForPlacing);
       return std::floor(((g.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + farther) / kSameWay);
     };
     std::stable_sort(list.grasps.begin(), list.grasps.end(), [&way](const Grasp& a, const Grasp& b) { return way(a) < way(b); });

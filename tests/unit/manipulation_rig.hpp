@@ -110,7 +110,9 @@ class Rig {
     grasp.pregrasp_joints[0] += opens_by;
     grasp.T_object_hand = scene.objects[0].T_world_object.inverse() * scene.T_world_base *
                           robot->link_pose(RobotModel::with(q, robot->require_group("arm"), grasp.arm_joints), robot->tool_link());
-    if (grasps_exist)
+    if (!grasps.empty())
+      reply.grasps = grasps;
+    else if (grasps_exist)
       reply.grasps.push_back(grasp);
     else
       reply.reason = "no frame gives three contacts";
@@ -233,6 +235,7 @@ class Rig {
   std::uint64_t actions{0};
   int path_requests{0}, failing_paths{0}, stops{0}, led_over{0};
   PathRequest last_path;
+  std::vector<Grasp> grasps;  // of the planner's answers; empty: one that is near the arm
   bool grasps_exist{true}, grasp_planner_lives{true}, path_planner_lives{true}, grasp_holds{true}, object_comes{true}, person_takes{true};
   std::vector<std::string> phases;
   std::vector<std::vector<std::string>> allowed;

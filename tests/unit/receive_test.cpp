@@ -1,4 +1,6 @@
 // Receiving: what is held out is taken, what is drawn back is not gone after.
+#include <numbers>
+
 #include "tests/unit/manipulation_rig.hpp"
 
 namespace handsel::manipulation_planner {
@@ -23,6 +25,44 @@ TEST(ManipulationPlanner, TakesWhatAPersonHoldsOutAndEngagesThemOnlyWhileTheyOff
   EXPECT_FALSE(rig.planner.status().exchange_engaged);
   EXPECT_TRUE(rig.planner.status().holding);
   EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "retreat"}));
+}
+
+/// With the palm straight below the mug, or straight above it.
+Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
+  const Group &arm = rig.robot->require_group("arm"), &hand = rig.robot->require_group("hand");
+  Grasp grasp;
+  grasp.id = id;
+  grasp.epsilon = 0.1;
+  const Eigen::AngleAxisd tilt(from_below ? 0.0 : std::numbers::pi, Vector3::UnitY());
+  grasp.T_object_hand = make_pose(-0.28 * (tilt * Vector3::UnitZ()), Eigen::Quaterniond(tilt));
+  const auto joints = rig.robot->inverse(arm, rig.scene.objects[0].T_world_object * grasp.T_object_hand, rig.robot->rest_posture(), {});
+  EXPECT_TRUE(joints) << "the arm does not reach it from " << (from_below ? "below" : "above");
+  grasp.arm_joints = joints.value_or(RobotModel::part(rig.q, arm));
+  grasp.approach_joints = grasp.arm_joints;
+  grasp.approach_joints[6] += 0.05;
+  grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(rig.q, hand);
+  return grasp;
+}
+
+TEST(ManipulationPlanner, WhatIsTakenCanBePutDownWhereThatIsPossibleAtAll) {
+  for (const bool somewhere : {true, false}) {
+    Rig rig;
+    rig.hold_out();
+    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
+    rig.grasped_as_it_stands = true;
+    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
+    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
+    rig.q = RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
+    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, somewhere};
+    rig.start(ActionKind::receive);
+    rig.run_until("reaching the object");
+    rig.cycle();
+    ASSERT_EQ(rig.planner.status().phase, "reaching the object") << rig.planner.status().reason;
+    const bool from_above = rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+    EXPECT_EQ(from_above, somewhere) << "the hand below it is nearer, and cannot put it on a table";
+    rig.run(30);
+    EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  }
 }
 
 TEST(ManipulationPlanner, WhatNobodyOffersIsNotTaken) {
