@@ -29,6 +29,8 @@ constexpr const char* kRuns[][2] = {{"Facts", "facts"},        {"Scene", "scene"
                                     {"GraspRequest", "grasps"}};
 
 constexpr std::uint32_t bit(Cause cause) { return 1U << static_cast<unsigned>(cause); }
+constexpr std::uint32_t kForPeople =
+    bit(Cause::attention_slow) | bit(Cause::separation) | bit(Cause::forecast_collision) | bit(Cause::cost_ahead);
 
 double quantile(std::vector<double> values, double share) {
   std::sort(values.begin(), values.end());
@@ -104,7 +106,7 @@ void Criteria::on(const GroundTruth& truth, TimePoint now) {
     if (step > 0 && last_->separation < kClose && nearer < kJump) closing_speed_ = std::max(closing_speed_, nearer / step);
     const bool entered = truth.separation < kNear && last_->separation >= kNear;
     if (entered && !waiting_ && running_ && truth.robot_moving && person.toward > kToward) {
-      double most = speed_factor_;
+      double most = (status_.causes & kForPeople) != 0 ? 1.0 : speed_factor_;  // that it would have with nobody there
       for (const Look& look : looks_) most = std::max(most, look.speed_factor);
       if (most > 0.1) waiting_ = Reaction{now, most};
       settle(now);

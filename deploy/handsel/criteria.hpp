@@ -22,8 +22,8 @@ class Criteria {
 
   /// Fields of the trial's line:
   /// - `reactions_s`: a person came nearer than 0.40 m to a moving arm, themselves moving toward it (> 0.1 m/s): time until the speed
-  /// factor
-  ///   had fallen by a tenth of what it had been at most in the half second before [s]
+  ///   factor had fallen by a tenth of what it had been at most in the half second before, or, when it is lowered for people already, of
+  ///   what it would be without them [s]
   /// - `reaction_p50_s`, `reaction_p99_s` of these; `late_reactions`: those above 0.2 s
   /// - `interventions`: times the guard began to limit the speed of a running motion because of the separation
   /// - `intervention_s`: for how long the guard limited; `below_separation_s`: a moving arm was nearer than the separation rule asks for at

@@ -34,10 +34,34 @@ class CriteriaTest : public testing::Test {
     }
   }
 
+  /// Somebody comes on at 1 m/s, nearer than 0.40 m after `first_near` steps; the arm moves from `start` on, slower from `slower` on.
+  std::vector<double> reactions(int first_near, int start, int slower, double before, double after, std::uint32_t causes) {
+    truth_.person = standing_body(Vector3(4, 0, 0), M_PI, 1.75);
+    truth_.separation = 0.39 + 0.02 * first_near;
+    for (int i = 0; i < first_near + 60; ++i) {
+      truth_.robot_moving = i >= start;
+      ActiveTrajectory active;
+      active.robot = "jido";
+      active.trajectory = i >= start ? 1 : 0;
+      active.speed_factor = i >= slower ? after : before;
+      active_out_->publish(active);
+      ExecutionStatus status;
+      status.robot = "jido";
+      status.causes = i >= start ? causes : 0;
+      status_out_->publish(status);
+      truth_.separation -= 0.02;
+      for (BodyJoint& joint : truth_.person) joint.position.x() -= 0.02;
+      tell();
+    }
+    return criteria_.fields()["reactions_s"];
+  }
+
   LocalNetwork network_{3};
   Bus& world_;
   Criteria criteria_;
   std::unique_ptr<Publisher<GroundTruth>> truth_out_;
+  std::unique_ptr<Publisher<ActiveTrajectory>> active_out_{world_.advertise<ActiveTrajectory>()};
+  std::unique_ptr<Publisher<ExecutionStatus>> status_out_{world_.advertise<ExecutionStatus>()};
   GroundTruth truth_;
 };
 
@@ -75,6 +99,28 @@ TEST_F(CriteriaTest, a_delay_is_when_neither_of_them_moves) {
   tell(25);
   EXPECT_NEAR(criteria_.fields()["functional_delay_s"].get<double>(), 1.0, 0.021);
   EXPECT_NEAR(criteria_.fields()["robot_idle_s"].get<double>(), 1.0, 0.021);
+}
+
+constexpr std::uint32_t kSlowed = 1U << static_cast<unsigned>(Cause::attention_slow);
+
+TEST_F(CriteriaTest, who_is_slowed_for_some_time_after_somebody_came_near_reacts_late) {
+  const std::vector<double> found = reactions(50, 0, 65, 1.0, 0.5, 0);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0], 0.3, 0.041);
+  EXPECT_EQ(criteria_.fields()["late_reactions"], 1);
+}
+
+TEST_F(CriteriaTest, who_was_slowed_just_before_reacts_at_once) {
+  EXPECT_EQ(reactions(50, 0, 40, 1.0, 0.5, kSlowed), std::vector<double>{0});
+}
+
+TEST_F(CriteriaTest, a_motion_that_begins_slowed_for_people_has_reacted) {
+  EXPECT_EQ(reactions(50, 47, 1000, 0.5, 0.5, kSlowed), std::vector<double>{0});
+}
+
+TEST_F(CriteriaTest, a_motion_that_is_slow_by_itself_has_not) {
+  reactions(50, 47, 1000, 0.5, 0.5, 0);
+  EXPECT_EQ(criteria_.fields()["late_reactions"], 1);
 }
 
 }  // namespace
