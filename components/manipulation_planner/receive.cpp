@@ -211,6 +211,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       return std::floor(((g.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + farther) / kSameWay);
     };
     std::stable_sort(list.grasps.begin(), list.grasps.end(), [&way](const Grasp& a, const Grasp& b) { return way(a) < way(b); });
+    list.grasps.resize(std::min<std::size_t>(list.grasps.size(), settings_.max_grasps()));
     if (std::all_of(list.grasps.begin(), list.grasps.end(), [&](const Grasp& g) { return did_not_hold.count(g.id) > 0; }))
       did_not_hold.clear();
     for (const Grasp& grasp : list.grasps) {
