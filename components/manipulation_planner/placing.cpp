@@ -132,9 +132,13 @@ std::vector<PuttingPosture> Putting::anywhere(const Vector& q, const Vector& ope
 
 std::string Putting::objections() const {
   if (places_.empty()) return "all of it is taken or too far away";
-  std::string all;
-  for (const auto& [objection, count] : objections_) all += (all.empty() ? "" : ", ") + std::to_string(count) + " " + objection;
-  return all;
+  constexpr std::size_t kTold = 3;
+  std::vector<std::pair<std::string, int>> often(objections_.begin(), objections_.end());
+  std::stable_sort(often.begin(), often.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string told;
+  for (std::size_t i = 0; i < std::min(often.size(), kTold); ++i)
+    told += (i > 0 ? ", " : "") + std::to_string(often[i].second) + " " + often[i].first;
+  return told + (often.size() > kTold ? ", ..." : "");
 }
 
 }  // namespace handsel::manipulation_planner

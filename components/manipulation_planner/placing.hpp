@@ -52,7 +52,7 @@ class Putting {
   std::optional<PuttingPosture> at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held);
   /// At the first `most` places where it can be, those where the hand can open before the others.
   std::vector<PuttingPosture> anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t most);
-  /// What stood in the way so far, how often: "12 out of reach, 3 link forearm would touch box table".
+  /// What stood in the way most often so far, and how often: "12 out of reach, 3 because link forearm would touch box table".
   std::string objections() const;
 
  private:
