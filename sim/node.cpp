@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "common/config/resources.hpp"
 
@@ -106,7 +107,11 @@ void Node::publish() {
     object_out_->publish(delivery.message);
   }
   if (steps_ % per_truth_ == 0) {
+    const std::uint64_t before = truth_.limit_violations;
     world_->truth(truth_);
+    if (before == 0 && truth_.limit_violations > 0)
+      std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world_->time(),
+                   world_->last_limit_violation().c_str());
     truth_.stamp = bus_.stamp_now();
     truth_.real_time_factor = factor_;
     truth_out_->publish(truth_);

@@ -183,13 +183,13 @@ Vector Controller::where_path_ends() {
   return q;
 }
 
-/// Measured positions are noisy; set-points never leave the bounds because of that.
+/// Measured positions are noisy, and what presses on a finger bends it; set-points never leave the bounds because of that.
 double Controller::inside(int axis, double position) const noexcept {
-  constexpr double kNoise = 0.02;
+  constexpr double kNoise = 0.02, kBent = 0.05;  // [rad, m]
   const Axis& bounds = robot_->axes()[static_cast<std::size_t>(axis)];
   if (!(bounds.lower < bounds.upper)) return position;
   const double within = std::clamp(position, bounds.lower, bounds.upper);
-  return std::abs(within - position) <= kNoise ? within : position;
+  return std::abs(within - position) <= (part_[static_cast<std::size_t>(axis)] == Part::hand ? kBent : kNoise) ? within : position;
 }
 
 /// The piece of the path that is being run.

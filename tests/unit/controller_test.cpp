@@ -30,6 +30,16 @@ TEST(Controller, sends_nothing_before_the_posture_is_known_and_then_holds_it) {
   EXPECT_TRUE(has(b, Cause::no_go));
 }
 
+TEST(Controller, begins_inside_the_bounds_though_something_has_bent_a_finger_beyond_them) {
+  ControllerBench b;
+  const int bent = b.robot->require_group("hand").axes.front();
+  const double lower = b.robot->axes()[static_cast<std::size_t>(bent)].lower;
+  b.measured[bent] = lower - 0.03;
+  b.run(0.1);
+  ASSERT_TRUE(b.ready);
+  EXPECT_EQ(b.core.set_point().position[bent], lower);
+}
+
 TEST(Controller, sends_nothing_after_a_sleep_until_it_knows_where_the_robot_has_stopped) {
   for (const bool stopped : {true, false}) {
     ControllerBench b;
