@@ -110,7 +110,7 @@ TEST(CartesianMotion, of_jido_is_that_of_the_tool_with_22_active_axes) {
 
 TEST(CartesianMotion, of_the_iiwa_is_that_of_the_tool) {
   const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf");
-  if (!file) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
+  if (!file) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = RobotModel::load_urdf(*file);
   Group arm = robot.require_group("all");
   arm.tip = robot.link_index("lbr_iiwa_link_7");

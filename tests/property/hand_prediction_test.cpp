@@ -92,12 +92,10 @@ Errors follow(const Motion& motion, unsigned seed) {
   return out;
 }
 
-std::vector<Motion> handover() {
+std::vector<Motion> both_of(const test::RecordedHandover& recorded) {
   std::vector<Motion> out;
-  const auto recorded = test::recorded_handover();
-  if (!recorded) return out;
-  for (const auto& [who, joints] : recorded->bodies) {
-    Motion motion{who, 120, std::vector<std::map<std::string, Vector3>>(recorded->baton.size())};
+  for (const auto& [who, joints] : recorded.bodies) {
+    Motion motion{who, 120, std::vector<std::map<std::string, Vector3>>(recorded.baton.size())};
     for (const auto& [joint, rows] : joints)
       for (std::size_t i = 0; i < motion.frames.size(); ++i) motion.frames[i][joint] = test::place(rows[i]);
     out.push_back(std::move(motion));
@@ -105,11 +103,9 @@ std::vector<Motion> handover() {
   return out;
 }
 
-std::vector<Motion> other_motions() {
+std::vector<Motion> other_motions(const fs::path& folder) {
   std::vector<Motion> out;
-  const char* data = std::getenv("HANDSEL_DATA");
-  if (data == nullptr || !fs::exists(fs::path(data) / "motion/bvh")) return out;
-  for (const auto& file : fs::directory_iterator(fs::path(data) / "motion/bvh")) {
+  for (const auto& file : fs::directory_iterator(folder)) {
     if (file.path().extension() != ".bvh") continue;
     try {
       const sim::Recording recording = sim::load_recording(file.path());
@@ -127,8 +123,10 @@ std::vector<Motion> other_motions() {
 }
 
 TEST(HandPrediction, on_a_recorded_handover_it_beats_both_baselines) {
-  const std::vector<Motion> motions = handover();
-  if (motions.empty()) GTEST_SKIP() << "the recording is not there: HANDSEL_DATA/motion/kth_handover";
+  const auto recorded = test::recorded_handover();
+  if (!recorded) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  const std::vector<Motion> motions = both_of(*recorded);
+  ASSERT_EQ(motions.size(), 2u);
   Errors all;
   for (unsigned seed = 1; seed <= 3; ++seed)
     for (const Motion& motion : motions) all.add(follow(motion, seed));
@@ -141,8 +139,10 @@ TEST(HandPrediction, on_a_recorded_handover_it_beats_both_baselines) {
 }
 
 TEST(HandPrediction, on_recorded_walks_and_dances_the_balls_hold_the_hands) {
-  const std::vector<Motion> motions = other_motions();
-  if (motions.empty()) GTEST_SKIP() << "the recordings are not there: HANDSEL_DATA/motion/bvh";
+  const auto folder = test::reference_data("motion/bvh");
+  if (!folder) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  const std::vector<Motion> motions = other_motions(*folder);
+  ASSERT_FALSE(motions.empty()) << "none of the recordings in " << *folder << " was read";
   Errors all;
   for (const Motion& motion : motions) {
     const Errors one = follow(motion, 1);

@@ -20,7 +20,7 @@ constexpr double kMost = 0.001;                             // a point of the ro
 constexpr double kMostTurn = 0.5 * std::numbers::pi / 180;  // an axis turns between two states [rad]
 
 TEST(PandaPaths, are_found_in_time_and_free_by_the_exact_check) {
-  if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA names no folder with problems/panda";
+  if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const char* asked = std::getenv("HANDSEL_RUNS");
   const RobotModel robot = test::load_panda();
   const std::vector<test::PandaProblem> problems = test::panda_problems(robot);

@@ -63,7 +63,7 @@ TEST(SrsArm, every_branch_of_the_lwr_returns_to_the_pose) {
 
 TEST(SrsArm, every_branch_of_the_iiwa_returns_to_the_pose) {
   const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf");
-  if (!file) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
+  if (!file) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = RobotModel::load_urdf(*file, {}, Meshes::skip);
   Group arm = robot.require_group("all");
   arm.tip = robot.link_index("lbr_iiwa_link_7");

@@ -1,24 +1,17 @@
 // The Panda and its planning problems from the reference data (environment HANDSEL_DATA), for tests and measurements.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "common/collision/collision_world.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel::test {
-
-inline std::optional<std::filesystem::path> reference_data(const std::string& part) {
-  const char* data = std::getenv("HANDSEL_DATA");
-  if (data == nullptr || !std::filesystem::exists(std::filesystem::path(data) / part)) return std::nullopt;
-  return std::filesystem::path(data) / part;
-}
 
 struct PandaProblem {
   std::string set;

@@ -1,7 +1,6 @@
 // The recorded handover of the reference data.
 #pragma once
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "common/geometry/pose.hpp"
+#include "tests/support/reference_data.hpp"
 
 namespace handsel::test {
 
@@ -47,13 +47,10 @@ struct RecordedHandover {
   std::vector<std::vector<double>> baton, giver_wrench, taker_wrench;
 };
 
-/// nullopt: HANDSEL_DATA is not set or has none.
+/// nullopt without HANDSEL_DATA. Throws as reference_data().
 inline std::optional<RecordedHandover> recorded_handover() {
-  const char* data = std::getenv("HANDSEL_DATA");
-  if (data == nullptr) return std::nullopt;
-  const std::filesystem::path folder = std::filesystem::path(data) / "motion/kth_handover/handover_sample";
-  if (!std::filesystem::exists(folder / "baton_pose_saved.csv")) return std::nullopt;
-  return RecordedHandover(folder);
+  const auto folder = reference_data("motion/kth_handover/handover_sample");
+  return folder ? std::optional<RecordedHandover>(*folder) : std::nullopt;
 }
 
 }  // namespace handsel::test

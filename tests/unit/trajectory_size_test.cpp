@@ -87,7 +87,7 @@ TEST(TrajectorySize, OfJidoIsBelow64kB) {
 
 TEST(TrajectorySize, OfTheIiwaIsBelow64kB) {
   const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf");
-  if (!file) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
+  if (!file) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = RobotModel::load_urdf(*file);
   Group arm = robot.require_group("all");
   arm.tip = robot.link_index("lbr_iiwa_link_7");

@@ -100,7 +100,7 @@ TEST(SphereCover, triangles_are_proved_inside_and_a_missing_sphere_is_found) {
 }
 
 TEST(SphereCover, every_triangle_of_the_reference_robots_is_inside_its_spheres) {
-  if (!test::reference_data("robots/franka_panda")) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/franka_panda";
+  if (!test::reference_data("robots/franka_panda")) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const std::filesystem::path robots = *test::reference_data("robots");
   for (const char* file : {"franka_panda/panda.urdf", "kuka_iiwa14/model.urdf"}) {
     const RobotModel robot = RobotModel::load_urdf(robots / file);
@@ -159,7 +159,7 @@ class BothChecks {
 };
 
 TEST(WideCollision, never_clears_what_is_in_collision_among_the_panda_problems) {
-  if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA names no folder with problems/panda";
+  if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = test::load_panda();
   const auto problems = test::panda_problems(robot);
   BothChecks checks(robot, nullptr, test::panda_arm(robot));
@@ -178,7 +178,7 @@ TEST(WideCollision, never_clears_what_is_in_collision_among_the_panda_problems) 
 }
 
 TEST(WideCollision, refuses_none_of_the_goals_of_the_panda_problems) {
-  if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA names no folder with problems/panda";
+  if (!test::reference_data("problems/panda")) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = test::load_panda();
   CollisionWorld world(robot, nullptr);
   world.set_moving_axes(test::panda_arm(robot));
@@ -197,7 +197,7 @@ TEST(WideCollision, refuses_none_of_the_goals_of_the_panda_problems) {
 
 TEST(WideCollision, never_clears_what_is_in_collision_of_the_iiwa) {
   const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf");
-  if (!file) GTEST_SKIP() << "HANDSEL_DATA names no folder with robots/kuka_iiwa14";
+  if (!file) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = RobotModel::load_urdf(*file);
   BothChecks checks(robot, nullptr, {0, 1, 2, 3, 4, 5, 6});
   std::mt19937 random(kSeed + 6);
