@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "components/trajectory_controller/gaze.hpp"
 #include "tests/support/controller_expectations.hpp"
 
 namespace handsel::trajectory_controller {
@@ -185,81 +184,6 @@ TEST(Controller, a_command_without_axes_stops_softly_along_the_path) {
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
 }
 
-struct Silence {
-  const char* what;
-  bool ControllerBench::*source;
-  double within;  // detection
-  Mode mode;
-  Cause cause;
-};
-
-class SilentSource : public testing::TestWithParam<Silence> {};
-
-TEST_P(SilentSource, brings_the_stated_mode_in_time_and_a_newer_go_resumes) {
-  const Silence& s = GetParam();
-  ControllerBench b;
-  b.start();
-  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 1), "");
-  b.run(1.2);
-  b.*s.source = false;
-  b.run(s.within + 0.035);
-  EXPECT_EQ(b.core.mode(), s.mode);
-  EXPECT_TRUE(has(b, s.cause));
-  b.run(1.2 + 0.05);
-  EXPECT_EQ(b.at_rest(), s.mode >= Mode::hold);
-  b.*s.source = true;
-  b.run(0.5);
-  if (s.mode < Mode::hold) return;
-  EXPECT_EQ(b.core.mode(), Mode::hold);
-  EXPECT_EQ(b.core.status().causes, bit(Cause::no_go));
-  ++b.go.epoch;
-  b.run(0.3);
-  EXPECT_EQ(b.core.mode(), Mode::normal);
-  b.run(6);
-  EXPECT_EQ(b.core.status().motion, s.mode == Mode::hold ? MotionState::finished : MotionState::stopped);
-  EXPECT_LE(b.worst_velocity, 1 + 1e-6);
-  EXPECT_LE(b.worst_acceleration, 1 + 1e-6);
-  EXPECT_LE(b.worst_jerk, 1 + 1e-6);
-}
-
-INSTANTIATE_TEST_SUITE_P(table, SilentSource,
-                         testing::Values(Silence{"robot", &ControllerBench::robot_speaks, 0.02, Mode::stop, Cause::robot_state_silent},
-                                         Silence{"human", &ControllerBench::human_speaks, 0.2, Mode::stop, Cause::human_state_silent},
-                                         Silence{"forecast", &ControllerBench::forecast_speaks, 0.1, Mode::hold, Cause::forecast_silent},
-                                         Silence{"attention", &ControllerBench::attention_speaks, 0.3, Mode::slow,
-                                                 Cause::attention_silent}),
-                         [](const auto& p) { return std::string(p.param.what); });
-
-TEST(Controller, silent_attention_means_a_fixed_low_speed) {
-  ControllerBench b;
-  b.attention_speaks = false;
-  b.start();
-  ASSERT_EQ(b.go_to(goal(), 1), "");
-  b.run(1.0);
-  EXPECT_NEAR(b.core.speed_factor(), b.settings.attention_lost_factor, 1e-9);
-}
-
-TEST(Controller, a_silent_supervisor_lets_the_trajectory_finish_and_then_holds) {
-  ControllerBench b;
-  b.start();
-  ASSERT_EQ(b.go_to(goal(), 1), "");
-  b.run(0.5);
-  b.go_speaks = false;
-  b.run(0.6);
-  EXPECT_TRUE(has(b, Cause::supervisor_silent));
-  EXPECT_LT(b.core.mode(), Mode::hold);
-  EXPECT_NEAR(b.core.speed_factor(), 1.0, 1e-9);
-  b.run(5);
-  EXPECT_EQ(b.core.status().motion, MotionState::finished);
-  EXPECT_EQ(b.core.mode(), Mode::hold);
-  b.go_speaks = true;
-  b.run(0.5);
-  EXPECT_EQ(b.core.mode(), Mode::hold);
-  ++b.go.epoch;
-  b.run(0.2);
-  EXPECT_EQ(b.core.mode(), Mode::normal);
-}
-
 TEST(Controller, withdrawn_permission_holds_along_the_path_and_a_new_epoch_goes_on) {
   ControllerBench b;
   b.start();
@@ -431,79 +355,6 @@ TEST(Controller, a_person_standing_by_does_not_slow_and_one_in_the_way_does) {
   EXPECT_EQ(b.core.status().motion, MotionState::finished);
 }
 
-TEST(Controller, a_push_on_the_moving_arm_stops_it_and_a_load_does_not) {
-  ControllerBench b;
-  b.external_torque = Vector::Zero(7);
-  b.start();
-  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.4, -0.5), 1), "");
-  b.run(1.0);
-  for (int k = 0; k < 500; ++k) {
-    b.external_torque[1] = 20.0 * std::min(1.0, k * 0.002);  // a load taken up
-    b.tick();
-  }
-  EXPECT_EQ(b.core.mode(), Mode::normal);
-  b.external_torque[1] += 35.0;
-  b.run(0.04);
-  EXPECT_EQ(b.core.mode(), Mode::stop);
-  EXPECT_THAT(b.core.status().reason, HasSubstr("contact: felt by shoulder"));
-  EXPECT_TRUE(has(b, Cause::contact));
-  EXPECT_FALSE(has(b, Cause::separation));
-  b.external_torque[1] -= 35.0;
-  b.run(1.0);
-  EXPECT_TRUE(b.at_rest());
-  EXPECT_EQ(b.core.mode(), Mode::hold);
-}
-
-TEST(Controller, a_push_at_rest_moves_the_arm_along_and_its_end_stops_it) {
-  ControllerBench b;
-  b.external_torque = Vector::Zero(7);
-  b.start();
-  b.external_torque[0] = 25.0;
-  b.run(0.8);
-  const double pushed = b.core.set_point().position[0];
-  EXPECT_GT(pushed, 0.03);
-  EXPECT_LT(b.core.mode(), Mode::stop);
-  EXPECT_EQ(b.core.set_point().position[1], 0.0) << "only the axis that is pushed";
-  b.external_torque[0] = 0.0;
-  b.run(0.6);
-  EXPECT_TRUE(b.at_rest());
-  const double rested = b.core.set_point().position[0];
-  b.external_torque[0] = -40.0;
-  b.run(0.8);
-  EXPECT_LT(b.core.set_point().position[0], rested - 0.03);
-  b.run(2.0);
-  EXPECT_GE(b.core.set_point().position[0], rested - b.settings.yield_reach - 1e-9);
-  b.run(3.0);
-  EXPECT_TRUE(b.at_rest()) << "a push without end is a load";
-  expect_smooth(b);
-  b.external_torque[0] = 0.0;
-  b.run(5.0);
-  ASSERT_EQ(b.go_to(goal(), 1), "");
-  b.run(6);
-  EXPECT_EQ(b.core.status().motion, MotionState::finished);
-}
-
-TEST(Controller, after_a_contact_the_arm_gives_way_to_who_is_pressed) {
-  ControllerBench b;
-  b.external_torque = Vector::Zero(7);
-  b.start();
-  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0, 0), 1), "");
-  b.run(1.5);
-  b.external_torque[0] = -40.0;
-  b.run(0.8);
-  EXPECT_GE(b.core.mode(), Mode::hold);
-  const double stopped = b.core.set_point().position[0];
-  b.run(0.5);
-  EXPECT_LT(b.core.set_point().position[0], stopped - 0.03);
-  b.external_torque[0] = 0.0;
-  b.run(1.5);
-  EXPECT_TRUE(b.at_rest());
-  const double left = b.core.set_point().position[0];
-  b.run(1.0);
-  EXPECT_EQ(b.core.set_point().position[0], left) << "nor does it come after them";
-  expect_smooth(b);
-}
-
 TEST(Controller, a_wall_ahead_is_named_and_kept) {
   ControllerSettings s;
   s.walls = {Wall{-Vector3::UnitY(), -0.5}};
@@ -656,52 +507,6 @@ TEST(Controller, hand_commands_are_judged_like_trajectories) {
   EXPECT_NEAR(b.core.set_point().position[3], 0.5, 1e-9);
   EXPECT_EQ(b.core.accept(c, Duration(0), b.now), "") << "the same id again is no new motion";
   EXPECT_EQ(b.core.status().hand, HandState::idle);
-}
-
-TEST(Controller, the_head_turns_to_what_attention_looks_at) {
-  for (const bool arm_runs : {false, true}) {
-    ControllerBench b;
-    b.start();
-    if (arm_runs) {
-      ASSERT_EQ(b.send(b.command(goal(), 1)), "");
-    }
-    b.run(0.2);
-    b.advice.has_gaze_target = true;
-    b.advice.gaze_target = Vector3(1.0, 1.0, 1.0);
-    b.run(2.0);
-    EXPECT_NEAR(b.core.set_point().position[5], M_PI / 4, 0.04);
-    EXPECT_NEAR(b.core.set_point().position[6], std::atan2(-0.3, std::sqrt(2.0)), 0.04);
-    EXPECT_LE(b.worst_jerk, 1 + 1e-6);
-    b.run(10.0);
-    EXPECT_TRUE(!arm_runs || b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
-  }
-}
-
-TEST(Gaze, stays_inside_the_bounds_for_points_out_of_view) {
-  const auto robot = test::small_robot();
-  const std::vector<double> q = aim(*robot, robot->require_group("head"), Vector::Zero(robot->dof()), Vector3(0.2, 0, 5.0));
-  EXPECT_LE(q[1], 0.5 + 1e-12);
-  EXPECT_GE(q[1], -0.7 - 1e-12);
-}
-
-/// The forearm has just passed in front of the camera: nodding on to who sits there would push the camera into it.
-TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
-  const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
-  HeadRoom room(robot);
-  Vector q = robot.rest_posture();
-  q.head(7) << -0.286, 1.673, -0.285, -1.170, -1.204, 1.639, -1.292;
-  const std::vector<int>& head = robot.require_group("head").axes;
-  q[head[0]] = 0.001;
-  q[head[1]] = 0.127;
-  EXPECT_FALSE(room.lets_turn(q, {0.115, -0.515}));
-  EXPECT_FALSE(room.lets_turn(q, {0.115, -0.70}));
-  q[head[0]] = 0.115;
-  q[head[1]] = -0.515;
-  ASSERT_LT(room.clearance(q), 0.02);
-  EXPECT_TRUE(room.lets_turn(q, {0.115, 0.127})) << "away from the arm it always may";
-  Vector away = q;
-  away.head(7) = robot.rest_posture().head(7);
-  EXPECT_TRUE(room.lets_turn(away, {-1.0, -0.7})) << "nothing is there";
 }
 
 TEST(Controller, settings_out_of_range_are_refused_by_name) {

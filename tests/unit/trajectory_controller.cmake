@@ -1,6 +1,7 @@
 handsel_test(guard SOURCES ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_queue_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/controller_speed_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/controller_speed_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_contact_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/controller_silence_test.cpp ${CMAKE_CURRENT_LIST_DIR}/gaze_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/hand_executor_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mode_machine_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(controller_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/controller_stories_test.cpp

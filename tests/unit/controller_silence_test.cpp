@@ -1,0 +1,91 @@
+// Who must speak and does not: the mode that brings, and how motion goes on.
+#include "components/trajectory_controller/controller.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/controller_expectations.hpp"
+
+namespace handsel::trajectory_controller {
+namespace {
+
+using test::ControllerBench;
+using test::goal;
+using test::has;
+
+struct Silence {
+  const char* what;
+  bool ControllerBench::*source;
+  double within;  // detection
+  Mode mode;
+  Cause cause;
+};
+
+class SilentSource : public testing::TestWithParam<Silence> {};
+
+TEST_P(SilentSource, brings_the_stated_mode_in_time_and_a_newer_go_resumes) {
+  const Silence& s = GetParam();
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0.5, -0.5), 1), "");
+  b.run(1.2);
+  b.*s.source = false;
+  b.run(s.within + 0.035);
+  EXPECT_EQ(b.core.mode(), s.mode);
+  EXPECT_TRUE(has(b, s.cause));
+  b.run(1.2 + 0.05);
+  EXPECT_EQ(b.at_rest(), s.mode >= Mode::hold);
+  b.*s.source = true;
+  b.run(0.5);
+  if (s.mode < Mode::hold) return;
+  EXPECT_EQ(b.core.mode(), Mode::hold);
+  EXPECT_EQ(b.core.status().causes, bit(Cause::no_go));
+  ++b.go.epoch;
+  b.run(0.3);
+  EXPECT_EQ(b.core.mode(), Mode::normal);
+  b.run(6);
+  EXPECT_EQ(b.core.status().motion, s.mode == Mode::hold ? MotionState::finished : MotionState::stopped);
+  EXPECT_LE(b.worst_velocity, 1 + 1e-6);
+  EXPECT_LE(b.worst_acceleration, 1 + 1e-6);
+  EXPECT_LE(b.worst_jerk, 1 + 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(table, SilentSource,
+                         testing::Values(Silence{"robot", &ControllerBench::robot_speaks, 0.02, Mode::stop, Cause::robot_state_silent},
+                                         Silence{"human", &ControllerBench::human_speaks, 0.2, Mode::stop, Cause::human_state_silent},
+                                         Silence{"forecast", &ControllerBench::forecast_speaks, 0.1, Mode::hold, Cause::forecast_silent},
+                                         Silence{"attention", &ControllerBench::attention_speaks, 0.3, Mode::slow,
+                                                 Cause::attention_silent}),
+                         [](const auto& p) { return std::string(p.param.what); });
+
+TEST(Controller, silent_attention_means_a_fixed_low_speed) {
+  ControllerBench b;
+  b.attention_speaks = false;
+  b.start();
+  ASSERT_EQ(b.go_to(goal(), 1), "");
+  b.run(1.0);
+  EXPECT_NEAR(b.core.speed_factor(), b.settings.attention_lost_factor, 1e-9);
+}
+
+TEST(Controller, a_silent_supervisor_lets_the_trajectory_finish_and_then_holds) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(goal(), 1), "");
+  b.run(0.5);
+  b.go_speaks = false;
+  b.run(0.6);
+  EXPECT_TRUE(has(b, Cause::supervisor_silent));
+  EXPECT_LT(b.core.mode(), Mode::hold);
+  EXPECT_NEAR(b.core.speed_factor(), 1.0, 1e-9);
+  b.run(5);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_EQ(b.core.mode(), Mode::hold);
+  b.go_speaks = true;
+  b.run(0.5);
+  EXPECT_EQ(b.core.mode(), Mode::hold);
+  ++b.go.epoch;
+  b.run(0.2);
+  EXPECT_EQ(b.core.mode(), Mode::normal);
+}
+
+}  // namespace
+}  // namespace handsel::trajectory_controller
