@@ -94,6 +94,8 @@ namespace {
 
 void parse(const std::string& text, const std::string& name, google::protobuf::Message& out,
            google::protobuf::TextFormat::ParseInfoTree* places) {
+  if (const std::size_t first = text.find_first_not_of(" \t\r\n"); first != std::string::npos && text[first] == '<')
+    throw ConfigError(name + " is XML, e.g. a URDF; a description in Protobuf text is needed here, which may name it (docs/own_robot.md)");
   FirstError error;
   google::protobuf::TextFormat::Parser parser;
   parser.RecordErrorsTo(&error);

@@ -41,6 +41,10 @@ TEST(TextProto, NamesFileLineAndColumnOfWhatIsWrong) {
   EXPECT_THAT(refusal("groups { name: \"arm\"\n"), HasSubstr("r.txtpb:"));
 }
 
+TEST(TextProto, AUrdfInItsPlaceIsCalledOne) {
+  EXPECT_THAT(refusal("<?xml version=\"1.0\"?>\n<robot name=\"r\"/>\n"), HasSubstr("r.txtpb is XML, e.g. a URDF"));
+}
+
 TEST(TextProto, AFileThatIsNotThereIsMissing) {
   config::RobotDescription out;
   EXPECT_THAT(message_of<MissingError>([&] { load_text_proto("/nowhere/x.txtpb", out); }), HasSubstr("/nowhere/x.txtpb"));
