@@ -1,5 +1,6 @@
 #include "sim/limits_oracle.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace handsel::sim {
@@ -17,6 +18,7 @@ constexpr std::array kUsual{0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.010, 0.
 double period_of(const std::vector<LimitsOracle::Held>& stream, bool any) {
   std::array<std::size_t, kUsual.size()> votes{};
   for (std::size_t i = 1; i < stream.size(); ++i) {
+    if (!stream[i].continues) continue;
     const double interval =
         (stream[i].time - stream[i - 1].time) / static_cast<double>(stream[i].command.sequence - stream[i - 1].command.sequence);
     for (std::size_t k = 0; k < kUsual.size(); ++k) votes[k] += std::abs(interval - kUsual[k]) < 0.1 * kUsual[k];
@@ -50,8 +52,11 @@ void LimitsOracle::judge_bounds(const JointCommand& c) {
   }
 }
 
-void LimitsOracle::judge_step(const JointCommand& from, const JointCommand& to) {
-  const double t = period_ * static_cast<double>(to.sequence - from.sequence);
+double LimitsOracle::between(const JointCommand& from, const JointCommand& to) const {
+  return period_ * static_cast<double>(to.sequence - from.sequence);
+}
+
+void LimitsOracle::judge_step(const JointCommand& from, const JointCommand& to, double t) {
   for (Eigen::Index i = 0; i < to.position.size(); ++i) {
     const double J = limits_.jerk[i];
     const double da = std::abs(to.acceleration[i] - from.acceleration[i]);
@@ -65,6 +70,22 @@ void LimitsOracle::judge_step(const JointCommand& from, const JointCommand& to) 
   }
 }
 
+void LimitsOracle::judge_change(const JointCommand& from, const JointCommand& to, double T) {
+  for (Eigen::Index i = 0; i < to.position.size(); ++i) {
+    const double J = limits_.jerk[i], v0 = from.velocity[i], a0 = from.acceleration[i];
+    const double da = std::abs(to.acceleration[i] - a0);
+    if (da > J * T * (1 + kTolerance)) violated("jerk at a change", i, da / T, J);
+    const double dv = to.velocity[i] - v0, dv_room = J * T * T / 2 * (1 + kTolerance);
+    if (dv < std::min(0.0, a0 * T) - dv_room || dv > std::max(0.0, a0 * T) + dv_room)
+      violated("velocity step at a change", i, dv, std::abs(a0) * T + dv_room);
+    const auto moved = [&](double t) { return v0 * t + a0 * t * t / 2; };
+    const double turn = a0 != 0 ? std::clamp(-v0 / a0, 0.0, T) : 0.0;
+    const auto [least, greatest] = std::minmax({0.0, moved(turn), moved(T)});
+    const double dp = to.position[i] - from.position[i], dp_room = J * T * T * T / 6 * (1 + kTolerance) + kRounding;
+    if (dp < least - dp_room || dp > greatest + dp_room) violated("position step at a change", i, dp, greatest + dp_room);
+  }
+}
+
 void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, double now, const Vector& actual) {
   if (command.position.size() != actual.size() || command.velocity.size() != actual.size() ||
       command.acceleration.size() != actual.size()) {
@@ -72,8 +93,10 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
   }
   bad_ = false;
   const bool first = count_ == 0;
-  if (!first) longest_gap_ = std::max(longest_gap_, now - last_time_);
-  const bool starts = first || writer != last_writer_ || command.sequence <= previous_.sequence || now - last_time_ > restart_after_;
+  const double silence = now - last_time_;
+  if (!first) longest_gap_ = std::max(longest_gap_, silence);
+  const bool starts = first || silence > restart_after_;
+  const bool continues = !starts && writer == last_writer_ && command.sequence > previous_.sequence;
   writers_.insert(writer);
   ++count_;
   judge_bounds(command);
@@ -82,15 +105,19 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
       const double jump = std::abs(command.position[i] - actual[i]);
       if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
     }
+  } else if (!continues) {
+    judge_change(previous_, command, std::max(0.0, silence) + (period_ > 0 ? period_ : kUsual.back()));
   }
   if (period_ > 0) {
-    if (!starts) judge_step(previous_, command);
+    if (continues) judge_step(previous_, command, between(previous_, command));
   } else {
     if (starts) waiting_.clear();
-    waiting_.push_back({command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now});
+    waiting_.push_back({command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now, continues});
     if (waiting_.size() % kLearn == 0) period_ = period_of(waiting_, waiting_.size() >= kLearnAtMost);
     if (period_ > 0) {
-      for (std::size_t i = 1; i < waiting_.size(); ++i) judge_step(waiting_[i - 1].command, waiting_[i].command);
+      for (std::size_t i = 1; i < waiting_.size(); ++i)
+        if (waiting_[i].continues)
+          judge_step(waiting_[i - 1].command, waiting_[i].command, between(waiting_[i - 1].command, waiting_[i].command));
       waiting_.clear();
       waiting_.shrink_to_fit();
     }

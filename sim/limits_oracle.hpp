@@ -14,13 +14,16 @@ namespace handsel::sim {
 /// Between two set-points n periods h apart, with t = n h and |jerk| <= J:
 /// |a1 - a0| <= J t, |v1 - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower <= p <= upper at
 /// each. The period is the usual one that most intervals between the set-points' stamps (arrivals where there are none) are near, once 100
-/// have come, 3200 where a stalling machine leaves it unclear; the continuity of those is judged too, once it is known. A stream that
-/// starts anew (other writer, sequence not growing, silence beyond the watch) must continue from the posture the robot is in.
+/// have come, 3200 where a stalling machine leaves it unclear; the continuity of those is judged too, once it is known. From one writer's
+/// set-point to another's, and to one whose sequence number has not grown, the time is unknown: the step must be possible within a time
+/// between 0 and the one between the two arrivals plus a period (0.02 s while the period is not known). A stream that starts anew after a
+/// silence beyond the watch must continue from the posture the robot is in.
 class LimitsOracle {
  public:
   struct Held {  ///< a set-point, judged when the period is known
     JointCommand command;
-    double time{};  ///< [s] of whichever clock
+    double time{};     ///< [s] of whichever clock
+    bool continues{};  ///< of the writer of the one before, with a greater sequence number
   };
 
   LimitsOracle(const RobotModel&, double restart_after, double period = 0);
@@ -38,7 +41,11 @@ class LimitsOracle {
   double period() const { return period_; }            ///< 0 while not known
 
  private:
-  void judge_step(const JointCommand& from, const JointCommand& to);
+  /// Time between two set-points of a stream by their sequence numbers [s].
+  double between(const JointCommand& from, const JointCommand& to) const;
+  void judge_step(const JointCommand& from, const JointCommand& to, double t);
+  /// Judges a step that took a time unknown but for its bound T [s].
+  void judge_change(const JointCommand& from, const JointCommand& to, double T);
   void judge_bounds(const JointCommand&);
   void violated(const char* what, Eigen::Index axis, double value, double bound);
 

@@ -31,7 +31,10 @@ Node::Node(Bus& bus, const NodeContext& context)
   per_truth_ = steps_per(settings_.truth_rate, settings_.step);
   restart();
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
-    if (m.robot == context_.robot->name()) world_->command(m, r.writer);
+    if (m.robot == context_.robot->name())
+      world_->command(m, r.writer, to_seconds(r.arrival.time_since_epoch()));
+    else
+      bus_.count_left_out("joint_command: for another robot", 1);
   });
   if (world_->follows()) bus.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "common/base/errors.hpp"
+#include "common/config/text_file.hpp"
 #include "common/model/two_bones.hpp"
 #include "sim/bvh.hpp"
 
@@ -37,13 +36,8 @@ const int kShoulder[2] = {joint("l_shoulder"), joint("r_shoulder")}, kElbow[2] =
 std::string text_of(const std::filesystem::path& file) {
   std::error_code error;
   if (std::filesystem::is_directory(file, error)) throw ConfigError(file.string() + " is a folder, must be a file");
-  const auto size = std::filesystem::file_size(file, error);
-  std::ifstream in(file, std::ios::binary);
-  if (error || !in) throw MissingError("recording " + file.string() + " cannot be opened");
-  if (size > kMaxBytes) throw ConfigError(file.string() + " is larger than " + std::to_string(kMaxBytes >> 20) + " MiB");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return std::move(text).str();
+  if (!is_there(file)) throw MissingError("recording " + file.string() + " cannot be opened");
+  return read_text_file(file, kMaxBytes);
 }
 
 /// Calls with every line, its number, without line ends.

@@ -7,25 +7,51 @@
 
 namespace handsel::sim {
 
+namespace {
+
+constexpr double kReached = 1e-10;  // of a resting set-point [rad]
+constexpr const char* kAgain = "; the robot follows again once set-points rest at its posture";
+
+Vector bounds(const RobotModel& model, double Axis::*bound) {
+  Vector out(model.dof());
+  for (int i = 0; i < model.dof(); ++i) out[i] = model.axes()[static_cast<std::size_t>(i)].*bound;
+  return out;
+}
+
+SetpointGateSettings gate_settings(const RobotSideSettings& s) {
+  return {.period = s.period, .max_ahead = s.max_ahead, .max_missing = s.max_missing};
+}
+
+}  // namespace
+
 RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSideSettings& settings)
-    : settings_(settings), limits_(model.stop_limits()), position_(start) {
+    : settings_(settings),
+      model_(model),
+      limits_(model.stop_limits()),
+      gate_(model.guard_limits(), bounds(model, &Axis::lower), bounds(model, &Axis::upper), gate_settings(settings)),
+      position_(start),
+      measured_(start),
+      joined_(start) {
   velocity_ = acceleration_ = effort_ = Vector::Zero(start.size());
   stops_.resize(start.size());
+  joins_.resize(start.size());
   for (const Manipulator& hand : hands_of(model))
     if (hand.fingers != nullptr) hand_axes_.insert(hand_axes_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
 }
 
-bool RobotSide::command(const JointCommand& command, double now) {
+bool RobotSide::command(const JointCommand& command, double now, double arrival) {
   const auto n = position_.size();
   if (command.effort.size() != 0 && command.effort.size() != n) return false;
   if (command.position.size() != n || command.velocity.size() != n || command.acceleration.size() != n) return false;
-  if (mode_ == DriveMode::protective_stop && at_rest_) {
-    const bool continues = (command.position - position_).cwiseAbs().maxCoeff() < settings_.resume_tolerance &&
-                           command.velocity.cwiseAbs().maxCoeff() < settings_.resume_tolerance;
-    matching_ = continues ? matching_ + 1 : 0;
-    if (matching_ >= settings_.resume_count) enable();
+  const bool takes_up = mode_ == DriveMode::enabled || mode_ == DriveMode::braked || mode_ == DriveMode::protective_stop;
+  if (reference_ == Reference::stands && takes_up) {
+    // A set-point that rests where the one before did is still the same one while the reference moves to it.
+    const bool same = matching_ > 0 && command.position == joined_ && command.velocity.isZero(0.0);
+    matching_ = same || continues(command) ? matching_ + 1 : 0;
+    joined_ = command.position;
+    if (matching_ >= settings_.resume_count && reached(command)) enable();
   }
-  if (mode_ != DriveMode::enabled) return false;
+  if (reference_ != Reference::follows || !accepted(command, arrival)) return false;
   seen_ = fresh_ = true;
   last_ = now;
   position_ = command.position;
@@ -37,9 +63,47 @@ bool RobotSide::command(const JointCommand& command, double now) {
   return true;
 }
 
+/// Whether a set-point may be followed; if not, the reference begins to stop, or to move to where the first set-points rest.
+bool RobotSide::accepted(const JointCommand& command, double arrival) {
+  if (settings_.period <= 0) return true;
+  if (!seen_ && !reached(command) && continues(command)) {
+    begin_stop(mode_);
+    refusal_ = "the robot moves to where the first set-points rest";
+    return false;
+  }
+  SetpointRefusal refusal;
+  if (!seen_ && !reached(command)) refusal = {SetpointRefusal::Reason::position_step, -1, 0, 0};
+  if (!refusal) refusal = gate_.check(command.position, command.velocity, command.acceleration, command.sequence, arrival);
+  if (refusal) refuse(refusal);
+  return !refusal;
+}
+
+void RobotSide::refuse(const SetpointRefusal& refusal) {
+  ++refused_;
+  if (refusal.reason == SetpointRefusal::Reason::order) return;
+  begin_stop(mode_);
+  refusal_ = "refused a set-point: " + std::string(name(refusal.reason));
+  if (refusal.axis >= 0) refusal_ += " of axis " + model_.axes()[static_cast<std::size_t>(refusal.axis)].name;
+  if (refusal.bound != 0) refusal_ += " is " + std::to_string(refusal.value) + ", the limit is " + std::to_string(refusal.bound);
+  refusal_ += kAgain;
+}
+
+bool RobotSide::reached(const JointCommand& command) const { return (command.position - position_).cwiseAbs().maxCoeff() <= kReached; }
+
+/// A loaded arm sags and a closed hand is bent by what it holds: the measured posture counts as well as the one that is held to.
+bool RobotSide::continues(const JointCommand& command) const {
+  if (!command.position.allFinite() || !command.velocity.allFinite()) return false;
+  for (Eigen::Index i = 0; i < position_.size(); ++i) {
+    const double off = std::min(std::abs(command.position[i] - position_[i]), std::abs(command.position[i] - measured_[i]));
+    if (off >= settings_.resume_tolerance || std::abs(command.velocity[i]) >= settings_.resume_tolerance) return false;
+  }
+  return true;
+}
+
 void RobotSide::stop(DriveMode mode) {
   if (mode_ == DriveMode::enabled) begin_stop(mode);
   mode_ = mode;
+  refusal_.clear();
 }
 
 void RobotSide::hold(const Vector& position, DriveMode mode) {
@@ -47,11 +111,15 @@ void RobotSide::hold(const Vector& position, DriveMode mode) {
   velocity_.setZero();
   acceleration_.setZero();
   begin_stop(mode);
+  refusal_.clear();
 }
 
 void RobotSide::enable() {
   mode_ = DriveMode::enabled;
-  stopping_ = seen_ = false;
+  reference_ = Reference::follows;
+  refusal_.clear();
+  gate_.restart();
+  seen_ = false;
   matching_ = 0;
   velocity_.setZero();
   acceleration_.setZero();
@@ -59,11 +127,13 @@ void RobotSide::enable() {
 
 void RobotSide::begin_stop(DriveMode mode) {
   mode_ = mode;
-  stopping_ = true;
-  at_rest_ = false;
+  reference_ = Reference::stops;
   matching_ = 0;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
-    stops_[i].init({position_[i], velocity_[i], acceleration_[i]}, {limits_.velocity[i], limits_.acceleration[i], limits_.jerk[i]});
+    const AxisState s{position_[i], velocity_[i], acceleration_[i]};
+    const AxisLimits limits = limits_of(limits_, i);
+    // The guard limits where the stop limits would not stop the axis within its bounds.
+    stops_[i].init(s, gate_.stops_within_bounds(s, i, limits) ? limits : limits_of(gate_.limits(), i));
   }
 }
 
@@ -76,20 +146,54 @@ bool RobotSide::hand_moves() const {
   return std::any_of(hand_axes_.begin(), hand_axes_.end(), [&](int axis) { return std::abs(velocity_[axis]) >= 1e-6; });
 }
 
-void RobotSide::step(double now, double dt, bool holding_object) {
-  if (mode_ == DriveMode::enabled && seen_ && now - last_ > settings_.max_gap) begin_stop(DriveMode::protective_stop);
-  if (stopping_) {
-    at_rest_ = true;
+void RobotSide::step_stop(double dt) {
+  if (reference_ == Reference::stops) {
+    bool rests = true;
     for (Eigen::Index i = 0; i < position_.size(); ++i) {
       const AxisState& s = stops_[i].step(dt);
       position_[i] = s.position;
       velocity_[i] = s.velocity;
       acceleration_[i] = s.acceleration;
-      at_rest_ = at_rest_ && stops_[i].finished();
+      rests = rests && stops_[i].finished();
     }
+    if (!rests) return;
+    reference_ = Reference::stands;
+    for (Eigen::Index i = 0; i < position_.size(); ++i) joins_[i] = SetpointFilter({position_[i], 0, 0}, limits_of(limits_, i));
+    joined_ = position_;
+    return;
+  }
+  if (matching_ == 0 && velocity_.isZero(0.0)) return;
+  for (Eigen::Index i = 0; i < position_.size(); ++i) {
+    const double to = matching_ > 0 ? joined_[i] : joins_[i].state().position;
+    const AxisState& s = joins_[i].toward({to, 0, 0}, dt);
+    position_[i] = s.position;
+    velocity_[i] = s.velocity;
+    acceleration_[i] = s.acceleration;
+  }
+}
+
+/// Continues with the acceleration of the set-point before, as long as the robot can still be stopped within its limits afterwards.
+void RobotSide::extrapolate(double dt) {
+  for (Eigen::Index i = 0; i < position_.size() && settings_.period > 0; ++i) {
+    const AxisState s = advanced({position_[i], velocity_[i], acceleration_[i]}, dt, 0);
+    if (!gate_.check_state(s, i)) continue;
+    begin_stop(mode_);
+    refusal_ = "no set-point came and axis " + model_.axes()[static_cast<std::size_t>(i)].name + " nears a limit" + kAgain;
+    return step_stop(dt);
+  }
+  position_ += dt * velocity_ + dt * dt / 2 * acceleration_;
+  velocity_ += dt * acceleration_;
+}
+
+void RobotSide::step(double now, double dt, bool holding_object) {
+  if (reference_ == Reference::follows && seen_ && now - last_ > settings_.max_gap) {
+    begin_stop(DriveMode::enabled);
+    refusal_ = "no set-point for more than " + std::to_string(std::lround(1e3 * settings_.max_gap)) + " ms" + kAgain;
+  }
+  if (reference_ != Reference::follows) {
+    if (!fresh_) step_stop(dt);  // else the set-point before the refused one was this step's
   } else if (!fresh_ && seen_) {
-    position_ += dt * velocity_ + dt * dt / 2 * acceleration_;
-    velocity_ += dt * acceleration_;
+    extrapolate(dt);
   }
   fresh_ = false;
   if (!settings_.never_releases) return;

@@ -1,30 +1,43 @@
-// The robot's side of the set-points: drive modes, the watch over set-points, the soft stop. In the simulator it is the robot's own
-// controller; in front of a real one (deploy/drivers) it stands between the wire and the maker's controller. Pure.
+// The robot's side of the set-points: drive modes, the check of every set-point, the watch over their pace, the soft stop. In the simulator
+// it is the robot's own controller; in front of a real one (deploy/drivers) it stands between the wire and the maker's controller. Pure.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "common/messages/robot.hpp"
 #include "common/model/robot_model.hpp"
+#include "common/trajectory/setpoint_filter.hpp"
+#include "common/trajectory/setpoint_gate.hpp"
 #include "common/trajectory/stop.hpp"
 
 namespace handsel::sim {
 
 struct RobotSideSettings {
+  double period{0.0};             ///< of the controller's set-points [s]; 0: set-points are not checked (tests of the physics alone)
   double max_gap{0.020};          ///< without set-points for this long while enabled: soft stop [s]
-  double resume_tolerance{0.02};  ///< set-points this near the held posture, at rest, end a protective stop [rad]
+  double resume_tolerance{0.02};  ///< set-points this near the held or measured posture, at rest, are followed again after a stop [rad]
+  double max_ahead{0.020};        ///< a set-point may come this much earlier than its time [s]
   int resume_count{10};           ///< that many of them in a row
+  double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
   bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has rested for half a second
 };
 
-/// Starts enabled, holding `start`; the watch begins with the first set-point. A protective stop ends by itself when set-points come
-/// again that continue from the held posture; a user stop ends by enable().
+/// Starts enabled, holding `start`; the watch begins with the first set-point. Every set-point is checked against the guard limits of the
+/// robot description, whoever sent it; when one fails, the reference stops softly and refusal() says why. When set-points stay away the
+/// drives stay enabled: the reference stops softly, too. It follows again by itself once set-points rest near the reference or near the
+/// measured posture: it moves to them first, without a jump. A protective stop, and brakes, end by themselves under the same
+/// condition; the permission to move is another matter, and after a protective stop a person's. A user stop ends by enable().
 class RobotSide {
  public:
   RobotSide(const RobotModel&, const Vector& start, const RobotSideSettings&);
 
-  /// A set-point arrived. False when it is not followed: wrong dimension, not enabled, not continuing from the held posture.
-  bool command(const JointCommand&, double now);
+  /// A set-point is there. False when it is not followed: wrong dimension, not enabled, not continuing from the held posture, refused.
+  /// `arrival`: when it arrived, by a clock that never stands still [s].
+  bool command(const JointCommand&, double now, double arrival);
+  bool command(const JointCommand& set_point, double now) { return command(set_point, now, now); }
+  /// Where the robot was measured, all axes.
+  void measured(const Vector& position) { measured_ = position; }
   void user_stop() { stop(DriveMode::user_stop); }
   /// Softly, from whatever the reference does now; stays in `mode`.
   void stop(DriveMode mode);
@@ -42,22 +55,40 @@ class RobotSide {
   double payload(std::size_t hand = 0) const;
   DriveMode mode() const { return mode_; }
   bool hand_moves() const;  ///< its reference does
-  bool stopped() const { return stopping_ && at_rest_; }
+  bool stopped() const { return reference_ == Reference::stands; }
+  bool follows() const { return reference_ == Reference::follows; }  ///< set-points, or would when they come
+  /// Why it does not follow though the drives are enabled, one sentence; else empty.
+  const std::string& refusal() const { return refusal_; }
+  std::uint64_t refused() const { return refused_; }  ///< set-points refused while it followed
 
  private:
+  enum class Reference : char { follows, stops, stands };
   void begin_stop(DriveMode);
+  bool continues(const JointCommand&) const;
+  bool reached(const JointCommand&) const;
+  bool accepted(const JointCommand&, double arrival);
+  void refuse(const SetpointRefusal&);
+  void step_stop(double dt);
+  void extrapolate(double dt);
 
   RobotSideSettings settings_;
+  const RobotModel& model_;
   KinematicLimits limits_;
+  SetpointGate gate_;
   std::vector<int> hand_axes_;
   DriveMode mode_{DriveMode::enabled};
-  Vector position_, velocity_, acceleration_, effort_;
+  Reference reference_{Reference::follows};
+  std::string refusal_;
+  Vector position_, velocity_, acceleration_, effort_, measured_;
   Vector closed_, squeeze_;  // hand posture and effort kept by the mutant
   std::vector<SoftStop> stops_;
-  bool stopping_{false}, at_rest_{false}, seen_{false}, fresh_{false}, clenched_{false};
+  std::vector<SetpointFilter> joins_;  // from where it stands to set-points that rest near there
+  Vector joined_;                      // the posture of those set-points
+  bool seen_{false}, fresh_{false}, clenched_{false};
   double last_{0}, hand_rest_{0}, payload_{0};
   Vector other_payloads_;
   int matching_{0};
+  std::uint64_t refused_{0};
 };
 
 }  // namespace handsel::sim

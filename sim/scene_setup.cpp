@@ -1,6 +1,7 @@
 #include "sim/scene_setup.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "common/base/errors.hpp"
 
@@ -40,6 +41,9 @@ class Reader {
       : scenario_(scenario), robot_(robot), library_(library), data_root_(data_root), random_(seed * 0x9e3779b97f4a7c15ULL + 0x5eed) {}
 
   SceneSetup read(double coverage) {
+    require_names(scenario_.boxes(), "box");
+    require_names(scenario_.objects(), "object");
+    require_names(scenario_.people(), "person");
     out_.T_world_base = pose_of(scenario_.base());
     read_start();
     for (const auto& box : scenario_.boxes()) read_box(box);
@@ -64,6 +68,18 @@ class Reader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw ConfigError("scenario " + scenario_.name() + ": " + what); }
   double jitter(double size) { return size * (2 * std::uniform_real_distribution<double>(0, 1)(random_) - 1); }
+
+  template <class Entries>
+  void require_names(const Entries& entries, const std::string& kind) const {
+    constexpr int kMost = 200;  // of a kind: each costs time in every physics step
+    if (entries.size() > kMost)
+      fail(std::to_string(entries.size()) + " entries of kind " + kind + ", must be at most " + std::to_string(kMost));
+    std::set<std::string> known;
+    for (const auto& entry : entries) {
+      if (entry.id().empty()) fail(kind + " has no id: each needs a name of its own");
+      if (!known.insert(entry.id()).second) fail(kind + " \"" + entry.id() + "\" is there twice");
+    }
+  }
 
   void read_start() {
     out_.start = robot_.rest_posture();

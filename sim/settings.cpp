@@ -4,6 +4,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/config/sim.pb.h"
+#include "common/config/trajectory_controller.pb.h"
 
 namespace handsel::sim {
 
@@ -11,6 +12,15 @@ std::filesystem::path data_root() {
   if (const char* data = std::getenv("HANDSEL_DATA")) return data;
   const std::filesystem::path beside = resource_root() / "../../shared/data";
   return std::filesystem::exists(beside) ? beside : std::filesystem::path();
+}
+
+/// Period of the set-points that the controller of these settings sends [s].
+double controller_period(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "trajectory_controller.txtpb";
+  config::TrajectoryControllerSettings read;
+  load_text_proto(file, read);
+  if (!(read.period() > 0 && read.period() <= 0.02)) throw ConfigError(locate(file, "period:") + ": period must be given, in (0, 0.02]");
+  return read.period();
 }
 
 SimSettings load_settings(const std::filesystem::path& folder) {
@@ -29,6 +39,8 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.truth_rate = positive(read.truth_rate(), "truth_rate");
   s.servo.bandwidth = positive(read.servo_bandwidth(), "servo_bandwidth");
   s.robot_side.max_gap = positive(read.max_setpoint_gap(), "max_setpoint_gap");
+  s.robot_side.max_ahead = s.robot_side.max_gap;
+  s.robot_side.period = controller_period(folder);
   s.robot_grip.max_force = positive(read.grip_force(), "grip_force");
   s.robot_grip.max_torque = positive(read.grip_torque(), "grip_torque");
   s.person_grip.max_force = positive(read.person_grip_force(), "person_grip_force");

@@ -347,12 +347,26 @@ struct SimWorld::Impl {
     dynamics.stepSimulation(settings.step, 0);
     ++steps;
     robot->read();
+    side.measured(robot->position());
     for (ObjectBody& object : objects) object.read();
     gather(dispatcher, settings.step, kReach, touches);
     update_grasps();
     for (Hand& hand : hands) measure(hand);
     judge();
     sense();
+  }
+
+  /// `how`: empty: by a person; "protective": by the robot's own protection, which ends by itself; "unannounced": without saying so.
+  std::string stop_robot(const std::string& how) {
+    if (how.empty())
+      side.user_stop();
+    else if (how == "protective")
+      side.stop(DriveMode::protective_stop);
+    else if (how == "unannounced")
+      side.stop(DriveMode::enabled);
+    else
+      return "robot_stop is protective, unannounced or, without a subject, by a person; not \"" + how + "\"";
+    return "";
   }
 
   std::string control(const SimControl& c) {
@@ -380,7 +394,9 @@ struct SimWorld::Impl {
       case SimAction::person_refuse:
         return everyone([](PersonModel& p) { p.refuse(); });
       case SimAction::robot_stop:
-        side.user_stop();
+        return stop_robot(c.subject);
+      case SimAction::emergency_stop:
+        side.stop(DriveMode::emergency_stop);
         return "";
       case SimAction::robot_enable:
         side.enable();
@@ -455,9 +471,9 @@ SimWorld::SimWorld(SimWorld&&) noexcept = default;
 void SimWorld::step() { impl_->step(); }
 double SimWorld::time() const { return impl_->now(); }
 
-void SimWorld::command(const JointCommand& command, std::uint64_t writer) {
+void SimWorld::command(const JointCommand& command, std::uint64_t writer, double arrival) {
   impl_->limits.observe(command, writer, impl_->now(), impl_->robot->position());
-  impl_->side.command(command, impl_->now());
+  impl_->side.command(command, impl_->now(), arrival < 0 ? impl_->now() : arrival);
 }
 
 void SimWorld::observe(const HumanObservation& seen) { impl_->people->follow(seen); }
@@ -503,6 +519,8 @@ bool SimWorld::robot_state(RobotState& out) {
     feel(w.hands[i], other.wrist_wrench, other.hand_effort, other.payload);
   }
   out.mode = w.side.mode();
+  out.refusal = w.side.refusal();
+  out.refused_set_points = w.side.refused();
   return true;
 }
 

@@ -26,7 +26,8 @@ class SimWorld {
   double time() const;  ///< [s] since the start
 
   /// A set-point as received; `writer` tells its writers apart.
-  void command(const JointCommand&, std::uint64_t writer = 1);
+  /// `arrival`: when it arrived, by a clock that never stands still [s]; negative: the world's own time.
+  void command(const JointCommand&, std::uint64_t writer = 1, double arrival = -1);
   /// What a source outside says of people; moves those who follow it.
   void observe(const HumanObservation&);
   /// Does somebody follow a source outside?

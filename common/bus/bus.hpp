@@ -33,6 +33,10 @@ struct SubscriptionStatus {
   TimePoint last_arrival{};
   Duration last_age{};         ///< age at arrival of the last sample
   std::string last_rejection;  ///< one sentence
+  std::uint64_t left_out{};    ///< malformed elements of lists that were left out of valid samples
+  std::string last_left_out;   ///< one sentence
+  std::uint64_t refused{};     ///< samples of another writer than the accepted one, on a topic with one writer
+  std::string second_writer;   ///< identity of that other writer while it is there; else empty
 
   bool never_seen() const { return received == 0; }
   /// Age of the newest sample now: time since arrival + age at arrival. Duration::max() while nothing was ever seen (stale).
@@ -98,7 +102,7 @@ class Bus {
  public:
   virtual ~Bus() = default;
 
-  /// `strength` decides who is heard on topics with exclusive ownership (profiles command, latch, setpoint): the strongest living writer.
+  /// `strength` has no effect: of a topic with one writer (has_one_writer) the first living one counts (common/bus/writer_pin).
   template <class M>
   std::unique_ptr<Publisher<M>> advertise(int strength = 0) {
     return std::make_unique<Publisher<M>>(advertise_any(message_type<M>(), strength));
@@ -134,6 +138,9 @@ class Bus {
   virtual Stamp stamp_now() const = 0;
   /// Shown in ComponentHealth; empty reason = ok.
   virtual void set_degraded(const std::string& reason) = 0;
+  /// Adds to a count of ComponentHealth.left_out. `what` says what was left out and why, e.g. "people: farther than the nearest 16"; at
+  /// most 32 such texts are distinguished, so that it must hold nothing that comes from outside.
+  virtual void count_left_out(const std::string& what, std::uint64_t more) = 0;
   virtual const std::string& component() const = 0;
 };
 

@@ -75,7 +75,7 @@ const handsel_topic* handsel_find_topic(const char* topic) {
 dds_qos_t* handsel_topic_qos(const char* topic) {
   const TopicRow* row = topic ? find_topic(topic) : nullptr;
   if (!row) return nullptr;
-  Qos qos = writer_qos(*row, 0);
+  Qos qos = writer_qos(*row);
   const Qos of_reader = reader_qos(*row);
   dds_merge_qos(qos.get(), of_reader.get());
   return qos.release();
@@ -97,7 +97,7 @@ dds_entity_t handsel_participant(const char* component) {
 
 dds_entity_t handsel_writer(dds_entity_t participant, const char* topic) {
   return endpoint(
-      participant, topic, [](const TopicRow& row) { return writer_qos(row, 0); }, &dds_create_writer, "writer");
+      participant, topic, [](const TopicRow& row) { return writer_qos(row); }, &dds_create_writer, "writer");
 }
 
 dds_entity_t handsel_reader(dds_entity_t participant, const char* topic) {

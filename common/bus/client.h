@@ -50,7 +50,8 @@ HANDSEL_EXPORT const handsel_topic* handsel_find_topic(const char* topic);
 HANDSEL_EXPORT dds_qos_t* handsel_topic_qos(const char* topic);
 
 /* Enters the domain HANDSEL_DOMAIN (else 0) the way Handsel's processes do: CYCLONEDDS_URI when it is set, else the hosts of
- * HANDSEL_PEERS, else this machine only. `component`: what tools call this program. */
+ * HANDSEL_PEERS, else this machine only. `component`: the name of this program. A topic with one writer is
+ * accepted from the components of its column `writers` only: a program that stands in for one is called like it, e.g. "driver". */
 HANDSEL_EXPORT dds_entity_t handsel_participant(const char* component);
 /* A writer with handsel_topic_qos(). */
 HANDSEL_EXPORT dds_entity_t handsel_writer(dds_entity_t participant, const char* topic);

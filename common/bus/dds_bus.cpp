@@ -18,12 +18,16 @@
 #include <dds/ddsi/ddsi_serdata.h>
 
 #include "common/base/errors.hpp"
+#include "common/bus/dds_configuration.hpp"
 #include "common/bus/dds_defaults.hpp"
 #include "common/bus/executor.hpp"
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
+#include "common/bus/left_out.hpp"
 #include "common/bus/look_around.hpp"
 #include "common/bus/qos.hpp"
+#include "common/bus/writer_discovery.hpp"
+#include "common/bus/writer_gate.hpp"
 #include "common/config/resources.hpp"
 #include "common/messages/system.hpp"
 
@@ -70,6 +74,7 @@ struct Reader {
   DdsBus::Impl& bus;
   Intake intake;
   std::shared_ptr<void> sample;
+  WriterGate gate;
   dds_entity_t entity{0};
   std::atomic<std::int64_t> arrival{0};
   std::atomic<bool> pending{false};
@@ -93,29 +98,41 @@ struct DdsBus::Impl {
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
+  std::unique_ptr<WriterDiscovery> discovery;  // from the first reader of a topic with one writer on
+  std::atomic<bool> discovery_news{false};
   std::uint64_t incarnation{};
   HealthState state{HealthState::starting};
   std::string degraded, refusal, realtime_note;
   double last_cpu{0};
   TimePoint last_health{};
+  LeftOutCounts left_out;
   ComponentHealth health_message;
   std::unique_ptr<Publisher<ComponentHealth>> health;
 
   void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str()); }
+  dds_entity_t new_topic(const MessageType& type) const {
+    const Qos qos = topic_qos(type.row());
+    return need(
+        dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), type.row().topic, qos.get(), nullptr),
+        std::string("topic ") + type.row().topic);
+  }
   dds_entity_t topic(const MessageType& type) {
     dds_entity_t& entity = in_table(type.row()) ? topic_entities[&type.row() - kTopics] : foreign_topics[&type];
-    if (entity == 0) {
-      const Qos qos = topic_qos(type.row());
-      entity = need(dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), type.row().topic,
-                                     qos.get(), nullptr),
-                    std::string("topic ") + type.row().topic);
-    }
+    if (entity == 0) entity = new_topic(type);
+    return entity;
+  }
+  /// A topic entity of the reader's own whose filter is the reader's gate.
+  dds_entity_t gated_topic(Reader& reader) {
+    const dds_entity_t entity = new_topic(reader.intake.type());
+    reader.gate.filter(entity, [this, &reader] { mark(reader); });
     return entity;
   }
   void mark(Reader& reader);
   void drain();
   void take(Reader& reader);
   void look_at_matching(Reader& reader);
+  void discover_writers();
+  void follow_writers(Reader& reader);
   void publish_health(TimePoint now);
   void enter_realtime();
 };
@@ -135,8 +152,8 @@ void on_matching(Reader& reader) {
 
 class DdsPublisher final : public AnyPublisher {
  public:
-  DdsPublisher(DdsBus::Impl& bus, const MessageType& type, int strength) : bus_(bus), type_(type), sample_(type.new_wire()) {
-    const Qos qos = writer_qos(type.row(), strength);
+  DdsPublisher(DdsBus::Impl& bus, const MessageType& type) : bus_(bus), type_(type), sample_(type.new_wire()) {
+    const Qos qos = writer_qos(type.row());
     writer_ = need(dds_create_writer(bus.participant, bus.topic(type), qos.get(), nullptr), std::string("writer of ") + type.row().topic);
   }
   ~DdsPublisher() override {
@@ -223,7 +240,38 @@ void DdsBus::Impl::mark(Reader& reader) {
   executor.wake();
 }
 
+/// Takes the news of who writes the topics with one writer to their readers.
+void DdsBus::Impl::discover_writers() {
+  if (!discovery) return;
+  discovery->take([this](std::uint64_t writer, const TopicRow& row, const WriterDiscovery::Found* found) {
+    for (const auto& reader : readers) {
+      if (&reader->intake.type().row() != &row) continue;
+      if (found != nullptr)
+        reader->intake.writer_appeared(writer, found->identity, monotonic_now());
+      else
+        reader->intake.writer_left(writer, monotonic_now());
+      reader->gate.open_for(reader->intake.pinned());
+    }
+  });
+}
+
+/// Tells a new reader who writes its topic.
+void DdsBus::Impl::follow_writers(Reader& reader) {
+  if (!has_one_writer(reader.intake.type().row())) return;
+  if (!discovery) {
+    discovery = std::make_unique<WriterDiscovery>(participant, [this] {
+      discovery_news.store(true, std::memory_order_release);
+      executor.wake();
+    });
+  }
+  discover_writers();
+  for (const auto& [writer, found] : discovery->writers())
+    if (found.row == &reader.intake.type().row()) reader.intake.writer_appeared(writer, found.identity, monotonic_now());
+  reader.gate.open_for(reader.intake.pinned());
+}
+
 void DdsBus::Impl::drain() {
+  if (discovery_news.exchange(false, std::memory_order_acq_rel)) discover_writers();
   {
     const std::lock_guard lock(pending_mutex);
     draining.swap(pending);
@@ -231,6 +279,7 @@ void DdsBus::Impl::drain() {
   for (Reader* reader : draining) {
     reader->pending.store(false, std::memory_order_release);
     if (reader->matching_changed.exchange(false, std::memory_order_acq_rel)) look_at_matching(*reader);
+    reader->gate.hear(reader->intake, monotonic_now());
     take(*reader);
   }
   draining.clear();
@@ -245,6 +294,7 @@ void DdsBus::Impl::take(Reader& reader) {
     if (!info.valid_data) continue;
     const std::int64_t arrival = reader.arrival.load(std::memory_order_relaxed);
     const TimePoint at = arrival > 0 ? TimePoint(Duration(arrival)) : monotonic_now();
+    if (!reader.intake.knows(info.publication_handle)) discover_writers();
     reader.intake.deliver(reader.sample.get(), info.publication_handle, at);
   }
   mark(reader);
@@ -274,13 +324,22 @@ void DdsBus::Impl::publish_health(TimePoint now) {
   if (last_health != TimePoint{} && now > last_health) m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(now - last_health));
   last_cpu = cpu;
   last_health = now;
-  m.reason = degraded;
-  if (m.reason.empty()) m.reason = executor.silent_job(now);
+  SecondWriters others;
+  for (const auto& reader : readers) {
+    reader->gate.hear(reader->intake, now);
+    reader->intake.watch(now);
+    reader->gate.open_for(reader->intake.pinned());
+    others.add(reader->intake);
+  }
+  m.reason = executor.silent_job(now);  // first: the launcher heeds it
+  for (const std::string& reason : {others.reason(), degraded})
+    if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
   if (m.reason.empty() && !refusal.empty()) m.reason = "refused to send: " + refusal;
   m.state = state != HealthState::ok ? state : m.reason.empty() ? HealthState::ok : HealthState::degraded;
   m.topics.clear();
+  m.left_out = left_out.counts();
   for (const auto& reader : readers) {
-    reader->intake.watch(now);
+    add_left_out(reader->intake, m.left_out);
     if (m.topics.size() < 64) m.topics.push_back(reader->intake.health(now));
   }
   if (health) health->publish(m);
@@ -311,7 +370,7 @@ DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(se
   impl_->enter_realtime();  // first: the transport's own threads inherit the priority
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_entity_name(qos.get(), settings.component.c_str());
-  impl_->participant = need(dds_create_participant(settings.domain, qos.get(), nullptr), "domain " + std::to_string(settings.domain));
+  impl_->participant = need(create_participant(settings.domain, qos.get()), "domain " + std::to_string(settings.domain));
   impl_->executor.on_wake([this] { impl_->drain(); });
   if (settings.health) {
     impl_->health = advertise<ComponentHealth>();
@@ -357,9 +416,7 @@ bool DdsBus::has_twin(Duration wait) {
   return twin;
 }
 
-std::unique_ptr<AnyPublisher> DdsBus::advertise_any(const MessageType& type, int strength) {
-  return std::make_unique<DdsPublisher>(*impl_, type, strength);
-}
+std::unique_ptr<AnyPublisher> DdsBus::advertise_any(const MessageType& type, int) { return std::make_unique<DdsPublisher>(*impl_, type); }
 
 const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
                                                 const SubscribeOptions& options) {
@@ -372,12 +429,14 @@ const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::fu
   dds_lset_liveliness_changed(
       listener, [](dds_entity_t, const dds_liveliness_changed_status_t, void* arg) { on_matching(*static_cast<Reader*>(arg)); });
   const Qos qos = reader_qos(type.row());
-  reader->entity = dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr);
+  const dds_entity_t topic = has_one_writer(type.row()) ? impl_->gated_topic(*reader) : impl_->topic(type);
+  reader->entity = dds_create_reader(impl_->participant, topic, qos.get(), nullptr);
   need(reader->entity, std::string("reader of ") + type.row().topic);
   dds_set_listener(reader->entity, listener);
   dds_delete_listener(listener);
   if (polled) impl_->executor.every(options.period, [impl = impl_.get(), reader](TimePoint) { impl->take(*reader); });
   reader->matching_changed.store(true);
+  impl_->follow_writers(*reader);
   impl_->mark(*reader);
   return reader->intake.status();
 }
@@ -407,6 +466,7 @@ CancelToken DdsBus::run_job(std::function<Duration(const CancelToken&)> work, st
 TimePoint DdsBus::now() const { return monotonic_now(); }
 Stamp DdsBus::stamp_now() const { return system_now(); }
 void DdsBus::set_degraded(const std::string& reason) { impl_->degraded = reason; }
+void DdsBus::count_left_out(const std::string& what, std::uint64_t more) { impl_->left_out.add(what, more); }
 const std::string& DdsBus::component() const { return impl_->settings.component; }
 
 }  // namespace handsel

@@ -66,6 +66,7 @@ class DdsBus : public Bus, public RawBus {
   TimePoint now() const override;
   Stamp stamp_now() const override;
   void set_degraded(const std::string& reason) override;
+  void count_left_out(const std::string& what, std::uint64_t more) override;
   const std::string& component() const override;
 
   struct Impl;

@@ -3,12 +3,18 @@
 #include <dlfcn.h>
 #include <strings.h>
 
+#include <dds/dds.h>
+#include <dds/ddsrt/log.h>
 #include <dds/version.h>
 #include <tinyxml2.h>
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <filesystem>
+
+#include "common/base/errors.hpp"
 
 namespace handsel {
 namespace {
@@ -38,13 +44,14 @@ std::string text_of(const XMLElement& element) {
 std::optional<std::uint64_t> bytes_of(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || value < 0) return std::nullopt;
+  constexpr double kMost = 1e15;  // [bytes]
+  if (error != std::errc() || !(value >= 0 && value <= kMost)) return std::nullopt;
   std::string unit(end, text.data() + text.size());
   std::erase(unit, ' ');
   constexpr std::pair<const char*, double> kUnits[] = {{"", 1},         {"B", 1},         {"kB", 1024},    {"KiB", 1024},
                                                        {"MB", 1 << 20}, {"MiB", 1 << 20}, {"GB", 1 << 30}, {"GiB", 1 << 30}};
   for (const auto& [name, factor] : kUnits)
-    if (same(unit.c_str(), name)) return static_cast<std::uint64_t>(value * factor);
+    if (same(unit.c_str(), name)) return static_cast<std::uint64_t>(std::min(value * factor, kMost));
   return std::nullopt;
 }
 
@@ -124,6 +131,49 @@ DdsConfiguration read_dds_configuration(const std::string& uri, std::uint32_t do
     begin = end + 1;
   }
   return out;
+}
+
+namespace {
+
+/// What the transport logs while the object lives.
+class Log {
+ public:
+  Log() { dds_set_log_sink(&Log::write, this); }
+  ~Log() { dds_set_log_sink(nullptr, nullptr); }
+  Log(const Log&) = delete;
+  Log& operator=(const Log&) = delete;
+  const std::string& text() const { return text_; }
+
+ private:
+  static void write(void* self, const dds_log_data_t* data) {
+    static_cast<Log*>(self)->text_.append(data->message, data->size).append("\n");
+  }
+  std::string text_;
+};
+
+}  // namespace
+
+int create_participant(std::uint32_t domain, const ::dds_qos* qos) {
+  const char* uri = std::getenv("CYCLONEDDS_URI");
+  if (const DdsConfiguration read = read_dds_configuration(uri != nullptr ? uri : "", domain); !read.error.empty()) {
+    if (read.error.ends_with("is not there")) throw MissingError(read.error);
+    throw ConfigError(read.error);
+  }
+  std::string logged;
+  dds_entity_t participant = 0;
+  {
+    const Log log;
+    participant = dds_create_participant(domain, qos, nullptr);
+    logged = log.text();
+  }
+  const std::size_t about = logged.find("config: ");
+  if (participant < 0 && about != std::string::npos) {
+    std::string line = logged.substr(about + 8, logged.find('\n', about) - about - 8);
+    throw ConfigError("the DDS configuration cannot be used: " + line + " (CYCLONEDDS_URI is " + std::string(uri != nullptr ? uri : "") +
+                      ")");
+  }
+  std::fputs(logged.c_str(), stderr);
+  return participant;
 }
 
 TransportLibrary transport_library() {

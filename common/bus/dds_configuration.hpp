@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+struct dds_qos;
+
 namespace handsel {
 
 struct DdsConfiguration {
@@ -21,6 +23,11 @@ struct DdsConfiguration {
 
 /// What holds for `domain` under `uri`: a comma-separated list of file URIs, paths and inline XML, later ones win. Never throws.
 DdsConfiguration read_dds_configuration(const std::string& uri, std::uint32_t domain);
+
+/// Creates a participant in a domain and returns the transport's handle, below 0 for an error of the transport that has nothing to do with
+/// its configuration. Throws MissingError when CYCLONEDDS_URI names a file that is not there, ConfigError when the transport refuses what
+/// CYCLONEDDS_URI says; both in one sentence, in place of the transport's own lines.
+int create_participant(std::uint32_t domain, const ::dds_qos* qos);
 
 /// The transport's library: the version this program was built for, and the file it runs with.
 struct TransportLibrary {

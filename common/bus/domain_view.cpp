@@ -39,6 +39,10 @@ std::string property(const dds_qos_t* qos, const char* name) {
   return dds_qget_prop(qos, name, &value) ? taken(value) : std::string();
 }
 
+std::string key_of(const dds_guid_t& guid) { return {reinterpret_cast<const char*>(guid.v), sizeof guid.v}; }
+
+}  // namespace
+
 DomainParticipant described(const dds_qos_t* qos) {
   DomainParticipant out;
   char* name = nullptr;
@@ -48,10 +52,6 @@ DomainParticipant described(const dds_qos_t* qos) {
   out.pid = std::atoi(property(qos, "__Pid").c_str());
   return out;
 }
-
-std::string key_of(const dds_guid_t& guid) { return {reinterpret_cast<const char*>(guid.v), sizeof guid.v}; }
-
-}  // namespace
 
 DomainView look_around(dds_entity_t participant) {
   std::map<std::string, DomainParticipant> known;
@@ -70,7 +70,7 @@ DomainView look_around(dds_entity_t participant) {
       if (key_of(sample.participant_key) == key_of(self)) return;
       DomainEndpoint endpoint{writes, sample.topic_name, sample.type_name, known[key_of(sample.participant_key)], {}};
       if (const TopicRow* row = find_topic(sample.topic_name)) {
-        const Qos ours = writes ? reader_qos(*row) : writer_qos(*row, 0);
+        const Qos ours = writes ? reader_qos(*row) : writer_qos(*row);
         endpoint.unmatched = writes ? why_unmatched(sample.qos, ours.get()) : why_unmatched(ours.get(), sample.qos);
       }
       view.endpoints.push_back(std::move(endpoint));

@@ -229,7 +229,7 @@ std::string Executor::silent_job(TimePoint now) {
     seen_at_ = now;
     return {};
   }
-  return now - seen_at_ > kJobSilence ? "a job has given no sign of life for two seconds" : std::string();
+  return now - seen_at_ > kJobSilence ? kSilentJob : std::string();
 }
 
 }  // namespace handsel

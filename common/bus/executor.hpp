@@ -22,6 +22,9 @@ namespace handsel {
 /// Now on CLOCK_MONOTONIC.
 TimePoint monotonic_now();
 
+/// Reason of a degraded process whose job does not ask its token any more.
+inline constexpr const char* kSilentJob = "a job has given no sign of life for two seconds";
+
 class Executor {
  public:
   using Log = std::function<void(const std::string&)>;

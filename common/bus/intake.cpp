@@ -8,6 +8,11 @@ namespace handsel {
 namespace {
 constexpr double kClockDrift = 1e-3;
 constexpr std::size_t kMostWriters = 64, kMostKeys = 64;
+
+std::string second_writer_sentence(const std::string& name, const std::string& topics) {
+  return "second_writer: " + name + " writes " + topics + " too; its samples are refused";
+}
+
 }  // namespace
 
 Duration AgeEstimator::update(Stamp stamp, TimePoint arrival, std::string_view key) {
@@ -35,16 +40,24 @@ Duration AgeEstimator::update(Stamp stamp, TimePoint arrival, std::string_view k
 
 Intake::Intake(const MessageType& message, Callback callback, Duration period, Log log)
     : type_(message), callback_(std::move(callback)), log_(std::move(log)), message_(message.new_message()) {
+  if (has_one_writer(type_.row())) pin_.emplace(type_.row());
   if (type_.row().deadline > 0) deadline_ = from_seconds(type_.row().deadline) + period;
 }
 
 void Intake::deliver(const void* wire, std::uint64_t writer, TimePoint arrival) {
+  if (!admits(writer, arrival)) return;
   std::string why;
-  if (!type_.from_wire(wire, message_.get(), why)) {
+  LeftOutElements left_out;
+  if (!type_.from_wire(wire, message_.get(), why, left_out)) {
     ++status_.rejected;
     status_.last_rejection = why;
     if (logged_.size() < kMostWriters && logged_.insert(writer).second) log_("rejected a sample: " + why);
     return;
+  }
+  if (left_out.count > 0) {
+    status_.left_out += left_out.count;
+    status_.last_left_out = left_out.why;
+    if (logged_.size() < kMostWriters && logged_.insert(writer).second) log_("left out of a sample: " + left_out.why);
   }
   if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ && arrival - status_.last_arrival > deadline_)
     ++status_.deadline_misses;
@@ -61,6 +74,10 @@ void Intake::deliver(const void* wire, std::uint64_t writer, TimePoint arrival) 
 }
 
 void Intake::watch(TimePoint now) {
+  if (pin_) {
+    pin_->watch(now);
+    name_second_writer();
+  }
   if (!status_.never_seen() && deadline_ > Duration::zero() && !silence_counted_ && now - status_.last_arrival > deadline_) {
     ++status_.deadline_misses;
     silence_counted_ = true;
@@ -73,6 +90,50 @@ void Intake::watch(TimePoint now) {
 
 void Intake::writer_gone(std::uint64_t writer) { ages_.erase(writer); }
 
+void Intake::writer_appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now) {
+  if (!pin_) return;
+  pin_->appeared(writer, std::move(identity), now);
+  name_second_writer();
+}
+
+void Intake::writer_left(std::uint64_t writer, TimePoint now) {
+  if (!pin_) return;
+  pin_->left(writer, now);
+  name_second_writer();
+}
+
+bool Intake::admits(std::uint64_t writer, TimePoint now) {
+  if (!pin_ || pin_->accepts(writer, now)) return true;
+  ++status_.refused;
+  return false;
+}
+
+void Intake::contend(std::uint64_t writer, TimePoint now) {
+  if (pin_ && pin_->accepts(writer, now)) name_second_writer();
+}
+
+void Intake::name_second_writer() {
+  if (status_.second_writer == pin_->second_writer()) return;
+  status_.second_writer = pin_->second_writer();
+  if (!status_.second_writer.empty()) log_(second_writer_sentence(status_.second_writer, type_.row().topic));
+}
+
+void SecondWriters::add(const Intake& intake) {
+  const std::string& name = intake.status().second_writer;
+  if (name.empty()) return;
+  std::string& topics = topics_[name];
+  topics += (topics.empty() ? "" : ", ") + std::string(intake.type().row().topic);
+}
+
+std::string SecondWriters::reason() const {
+  constexpr std::size_t kMaxNames = 4;
+  std::string reason;
+  std::size_t names = 0;
+  for (const auto& [name, topics] : topics_)
+    if (names++ < kMaxNames) reason += (reason.empty() ? "" : "; ") + second_writer_sentence(name, topics);
+  return reason;
+}
+
 TopicHealth Intake::health(TimePoint now) const {
   TopicHealth out;
   out.topic = type_.row().topic;
@@ -81,6 +142,8 @@ TopicHealth Intake::health(TimePoint now) const {
   out.deadline_misses = status_.deadline_misses;
   out.rejected = status_.rejected;
   out.last_rejection = status_.last_rejection;
+  out.refused = status_.refused;
+  out.second_writer = status_.second_writer;
   if (window_filled_ > 0) {
     const std::size_t oldest = window_filled_ < window_.size() ? 0 : window_next_;
     const double span = to_seconds(now - window_times_[oldest]);

@@ -6,11 +6,13 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/writer_pin.hpp"
 
 namespace handsel {
 
@@ -45,6 +47,18 @@ class Intake {
   /// Counts a silence that has become longer than the deadline; also moves the window of the rate. Called at the rate of health.
   void watch(TimePoint now);
   void writer_gone(std::uint64_t writer);
+  /// Discovery of writers, on topics with one writer only: samples of a writer that has not appeared are refused.
+  void writer_appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now);
+  void writer_left(std::uint64_t writer, TimePoint now);
+  /// Whether a sample of `writer` may enter the queue of the transport; counts a refusal.
+  bool admits(std::uint64_t writer, TimePoint now);
+  /// The transport has refused `count` samples of writers other than the accepted one.
+  void count_refused(std::uint64_t count) { status_.refused += count; }
+  /// Accepts `writer` from now on if the rule of WriterPin lets it take the place of the accepted one.
+  void contend(std::uint64_t writer, TimePoint now);
+  /// The accepted writer; 0: none, or a topic with many writers.
+  std::uint64_t pinned() const { return pin_ ? pin_->pinned() : 0; }
+  bool knows(std::uint64_t writer) const { return !pin_ || pin_->knows(writer); }
   TopicHealth health(TimePoint now) const;
 
   const MessageType& type() const { return type_; }
@@ -52,11 +66,14 @@ class Intake {
   const SubscriptionStatus& status() const { return status_; }
 
  private:
+  void name_second_writer();
+
   const MessageType& type_;
   Callback callback_;
   Duration deadline_{};
   Log log_;
   SubscriptionStatus status_;
+  std::optional<WriterPin> pin_;  ///< of a topic with one writer
   std::shared_ptr<void> message_;
   std::map<std::uint64_t, AgeEstimator> ages_;
   std::set<std::uint64_t> logged_;
@@ -64,6 +81,17 @@ class Intake {
   std::array<std::uint64_t, 5> window_{};  ///< received at the last watches
   std::array<TimePoint, 5> window_times_{};
   std::size_t window_next_{0}, window_filled_{0};
+};
+
+/// Reason for ComponentHealth: which other writers there are on topics with one writer.
+class SecondWriters {
+ public:
+  void add(const Intake& intake);
+  /// Empty: none; else "second_writer: NAME writes TOPIC, TOPIC too; its samples are refused", the first four names.
+  std::string reason() const;
+
+ private:
+  std::map<std::string, std::string> topics_;  // by name of the writer
 };
 
 }  // namespace handsel

@@ -12,6 +12,7 @@
 
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
+#include "common/bus/left_out.hpp"
 #include "common/messages/system.hpp"
 
 namespace handsel {
@@ -26,7 +27,6 @@ constexpr std::size_t kKeepAllBound = 64;
 constexpr std::uint64_t kHashBasis = 0xcbf29ce484222325;
 
 bool transient_local(Profile p) { return p == Profile::state || p == Profile::latch; }
-bool exclusive(Profile p) { return p == Profile::command || p == Profile::latch || p == Profile::setpoint; }
 bool best_effort(Profile p) { return p == Profile::sensor || p == Profile::setpoint; }
 std::size_t depth(Profile p) {
   if (p == Profile::request || p == Profile::reply) return kKeepAllBound;
@@ -57,17 +57,10 @@ struct Writer {
   std::uint64_t id{};
   const MessageType* type{};
   LocalBus* bus{};
-  int strength{};
   bool alive{true};
   std::map<std::string, Sample, std::less<>> kept;  // last sample a key, for late joiners
   int readers{};
   std::uint64_t sent{};
-};
-
-struct Owner {
-  std::uint64_t writer{};
-  int strength{};
-  TimePoint last{};
 };
 
 struct Waiting {
@@ -82,7 +75,6 @@ struct Subscription {
   Intake intake;
   Duration period;
   LocalBus* bus{};
-  std::map<std::string, Owner, std::less<>> owners;
   std::map<std::uint64_t, TimePoint> last_arrival;  // per writer: samples do not overtake
   std::deque<Waiting> waiting;                      // while the component is paused, or until the next look
 };
@@ -155,7 +147,7 @@ struct LocalNetwork::Impl {
   LocalBus& find(const std::string& component);
   void send(Writer& writer, const Sample& sample);
   void travel(Writer& writer, Subscription& to, const Sample& sample);
-  void arrive(Subscription& to, std::uint64_t writer, int strength, const Sample& sample);
+  void arrive(Subscription& to, std::uint64_t writer, const Sample& sample);
   void hand_over(Subscription& to);
   void lose(Writer& writer, Duration after);
   void take_down(const MessageType& type, void* wire);
@@ -216,12 +208,16 @@ class LocalBus final : public Bus {
   TimePoint now() const override { return net_.now; }
   Stamp stamp_now() const override { return kVirtualEpoch + net_.now.time_since_epoch().count(); }
   void set_degraded(const std::string& reason) override { degraded_ = reason; }
+  void count_left_out(const std::string& what, std::uint64_t more) override { left_out_.add(what, more); }
   const std::string& component() const override { return component_; }
 
   void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", component_.c_str(), what.c_str()); }
   void refused(const std::string& why) {
     if (refusal_.empty()) log("refused to send: " + why);
     refusal_ = why;
+  }
+  WriterIdentity identity() const {
+    return {.components = component_, .name = component_, .matches = true, .ended = [this] { return killed_; }};
   }
   void tick(Timer& timer);
   void publish_health(TimePoint now);
@@ -231,6 +227,7 @@ class LocalBus final : public Bus {
   std::string component_;
   bool metered_, killed_{false}, paused_{false}, isolated_{false};
   std::string degraded_, refusal_;
+  LeftOutCounts left_out_;
   TimePoint worker_free_{};
   double cpu_{0};
   std::vector<std::unique_ptr<Subscription>> subscriptions_;
@@ -334,25 +331,13 @@ void LocalNetwork::Impl::travel(Writer& writer, Subscription& to, const Sample& 
   if (lost || to.bus->killed_ || (writer.bus != to.bus && (writer.bus->isolated_ || to.bus->isolated_))) return;
   TimePoint& last = to.last_arrival[writer.id];
   last = std::max(last + Duration(1), now + on_the_way);
-  schedule(last, nullptr, [this, &to, id = writer.id, strength = writer.strength, sample] { arrive(to, id, strength, sample); });
+  schedule(last, nullptr, [this, &to, id = writer.id, sample] { arrive(to, id, sample); });
 }
 
-void LocalNetwork::Impl::arrive(Subscription& to, std::uint64_t writer, int strength, const Sample& sample) {
-  if (to.bus->killed_) return;
+void LocalNetwork::Impl::arrive(Subscription& to, std::uint64_t writer, const Sample& sample) {
+  if (to.bus->killed_ || !to.intake.admits(writer, now)) return;
   const TopicRow& row = to.intake.type().row();
   const std::string_view key = to.intake.type().key(sample.get());
-  if (exclusive(row.profile)) {
-    auto at = to.owners.find(key);
-    if (at == to.owners.end()) at = to.owners.emplace(std::string(key), Owner{}).first;
-    Owner& owner = at->second;
-    const bool silent = row.deadline > 0 && now - owner.last > from_seconds(row.deadline);
-    const bool stronger = strength > owner.strength || (strength == owner.strength && writer < owner.writer);
-    if (owner.writer != 0 && owner.writer != writer && !silent && !stronger) {
-      owner.last = now;  // as Cyclone: a turned-down sample renews the deadline of its instance
-      return;
-    }
-    owner = {writer, strength, now};
-  }
   std::size_t same_key = 0;
   for (const Waiting& w : to.waiting) same_key += w.key == key;
   if (same_key >= depth(row.profile)) {
@@ -382,22 +367,23 @@ void LocalNetwork::Impl::lose(Writer& writer, Duration after) {
       --s->intake.status().writers;
       ++s->intake.status().writers_lost;
       s->intake.writer_gone(id);
+      s->intake.writer_left(id, now);
       s->last_arrival.erase(id);
-      for (auto& [key, owner] : s->owners)
-        if (owner.writer == id) owner = {};
     }
   });
 }
 
-std::unique_ptr<AnyPublisher> LocalBus::advertise_any(const MessageType& type, int strength) {
+std::unique_ptr<AnyPublisher> LocalBus::advertise_any(const MessageType& type, int) {
   auto writer = std::make_shared<Writer>();
   writer->id = net_.next_writer++;
   writer->type = &type;
   writer->bus = this;
-  writer->strength = strength;
   const auto& readers = net_.subscriptions[net_.index(type)];
   writer->readers = static_cast<int>(readers.size());
-  for (Subscription* s : readers) ++s->intake.status().writers;
+  for (Subscription* s : readers) {
+    ++s->intake.status().writers;
+    s->intake.writer_appeared(writer->id, identity(), net_.now);
+  }
   net_.writers.push_back(writer);
   return std::make_unique<LocalPublisher>(net_, std::move(writer));
 }
@@ -412,6 +398,7 @@ const SubscriptionStatus& LocalBus::subscribe_any(const MessageType& type, std::
   for (const auto& writer : net_.writers) {
     if (!writer->alive || writer->type != &type) continue;
     ++subscription->intake.status().writers;
+    subscription->intake.writer_appeared(writer->id, writer->bus->identity(), net_.now);
     ++writer->readers;
     for (const auto& [key, sample] : writer->kept) net_.travel(*writer, *subscription, sample);
   }
@@ -446,10 +433,18 @@ void LocalBus::publish_health(TimePoint now) {
   health.component = component_;
   health.incarnation = mix(std::hash<std::string>{}(component_));
   health.uptime = to_seconds(now.time_since_epoch());
-  health.reason = !degraded_.empty() || refusal_.empty() ? degraded_ : "refused to send: " + refusal_;
-  health.state = health.reason.empty() ? HealthState::ok : HealthState::degraded;
+  SecondWriters others;
   for (const auto& s : subscriptions_) {
     s->intake.watch(now);
+    others.add(s->intake);
+  }
+  health.reason = others.reason();
+  if (!degraded_.empty()) health.reason += (health.reason.empty() ? "" : "; ") + degraded_;
+  if (health.reason.empty() && !refusal_.empty()) health.reason = "refused to send: " + refusal_;
+  health.state = health.reason.empty() ? HealthState::ok : HealthState::degraded;
+  health.left_out = left_out_.counts();
+  for (const auto& s : subscriptions_) {
+    add_left_out(s->intake, health.left_out);
     if (health.topics.size() < 64) health.topics.push_back(s->intake.health(now));
   }
   health_->publish(health);

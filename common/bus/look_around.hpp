@@ -1,4 +1,4 @@
-// For dds_bus.cpp: the domain view of one participant.
+// For common/bus only: the domain view of one participant.
 #pragma once
 
 #include <dds/dds.h>
@@ -8,5 +8,7 @@
 namespace handsel {
 
 DomainView look_around(dds_entity_t participant);
+/// What a participant's QoS says of its process.
+DomainParticipant described(const dds_qos_t* qos);
 
 }  // namespace handsel

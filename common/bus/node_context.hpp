@@ -22,6 +22,7 @@ struct NodeContext {
   std::filesystem::path scenario;       ///< scenario file; empty: none was named
   std::filesystem::path settings;       ///< directory of <box>.txtpb
   std::uint64_t seed{1};                ///< of every random choice of the node
+  std::filesystem::path state{};        ///< folder of what must survive a restart of the process; empty: nothing is kept
 };
 
 /// Reads every objects/*/*.txtpb under the resource root. Throws ConfigError naming the file.

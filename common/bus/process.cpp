@@ -13,6 +13,7 @@
 #include "common/base/errors.hpp"
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/dds_defaults.hpp"
+#include "common/bus/state_directory.hpp"
 #include "common/messages/system.hpp"
 #include "common/wire/interface_id.hpp"
 
@@ -38,7 +39,7 @@ int complain(const char* component, const std::exception& error, int code) {
 }
 
 int run(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency) {
-  std::string robot, scenario, config;
+  std::string robot, scenario, config, state;
   std::uint64_t seed = 1;
   bool standby = false;
   DdsBusSettings settings;
@@ -51,6 +52,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   app.add_option("--scenario", scenario, "scenario: name or file");
   app.add_option("--domain", settings.domain, "DDS domain")->check(CLI::Range(0, 230))->capture_default_str();
   app.add_option("--config", config, "folder of the components' settings");
+  app.add_option("--state", state, "folder of what must survive a restart (default: HANDSEL_STATE, else a folder of the domain)");
   app.add_option("--seed", seed, "of every random choice")->capture_default_str();
   app.add_flag("--realtime", settings.realtime, "SCHED_FIFO and locked memory where permitted");
   app.add_option("--cpu-affinity", settings.cpu, "run the executor on this processor");
@@ -63,7 +65,8 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
     return code == 0 ? 0 : 2;
   }
 
-  const NodeContext context = load_context(robot, scenario, config, seed);
+  NodeContext context = load_context(robot, scenario, config, seed);
+  context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain)) : std::filesystem::path(state);
   DdsBus bus(settings);
   stopped_by_signal = &bus;
   if (asked_to_end) return 0;

@@ -14,32 +14,31 @@ constexpr int kInstances = 64;
 struct Meaning {
   bool reliable;
   bool transient_local;
-  bool exclusive;
   int depth;  // 0: keep all, bounded
 };
 
 constexpr Meaning meaning(Profile profile) {
   switch (profile) {
     case Profile::sensor:
-      return {false, false, false, 1};
+      return {false, false, 1};
     case Profile::state:
-      return {true, true, false, 1};
+      return {true, true, 1};
     case Profile::command:
-      return {true, false, true, 8};
+      return {true, false, 8};
     case Profile::latch:
-      return {true, true, true, 1};
+      return {true, true, 1};
     case Profile::goal:
-      return {true, false, false, 8};
+      return {true, false, 8};
     case Profile::advice:
     case Profile::health:
-      return {true, false, false, 1};
+      return {true, false, 1};
     case Profile::setpoint:
-      return {false, false, true, 1};
+      return {false, false, 1};
     case Profile::request:
     case Profile::reply:
-      return {true, false, false, 0};
+      return {true, false, 0};
   }
-  return {true, false, false, 1};
+  return {true, false, 1};
 }
 
 Qos common(const TopicRow& row) {
@@ -54,7 +53,7 @@ Qos common(const TopicRow& row) {
     dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, 0);
     dds_qset_resource_limits(qos.get(), kKeepAllBound, 1, kKeepAllBound);
   }
-  dds_qset_ownership(qos.get(), m.exclusive ? DDS_OWNERSHIP_EXCLUSIVE : DDS_OWNERSHIP_SHARED);
+  dds_qset_ownership(qos.get(), DDS_OWNERSHIP_SHARED);
   if (row.deadline > 0) dds_qset_deadline(qos.get(), static_cast<dds_duration_t>(std::llround(row.deadline * 1e9)));
   dds_qset_destination_order(qos.get(), DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP);
   if (row.profile == Profile::health) dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, kHealthLease);
@@ -150,10 +149,9 @@ Qos recorder_qos(const TopicRow& row) {
   return qos;
 }
 
-Qos writer_qos(const TopicRow& row, int strength) {
+Qos writer_qos(const TopicRow& row) {
   const Meaning m = meaning(row.profile);
   Qos qos = common(row);
-  if (m.exclusive) dds_qset_ownership_strength(qos.get(), strength);
   if (m.transient_local) dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, 1, kInstances, kInstances, 1);
   dds_qset_writer_data_lifecycle(qos.get(), true);
   return qos;

@@ -1,6 +1,6 @@
 // What each QoS profile of the table of topics means to Cyclone DDS. Nowhere else is a QoS set.
-// Exclusive ownership: a spare must keep silent until it has seen the owner's silence. Cyclone 0.10.2 renews the deadline of an instance
-// with every sample, also those it turns down, so a spare that talks all the time never takes over from an owner that lives but is silent.
+// Ownership is shared everywhere: under exclusive ownership a stronger writer hides the rightful one, and anybody may be stronger. Which
+// writer counts is decided by common/bus/writer_pin.
 #pragma once
 
 #include <memory>
@@ -23,8 +23,7 @@ Qos reader_qos(const TopicRow& row);
 Qos observer_qos(const TopicRow& row);
 /// As observer_qos, for who wants all there is: the last 256 of each instance are kept.
 Qos recorder_qos(const TopicRow& row);
-/// `strength` is used on topics with exclusive ownership.
-Qos writer_qos(const TopicRow& row, int strength);
+Qos writer_qos(const TopicRow& row);
 Qos topic_qos(const TopicRow& row);
 /// Each policy for which a writer that offers this is not matched with a reader that requests that: "DEADLINE is none, asked for is 0.2 s
 /// or shorter".

@@ -12,11 +12,11 @@ namespace handsel {
 enum class Profile : std::uint8_t {
   sensor,    ///< best effort, keep last 1
   state,     ///< reliable, transient local, keep last 1
-  command,   ///< reliable, keep last 8, exclusive ownership
-  latch,     ///< a command whose last sample a late joiner must know: reliable, transient local, keep last 1, exclusive ownership
+  command,   ///< reliable, keep last 8
+  latch,     ///< a command whose last sample a late joiner must know: reliable, transient local, keep last 1
   goal,      ///< reliable, keep last 8, many writers
   advice,    ///< reliable, keep last 1
-  setpoint,  ///< best effort, keep last 1, exclusive ownership
+  setpoint,  ///< best effort, keep last 1
   request,   ///< reliable, bounded keep all
   reply,     ///< reliable, bounded keep all
   health,    ///< reliable, keep last 1, liveliness lease
@@ -38,17 +38,17 @@ struct TopicRow {
 // type, topic, profile, rate [Hz], deadline [s], largest [bytes], writers, readers
 // clang-format off
 #define HANDSEL_TOPICS(X) \
-  X(RobotState, "robot_state", sensor, 500, 0.02, 4096, "sim driver ros2_lane", "trajectory_controller spark ros2_lane") \
+  X(RobotState, "robot_state", sensor, 500, 0.02, 4608, "sim driver ros2_lane", "trajectory_controller spark supervisor ros2_lane") \
   X(JointCommand, "joint_command", setpoint, 1000, 0.02, 2560, "trajectory_controller", "sim driver") \
-  X(HumanObservation, "human_observation", sensor, 30, 0.2, 81920, "sim ros2_lane", "spark sim") \
-  X(ObjectObservation, "object_observation", sensor, 30, 0.2, 40960, "sim ros2_lane", "spark") \
-  X(Scene, "scene", state, 10, 0.3, 81920, "spark", \
+  X(HumanObservation, "human_observation", sensor, 30, 0.2, 1310720, "sim ros2_lane", "spark sim") \
+  X(ObjectObservation, "object_observation", sensor, 30, 0.2, 655360, "sim ros2_lane", "spark") \
+  X(Scene, "scene", state, 10, 0.3, 81928, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention supervisor ros2_lane") \
-  X(HumanState, "human_state", state, 30, 0.1, 131072, "spark", \
+  X(HumanState, "human_state", state, 30, 0.1, 163840, "spark", \
     "costmap collision_checker path_planner grasp_planner trajectory_planner " \
-    "manipulation_planner attention trajectory_controller") \
-  X(Facts, "facts", state, 20, 0.3, 98304, "spark", "supervisor attention manipulation_planner") \
+    "manipulation_planner attention trajectory_controller supervisor") \
+  X(Facts, "facts", state, 20, 0.3, 98312, "spark", "supervisor attention manipulation_planner") \
   X(Costmap, "costmap", advice, 10, 0, 2097152, "costmap", \
     "collision_checker path_planner trajectory_planner manipulation_planner") \
   X(TaskGoal, "task_goal", goal, 0, 0, 384, "handsel", "supervisor spark") \
@@ -57,6 +57,7 @@ struct TopicRow {
   X(ActionStatus, "action_status", state, 10, 0.3, 131072, "manipulation_planner", \
     "supervisor attention trajectory_controller ros2_lane") \
   X(Go, "go", latch, 10, 0.3, 512, "supervisor", "trajectory_controller driver") \
+  X(SafetyState, "safety_state", latch, 1, 3, 163840, "supervisor", "spark trajectory_controller") \
   X(TrajectoryCommand, "trajectory", command, 0, 0, 5242880, "manipulation_planner ros2_lane", "trajectory_controller") \
   X(HandCommand, "hand_command", command, 0, 0, 1216, "manipulation_planner", "trajectory_controller") \
   X(ExecutionStatus, "execution_status", state, 50, 0.06, 896, "trajectory_controller", "manipulation_planner supervisor ros2_lane") \
@@ -77,13 +78,19 @@ struct TopicRow {
   X(RegraspReply, "regrasp_reply", reply, 0, 0, 393216, "grasp_planner", "manipulation_planner") \
   X(StateQuery, "state_query", request, 0, 0, 4194304, "handsel ros2_lane", "collision_checker") \
   X(StateVerdict, "state_verdict", reply, 0, 0, 6144, "collision_checker", "handsel ros2_lane") \
-  X(ComponentHealth, "component_health", health, 10, 0.3, 32768,\
+  X(ComponentHealth, "component_health", health, 10, 0.3, 65536,\
     "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner " \
     "manipulation_planner attention trajectory_controller bridge sim driver ros2_lane", \
     "supervisor handsel") \
+  X(SimClock, "sim_clock", advice, 100, 0, 64, "sim", \
+    "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner " \
+    "manipulation_planner attention trajectory_controller bridge driver ros2_lane") \
+  X(ClockReached, "clock_reached", advice, 100, 0, 192, \
+    "supervisor spark costmap collision_checker path_planner grasp_planner trajectory_planner " \
+    "manipulation_planner attention trajectory_controller bridge driver ros2_lane", "sim") \
   X(SimControl, "sim_control", goal, 0, 0, 160, "handsel", "sim") \
   X(StudyMark, "study_mark", goal, 0, 0, 448, "handsel", "bridge") \
-  X(GroundTruth, "ground_truth", state, 50, 0.06, 8192, "sim", "handsel")
+  X(GroundTruth, "ground_truth", state, 50, 0.06, 12288, "sim", "handsel")
 // clang-format on
 
 #define HANDSEL_ROW(type, topic, ...) struct type;
@@ -116,6 +123,8 @@ HANDSEL_TOPICS(HANDSEL_ROW)
 inline std::span<const TopicRow> topics() { return kTopics; }
 /// By type ("RobotState") or topic ("handsel/robot_state", "robot_state"); nullptr if there is none.
 const TopicRow* find_topic(std::string_view type_or_topic);
+/// Has this topic one writer, pinned by identity, whose samples alone are accepted (docs/architecture.md)?
+bool has_one_writer(const TopicRow& row);
 /// Is `component` one of the names in `list`?
 bool named_in(const char* list, std::string_view component);
 

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "common/config/described.hpp"
 #include "common/config/located.hpp"
+#include "common/config/text_check.hpp"
+#include "common/config/text_file.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;
@@ -24,16 +25,6 @@ class FirstError : public google::protobuf::io::ErrorCollector {
   }
   std::string text;
 };
-
-std::string read_file(const fs::path& file) {
-  if (!fs::exists(file)) throw MissingError("no file " + file.string());
-  if (!fs::is_regular_file(file)) throw ConfigError(file.string() + " is not a file");
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (!in) throw ConfigError(file.string() + ": cannot be read");
-  return text.str();
-}
 
 fs::path find_root() {
   if (const char* home = std::getenv("HANDSEL_HOME"); home != nullptr && *home != '\0') {
@@ -65,15 +56,17 @@ std::string alternatives(const fs::path& folder, bool nested) {
   return list.empty() ? "none" : list;
 }
 
+constexpr std::size_t kMaxName = 200;  // [bytes] shown of a name that somebody gave
+
 /// A path as it is; a name as <folder>/<name>/<name>.txtpb (nested) or <folder>/<name>.txtpb.
 fs::path description(const std::string& kind, const fs::path& folder, bool nested, const std::string& name_or_path) {
   if (is_path(name_or_path)) {
-    if (!fs::exists(name_or_path)) throw MissingError("no " + kind + " description " + name_or_path);
+    if (!is_there(name_or_path)) throw MissingError("no " + kind + " description " + printable(name_or_path, kMaxName));
     return name_or_path;
   }
   fs::path file = nested ? folder / name_or_path / (name_or_path + ".txtpb") : folder / (name_or_path + ".txtpb");
-  if (name_or_path.empty() || !fs::exists(file))
-    throw MissingError("no " + kind + " \"" + name_or_path + "\"; there is: " + alternatives(folder, nested));
+  if (name_or_path.empty() || !is_there(file))
+    throw MissingError("no " + kind + " \"" + printable(name_or_path, kMaxName) + "\"; there is: " + alternatives(folder, nested));
   return file;
 }
 
@@ -96,19 +89,25 @@ void parse(const std::string& text, const std::string& name, google::protobuf::M
            google::protobuf::TextFormat::ParseInfoTree* places) {
   if (const std::size_t first = text.find_first_not_of(" \t\r\n"); first != std::string::npos && text[first] == '<')
     throw ConfigError(name + " is XML, e.g. a URDF; a description in Protobuf text is needed here, which may name it (docs/own_robot.md)");
+  constexpr int kMaxDepth = 32;
+  constexpr std::size_t kMaxComplaint = 300;  // [bytes] the parser quotes a wrong word whole
   FirstError error;
   google::protobuf::TextFormat::Parser parser;
+  google::protobuf::TextFormat::ParseInfoTree own;
   parser.RecordErrorsTo(&error);
-  if (places != nullptr) parser.WriteLocationsTo(places);
-  if (!parser.ParseFromString(text, &out)) throw ConfigError(name + ":" + error.text);
+  parser.SetRecursionLimit(kMaxDepth);
+  if (places == nullptr) places = &own;
+  parser.WriteLocationsTo(places);
+  if (!parser.ParseFromString(text, &out)) throw ConfigError(name + ":" + printable(error.text, kMaxComplaint));
+  check_text(out, *places, name);
 }
 
 }  // namespace
 
-void load_text_proto(const fs::path& file, google::protobuf::Message& out) { parse(read_file(file), file.string(), out, nullptr); }
+void load_text_proto(const fs::path& file, google::protobuf::Message& out) { parse(read_text_file(file), file.string(), out, nullptr); }
 
 void load_text_proto(const fs::path& file, google::protobuf::Message& out, google::protobuf::TextFormat::ParseInfoTree& places) {
-  parse(read_file(file), file.string(), out, &places);
+  parse(read_text_file(file), file.string(), out, &places);
 }
 
 void parse_text_proto(const std::string& text, const std::string& name, google::protobuf::Message& out,

@@ -1,68 +1,112 @@
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 #include "common/base/errors.hpp"
+#include "common/geometry/mesh_check.hpp"
+#include "common/geometry/mesh_polygon.hpp"
+#include "common/geometry/mesh_text.hpp"
 #include "common/geometry/shape.hpp"
 
 namespace handsel {
 namespace {
 
-constexpr std::uintmax_t kMaxBytes = 64u << 20;
-constexpr std::size_t kMaxTriangles = 500'000;
 constexpr double kLargest = 100, kSmallest = 1e-4;  // [m] nothing a robot has or meets is larger or smaller
 constexpr double kWeldGrid = 1e-7;                  // of the file's own unit, relative to its size
 
 using Cell = std::array<long long, 3>;
 
-void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_parent, std::vector<aiVector3D>& points,
-            std::vector<std::array<int, 3>>& faces) {
-  const aiMatrix4x4 T = T_parent * node.mTransformation;
-  const bool mirrored = T.Determinant() < 0;
-  for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
-    const int base = static_cast<int>(points.size());
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v) points.push_back(T * mesh.mVertices[v]);
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;
-      std::array<int, 3> t{base + static_cast<int>(face.mIndices[0]), base + static_cast<int>(face.mIndices[1]),
-                           base + static_cast<int>(face.mIndices[2])};
-      if (mirrored) std::swap(t[1], t[2]);
-      faces.push_back(t);
-    }
+struct Soup {
+  std::vector<Vector3> points;
+  std::vector<std::array<int, 3>> faces;
+};
+
+/// Adds the polygons of a mesh, and the vertices they have, to the soup. Points and lines are left out.
+void append(const aiMesh& mesh, const aiMatrix4x4& T, const std::filesystem::path& file, Soup& soup) {
+  std::vector<int> place(mesh.mNumVertices, -1);
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+    for (unsigned i = 0; mesh.mFaces[f].mNumIndices >= 3 && i < mesh.mFaces[f].mNumIndices; ++i) place[mesh.mFaces[f].mIndices[i]] = 0;
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    if (place[v] < 0) continue;
+    place[v] = static_cast<int>(soup.points.size());
+    const aiVector3D p = T * mesh.mVertices[v];
+    soup.points.emplace_back(p.x, p.y, p.z);
   }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) append(scene, *node.mChildren[c], T, points, faces);
+  const std::size_t first = soup.faces.size();
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (face.mNumIndices < 3) continue;
+    std::vector<int> corners(face.mIndices, face.mIndices + face.mNumIndices);
+    for (int& corner : corners) corner = place[static_cast<std::size_t>(corner)];
+    mesh::split_polygon(soup.points, corners, soup.faces);
+    if (soup.faces.size() > mesh::kMaxTriangles || soup.points.size() > mesh::kMaxVertices)
+      throw ConfigError(file.string() + ": more than 500000 triangles or 1500000 vertices, the most a mesh may have");
+  }
+  if (T.Determinant() >= 0) return;
+  for (std::size_t t = first; t < soup.faces.size(); ++t) std::swap(soup.faces[t][1], soup.faces[t][2]);
+}
+
+/// Adds what is attached to a node to the soup. A mesh may be attached to many nodes: the caps count each time.
+void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_parent, const std::filesystem::path& file, Soup& soup) {
+  const aiMatrix4x4 T = T_parent * node.mTransformation;
+  for (unsigned m = 0; m < node.mNumMeshes; ++m) append(*scene.mMeshes[node.mMeshes[m]], T, file, soup);
+  for (unsigned c = 0; c < node.mNumChildren; ++c) append(scene, *node.mChildren[c], T, file, soup);
+}
+
+/// Throws ConfigError when a face names a vertex that its mesh does not have.
+void check_indices(const aiScene& scene, const std::filesystem::path& file) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      for (unsigned i = 0; i < mesh.mFaces[f].mNumIndices; ++i)
+        if (mesh.mFaces[f].mIndices[i] >= mesh.mNumVertices)
+          throw ConfigError(file.string() + ": face " + std::to_string(f + 1) + " has vertex " +
+                            std::to_string(mesh.mFaces[f].mIndices[i]) + ", out of range: there are " + std::to_string(mesh.mNumVertices));
+  }
+}
+
+std::string read(const std::filesystem::path& file) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(file)) throw MissingError("no mesh " + file.string());
+  if (!fs::is_regular_file(file)) throw ConfigError(file.string() + " is not a file");
+  if (fs::file_size(file) > mesh::kMaxBytes) throw ConfigError(file.string() + ": larger than 64 MB, the most a mesh may have");
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in) throw ConfigError(file.string() + ": cannot be read");
+  return text.str();
+}
+
+Soup import(const std::filesystem::path& file, std::string given) {
+  const std::string content = mesh::checked(file, std::move(given));
+  Assimp::Importer importer;
+  // From memory: the file is read, not what it names. Without post-processing, which trusts the indices.
+  const aiScene* scene = importer.ReadFileFromMemory(content.data(), content.size(), 0, file.extension().c_str() + 1);
+  if (scene == nullptr || scene->mRootNode == nullptr)
+    throw ConfigError(file.string() + ": not a mesh that can be read (" + mesh::shown(importer.GetErrorString()) + ")");
+  check_indices(*scene, file);
+  Soup soup;
+  append(*scene, *scene->mRootNode, aiMatrix4x4(), file, soup);
+  if (soup.faces.empty()) throw ConfigError(file.string() + ": not a mesh that can be read: it has no faces");
+  return soup;
 }
 
 }  // namespace
 
-TriangleMesh load_mesh(const std::filesystem::path& file, const Vector3& scale) {
-  namespace fs = std::filesystem;
-  if (!fs::is_regular_file(file)) throw MissingError("no mesh " + file.string());
-  if (fs::file_size(file) > kMaxBytes) throw ConfigError(file.string() + ": larger than 64 MB, the most a mesh may have");
+TriangleMesh mesh::parse(const std::filesystem::path& file, std::string content, const Vector3& scale) {
   if (!scale.allFinite() || (scale.array() == 0).any()) throw ConfigError(file.string() + ": a mesh scale must be finite and not 0");
-
-  Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_SortByPType);
-  if (scene == nullptr || scene->mRootNode == nullptr)
-    throw ConfigError(file.string() + ": not a mesh that can be read (" + importer.GetErrorString() + ")");
-  std::vector<aiVector3D> points;
-  std::vector<std::array<int, 3>> faces;
-  append(*scene, *scene->mRootNode, aiMatrix4x4(), points, faces);
-  if (faces.size() > kMaxTriangles) throw ConfigError(file.string() + ": more than 500000 triangles, the most a mesh may have");
+  const auto [points, faces] = import(file, std::move(content));
 
   double extent = 0;
   for (const auto& p : points) {
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw ConfigError(file.string() + ": has a vertex that is not finite");
-    extent = std::max<double>({extent, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    if (!p.allFinite()) throw ConfigError(file.string() + ": has a vertex that is not finite");
+    extent = std::max(extent, p.cwiseAbs().maxCoeff());
   }
   const double grid = std::max(extent * kWeldGrid, 1e-12);
   TriangleMesh mesh;
@@ -70,9 +114,9 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const Vector3& scale) 
   std::vector<int> index(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& p = points[i];
-    const Cell cell{std::llround(p.x / grid), std::llround(p.y / grid), std::llround(p.z / grid)};
+    const Cell cell{std::llround(p.x() / grid), std::llround(p.y() / grid), std::llround(p.z() / grid)};
     const auto [it, fresh] = welded.try_emplace(cell, static_cast<int>(mesh.vertices.size()));
-    if (fresh) mesh.vertices.emplace_back(p.x * scale.x(), p.y * scale.y(), p.z * scale.z());
+    if (fresh) mesh.vertices.emplace_back(p.cwiseProduct(scale));
     index[i] = it->second;
   }
   const bool mirrored = scale.prod() < 0;
@@ -98,5 +142,7 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const Vector3& scale) 
   }
   return mesh;
 }
+
+TriangleMesh load_mesh(const std::filesystem::path& file, const Vector3& scale) { return mesh::parse(file, read(file), scale); }
 
 }  // namespace handsel

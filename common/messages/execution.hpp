@@ -22,6 +22,7 @@ struct Go {
   bool acknowledge{};           ///< a person acknowledged a Fault
   double override_factor{1.0};  ///< global speed override [0, 1]
   std::string reason;
+  std::uint64_t state_revision{};  ///< SafetyState::revision the permission was issued from; 0: from none, which permits no motion
 };
 
 /// Soft motion for some axes; starts when accepted, or joins the queue of what runs. Topic Trajectory, profile command.
@@ -82,6 +83,11 @@ enum class Cause : std::uint8_t {
   wall,                ///< Slow: a virtual wall or the end of the workspace is ahead
   contact,             ///< Stop: the arm feels a contact
   cost_ahead,          ///< Slow: the human-aware cost on the way ahead is high
+  blind,               ///< Slow ... Stop: no live source observes where the arm can be within its stop
+  stop_unproven,       ///< Stop: the next step has no checked stop behind it; the last checked stop is executed
+  second_writer,       ///< named only: somebody else publishes a topic that has one writer; its samples are refused
+  clamped,             ///< Stop: the arm has been pressed against something for too long
+  awaits_person,       ///< Hold: a person has to resume (after a pause, a fault, a protective, user or emergency stop)
 };
 const char* name(Cause);
 const char* name(Mode);

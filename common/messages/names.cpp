@@ -14,7 +14,7 @@ constexpr bool ends_with(const char* const (&)[n], Enum last) {
   return n == static_cast<std::size_t>(last) + 1;
 }
 static_assert(ends_with(kBehaviourNames, Behaviour::watch));
-static_assert(ends_with(kCauseNames, Cause::cost_ahead));
+static_assert(ends_with(kCauseNames, Cause::awaits_person));
 static_assert(ends_with(kModeNames, Mode::fault));
 static_assert(ends_with(kTaskKindNames, TaskKind::clear_person));
 static_assert(ends_with(kTaskStateNames, TaskState::refused));
@@ -26,7 +26,7 @@ static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));
 static_assert(ends_with(kFactNames, FactKind::released));
 static_assert(ends_with(kHolderNames, Holder::human));
 static_assert(ends_with(kHealthStateNames, HealthState::stopping));
-static_assert(ends_with(kSimActionNames, SimAction::restore));
+static_assert(ends_with(kSimActionNames, SimAction::emergency_stop));
 
 }  // namespace
 

@@ -34,7 +34,12 @@ inline constexpr const char* kCauseNames[] = {"none",
                                               "override_slow",
                                               "wall",
                                               "contact",
-                                              "cost_ahead"};
+                                              "cost_ahead",
+                                              "blind",
+                                              "stop_unproven",
+                                              "second_writer",
+                                              "clamped",
+                                              "awaits_person"};
 inline constexpr const char* kModeNames[] = {"normal", "slow", "hold", "stop", "fault"};
 inline constexpr const char* kTaskKindNames[] = {"give",  "receive", "pick",   "place",  "clear",       "tidy",  "regrasp",     "lift",
                                                  "go_to", "pause",   "resume", "cancel", "acknowledge", "speed", "clear_person"};
@@ -54,7 +59,8 @@ inline constexpr const char* kPrimitiveNames[] = {"none", "box", "cylinder", "sp
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
 inline constexpr const char* kSimActionNames[] = {
     "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
-    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore"};
+    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore",
+    "human_frozen",  "human_empty", "human_late",   "human_elsewhere", "emergency_stop"};
 
 const char* name(Holder);
 const char* name(HealthState);

@@ -33,6 +33,8 @@ struct RobotState {
   double payload{};                     ///< mass the hand carries as measured by the robot side [kg]
   DriveMode mode{DriveMode::off};
   std::vector<OtherHand> other_hands{};  ///< of a robot with several arms; the fields above speak of the first hand
+  std::uint64_t refused_set_points{};    ///< set-points the robot side has refused so far
+  std::string refusal{};                 ///< why it refused the last one, while it stands because of that; else empty
 };
 
 /// Set-point of every axis, from the trajectory controller only. Topic JointCommand, profile setpoint, keyed by robot.

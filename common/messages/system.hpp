@@ -21,6 +21,14 @@ struct TopicHealth {
   std::uint64_t deadline_misses{};
   std::uint64_t rejected{};
   std::string last_rejection;  ///< one sentence
+  std::uint64_t refused{};      ///< samples of another writer than the accepted one, on a topic with one writer
+  std::string second_writer{};  ///< identity of that other writer (process, host), while it is there; else empty
+};
+
+/// How often something was left out or dropped, by cause.
+struct NamedCount {
+  std::string name;  ///< what and why, e.g. "people: farther than the nearest 16"
+  std::uint64_t count{};
 };
 
 /// Topic ComponentHealth, profile health, 10 Hz, keyed by component.
@@ -35,6 +43,36 @@ struct ComponentHealth {
   double memory_mb{};
   double uptime{};  ///< [s]
   std::vector<TopicHealth> topics;
+  std::vector<NamedCount> left_out{};  ///< what quotas have left out since start
+};
+
+/// Latches that outlive every process: what a person, a fault or a stop has decided. Topic SafetyState, profile latch, from the supervisor,
+/// which keeps it on disk.
+struct SafetyState {
+  Stamp stamp{};
+  std::uint64_t revision{};     ///< grows with every change, also over restarts; 0: never valid
+  bool paused{};                ///< a person paused the robot
+  double override_factor{1.0};  ///< speed override a person asked for, [0, 1]
+  bool fault{};                 ///< a fault nobody has acknowledged
+  bool awaits_person{};         ///< a protective, user or emergency stop after which nobody has resumed
+  std::string reason;           ///< why it does not permit motion, one sentence; empty: it does
+  std::vector<Person> lost{};   ///< people lost from sight and not seen to be gone, as they were last known; `age` counts from `stamp`
+};
+
+/// The simulator's time, when it gives the pace. Topic SimClock, profile advice, 100 Hz while the simulation advances.
+struct SimClock {
+  Stamp stamp{};
+  std::uint64_t incarnation{};  ///< of the simulator; another one starts a new time
+  std::uint64_t sequence{};     ///< grows by one a sample
+  double time{};                ///< since the simulator started [s]
+};
+
+/// A process has handled everything up to a sample of SimClock. Topic ClockReached, profile advice, keyed by component.
+struct ClockReached {
+  Stamp stamp{};
+  std::string component;
+  std::uint64_t incarnation{};  ///< of the process
+  std::uint64_t sequence{};     ///< of the SimClock sample reached
 };
 
 enum class SimAction : std::uint8_t {
@@ -50,7 +88,12 @@ enum class SimAction : std::uint8_t {
   robot_enable,
   silence_human,
   silence_robot_state,
-  restore
+  restore,
+  human_frozen,     ///< the source repeats its last picture for `value` seconds, with new stamps
+  human_empty,      ///< the source repeats an empty picture for `value` seconds
+  human_late,       ///< the source is late by `value` seconds until restored
+  human_elsewhere,  ///< the source looks elsewhere for `value` seconds
+  emergency_stop    ///< the red button
 };
 
 /// Topic SimControl, profile command: disturbances and control of the simulator.

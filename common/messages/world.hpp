@@ -49,6 +49,7 @@ struct Scene {
   Vector robot_position;                ///< all axes, as last measured [rad]; empty until robot_known
   std::vector<SceneObject> objects;
   std::vector<SceneBox> boxes;
+  std::uint32_t left_out{};  ///< objects and boxes known but left out: farther than those named
 };
 
 enum class Side : std::uint8_t { left, right };
@@ -57,6 +58,7 @@ struct BodyJoint {
   std::string name;                   ///< REP-155, as in ObservedJoint
   Vector3 position{Vector3::Zero()};  ///< world [m]
   Vector3 velocity{Vector3::Zero()};  ///< world [m/s]
+  double age{};                       ///< since this point itself was measured; 1e9: never, it follows from the fitted body [s]
 };
 
 /// Where a hand is expected.
@@ -82,11 +84,22 @@ struct Person {
   std::vector<HandPrediction> hands{};                                     ///< the next half second; empty while lost
 };
 
+/// What one source of people observes: what makes "nobody is there" a fact. Axis-aligned box in world.
+struct SourceView {
+  std::string source;
+  Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};  ///< corners of the observed box, world [m]
+  double age{};                                         ///< since the capture of its newest picture [s]
+  bool live{};                                          ///< its pictures are new: neither silent, late nor repeated
+  std::string reason;                                   ///< why it is not live, one sentence
+};
+
 /// Topic HumanState, profile state. Published at its rate even when nobody is there.
 struct HumanState {
   Stamp stamp{};
   std::vector<Person> people;
   bool covered{};  ///< the robot's reach is inside the volume observed recently: "nobody" is a fact
+  std::vector<SourceView> views{};  ///< of every source
+  std::uint32_t left_out{};         ///< people known but left out: farther from the robot than those named
 };
 
 enum class FactKind : std::uint8_t {
@@ -131,6 +144,7 @@ struct Fact {
 struct Facts {
   Stamp stamp{};
   std::vector<Fact> facts;
+  std::uint32_t left_out{};  ///< facts that hold but were left out for want of room
 };
 
 /// Names of our own layers of the cost map; any other is an outside layer, which planners add to theirs.

@@ -45,6 +45,7 @@ class RobotModelBuilder {
   static RobotModel on_platform(const RobotModel& robot, double speed, double turn_speed);
 
  private:
+  friend class SrdfReader;
   int joint_index(const std::string& name) const;
   int axis_of(const std::string& joint) const;
   int require_link(const std::string& name, const std::string& field, const std::filesystem::path& source) const;

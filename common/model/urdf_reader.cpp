@@ -2,15 +2,19 @@
 #include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <mutex>
 #include <set>
 #include <sstream>
 
 #include "common/config/resources.hpp"
+#include "common/config/text_check.hpp"
+#include "common/config/text_file.hpp"
 #include "common/model/description_parts.hpp"
 #include "common/model/robot_model_builder.hpp"
+#include "common/model/xml_file.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;
@@ -32,26 +36,45 @@ class Listener : public console_bridge::OutputHandler {
   std::string said;
 };
 
-std::string read(const fs::path& file) {
-  if (!fs::is_regular_file(file)) throw MissingError("no file " + file.string());
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
+constexpr std::size_t kMaxLinks = 1000;
+constexpr double kLargestNumber = 1e12;  // in any unit: some files write 1e10 for an axis without an end
+
+/// Throws ConfigError where an attribute of numbers, in the element or below, holds something else, or a name holds a control character.
+void require_attributes(const tinyxml2::XMLElement& e, const fs::path& file) {
+  static const std::set<std::string_view> kNumeric{"xyz", "rpy", "size", "radius", "length", "scale",  "ixx",      "ixy",        "ixz",
+                                                   "iyy", "iyz", "izz",  "lower",  "upper",  "effort", "velocity", "multiplier", "offset"};
+  static const std::set<std::string_view> kNames{"name", "link", "joint", "filename", "type"};
+  const bool is_mass = std::string_view(e.Name()) == "mass";
+  for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
+    const std::string_view key = a->Name(), value = a->Value();
+    if (kNames.contains(key) && std::any_of(value.begin(), value.end(), [](unsigned char c) { return c < 32; }))
+      throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() + " of <" + printable(e.Name(), 40) +
+                        "> holds a control character");
+    if (!kNumeric.contains(key) && !(is_mass && key == "value")) continue;
+    std::istringstream words(a->Value());
+    for (std::string word; words >> word;) {
+      char* end = nullptr;
+      const double number = std::strtod(word.c_str(), &end);
+      if (*end != '\0' || !std::isfinite(number) || std::abs(number) > kLargestNumber)
+        throw ConfigError(file.string() + ":" + std::to_string(e.GetLineNum()) + ": " + a->Name() + " of <" + printable(e.Name(), 40) +
+                          "> is \"" + printable(word, 40) + "\", must be a finite number");
+    }
+  }
+  for (const auto* child = e.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) require_attributes(*child, file);
 }
 
 /// What urdfdom does not say, or not with a line: XML errors, duplicates, shapes that are not URDF, a link with two parents.
 struct Document {
   Document(const fs::path& file, const std::string& text) {
     tinyxml2::XMLDocument xml;
-    if (xml.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS)
-      throw ConfigError(file.string() + ":" + std::to_string(xml.ErrorLineNum()) + ": not well-formed XML");
+    parse_xml(xml, file, text);
     const auto* robot = xml.FirstChildElement("robot");
     if (robot == nullptr) throw ConfigError(file.string() + ": has no <robot> element");
     std::set<std::string> links, children;
     for (const auto* e = robot->FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
       const std::string tag = e->Name(), where = file.string() + ":" + std::to_string(e->GetLineNum());
       const std::string own = e->Attribute("name") != nullptr ? e->Attribute("name") : "";
+      if (tag == "link" || tag == "joint") require_attributes(*e, file);
       if (tag == "link") {
         if (!links.insert(own).second) throw ConfigError(where + ": link " + own + " is defined twice");
         for (const char* use : {"visual", "collision"})
@@ -70,6 +93,8 @@ struct Document {
       }
     }
     if (links.empty()) throw ConfigError(file.string() + ": has no link");
+    if (links.size() > kMaxLinks)
+      throw ConfigError(file.string() + ": has " + std::to_string(links.size()) + " links, must have at most 1000");
     for (const auto& [start, joint] : parents) {
       std::size_t steps = 0;
       for (auto up = parents.find(start); up != parents.end(); up = parents.find(up->second.first))
@@ -95,7 +120,11 @@ std::vector<fs::path> package_folders(const std::vector<fs::path>& described) {
 
 /// package://name/rest, model://name/rest, file:// and plain paths; the folders above the URDF are searched too.
 fs::path find_mesh(const fs::path& urdf, const std::string& uri, const std::vector<fs::path>& packages) {
+  constexpr std::size_t kMaxUri = 1024;  // [bytes]
+  if (uri.size() > kMaxUri)
+    throw ConfigError(urdf.string() + ": the name of a mesh has " + std::to_string(uri.size()) + " bytes, must have at most 1024");
   std::vector<fs::path> tails;
+  std::error_code error;
   const auto scheme = uri.find("://");
   if (scheme == std::string::npos) {
     tails = {uri};
@@ -107,12 +136,12 @@ fs::path find_mesh(const fs::path& urdf, const std::string& uri, const std::vect
   }
   for (fs::path folder = fs::absolute(urdf).parent_path();; folder = folder.parent_path()) {
     for (const auto& tail : tails)
-      if (fs::is_regular_file(folder / tail)) return fs::weakly_canonical(folder / tail);
+      if (fs::is_regular_file(folder / tail, error)) return fs::weakly_canonical(folder / tail);
     if (folder == folder.parent_path()) break;
   }
   for (const auto& folder : package_folders(packages))
     for (const auto& tail : tails)
-      if (fs::is_regular_file(folder / tail)) return fs::weakly_canonical(folder / tail);
+      if (fs::is_regular_file(folder / tail, error)) return fs::weakly_canonical(folder / tail);
   throw MissingError(locate(urdf, uri) + ": no mesh " + uri + " in the folder of the URDF, above it, or in the packages' folders");
 }
 
@@ -174,7 +203,7 @@ urdf::ModelInterfaceSharedPtr parse(const fs::path& file, const std::string& tex
   const std::scoped_lock lock(one_at_a_time);
   Listener listener;
   auto model = urdf::parseURDF(text);
-  if (model == nullptr) throw ConfigError(file.string() + ": " + (listener.said.empty() ? "not a URDF" : listener.said));
+  if (model == nullptr) throw ConfigError(file.string() + ": " + (listener.said.empty() ? "not a URDF" : printable(listener.said, 300)));
   return model;
 }
 
@@ -199,9 +228,9 @@ Joint to_joint(const urdf::Joint& from, int parent, int child, const fs::path& f
   joint.child = child;
   joint.T_parent_joint = to_pose(from.parent_to_joint_origin_transform);
   if (joint.kind == JointKind::fixed) return joint;
-  const std::string where = locate(file, "\"" + from.name + "\"");
+  const auto where = [&] { return locate(file, "\"" + from.name + "\""); };
   joint.axis = Vector3(from.axis.x, from.axis.y, from.axis.z);
-  if (!(joint.axis.norm() > 1e-6)) throw ConfigError(where + ": joint " + from.name + " has an axis of length 0");
+  if (!(joint.axis.norm() > 1e-6)) throw ConfigError(where() + ": joint " + from.name + " has an axis of length 0");
   joint.axis.normalize();
   if (from.limits != nullptr) {
     joint.lower = from.limits->lower;
@@ -214,7 +243,7 @@ Joint to_joint(const urdf::Joint& from, int parent, int child, const fs::path& f
     joint.upper = 2 * M_PI;
   }
   joint.is_mimic = from.mimic != nullptr;
-  if (!(joint.lower <= joint.upper)) throw ConfigError(where + ": joint " + from.name + " has lower limit above its upper limit");
+  if (!(joint.lower <= joint.upper)) throw ConfigError(where() + ": joint " + from.name + " has lower limit above its upper limit");
   return joint;
 }
 
@@ -258,7 +287,7 @@ void resolve_mimic(const urdf::ModelInterface& urdf, const fs::path& file, Joint
 }  // namespace
 
 RobotModelBuilder::RobotModelBuilder(const fs::path& urdf, Meshes meshes, const UrdfOptions& options) : urdf_(urdf) {
-  const std::string text = read(urdf);
+  const std::string text = read_text_file(urdf);
   const Document document(urdf, text);
   const auto tree = parse(urdf, text);
   model_.name_ = tree->getName();

@@ -9,6 +9,13 @@ namespace {
 
 constexpr std::uint64_t kHead = 9;  // [bytes] of a record: what it is and how long
 constexpr std::uint64_t kEarliestMagic = kMagic.size();
+constexpr std::uint64_t kMaxRecord = 256u << 20;  // [bytes] of a record that is read into memory: chunks have a few MB
+constexpr std::size_t kMaxMessages = 1'000'000;   // of one chunk
+
+/// Whether the reader uses a record of this kind; the others are passed over without reading them.
+bool is_used(Op op) {
+  return op == Op::schema || op == Op::channel || op == Op::metadata || op == Op::message || op == Op::chunk || op == Op::data_end;
+}
 
 /// Takes one field after the other from the content of a record; `short_of` once there was none left.
 class Fields {
@@ -54,7 +61,8 @@ void Reader::damaged(std::uint64_t at, const std::string& what) const {
 
 Reader::Reader(const std::filesystem::path& file) : file_(file) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error)) throw MissingError("no recording " + file.string());
+  if (!std::filesystem::exists(file, error)) throw MissingError("no recording " + file.string());
+  if (!std::filesystem::is_regular_file(file, error)) throw ConfigError(file.string() + " is not a file");
   in_.open(file, std::ios::binary);
   if (!in_) throw MissingError("cannot read " + file.string());
   size_ = std::filesystem::file_size(file);
@@ -82,6 +90,14 @@ bool Reader::read(Record& record) {
     ended_ = cut_ = true;
     return false;
   }
+  if (!is_used(record.op)) {
+    record.content.clear();
+    in_.seekg(static_cast<std::streamoff>(length), std::ios::cur);
+    at_ += kHead + length;
+    return true;
+  }
+  if (length > kMaxRecord)
+    damaged(record.at, "a record of " + std::to_string(length >> 20) + " MB; it may have " + std::to_string(kMaxRecord >> 20) + " MB");
   record.content.resize(length);
   in_.read(record.content.data(), static_cast<std::streamsize>(length));
   if (!in_) damaged(record.at, "cannot be read");
@@ -128,6 +144,7 @@ void Reader::take(const Record& record) {
       if (!channels_.contains(message.channel))
         damaged(record.at, "a message of channel " + std::to_string(message.channel) + ", which was not announced");
       if (message.time < 0) damaged(record.at, "a message from after the year 2262");
+      if (waiting_.size() == kMaxMessages) damaged(record.at, "a chunk of more than a million messages");
       message.data.assign(fields.rest().begin(), fields.rest().end());
       waiting_.push_back(std::move(message));
       break;
@@ -153,8 +170,8 @@ void Reader::take_chunk(const Record& record) {
   const std::string_view records = fields.part(fields.number<std::uint64_t>());
   if (fields.short_of()) damaged(record.at, "a chunk is shorter than its fields");
   if (!compression.empty())
-    damaged(record.at,
-            "a chunk compressed with " + std::string(compression) + "; `mcap compress --compression none` makes it readable here");
+    damaged(record.at, "a chunk compressed with " + std::string(compression.substr(0, 20)) +
+                           "; `mcap compress --compression none` makes it readable here");
   if (crc != 0 && crc != crc32(records)) damaged(record.at, "a chunk is damaged: its checksum does not fit");
   Record inner;
   for (std::size_t at = 0; at < records.size();) {

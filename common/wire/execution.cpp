@@ -24,6 +24,7 @@ void describe(WireIo& io, Go& m, handsel_Go& w) {
   io.flag("acknowledge", m.acknowledge, w.acknowledge);
   io.number("override_factor", m.override_factor, w.override_factor, kShare);
   io.text("reason", m.reason, w.reason, Text::sentence);
+  io.integer("state_revision", m.state_revision, w.state_revision);
 }
 
 void describe(WireIo& io, TrajectoryCommand& m, handsel_TrajectoryCommand& w) {

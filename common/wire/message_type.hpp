@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -26,6 +27,12 @@ struct WireLeaf {
   std::string path() const;  ///< "position[3]"; put together when asked for, for a map has 10^5 leaves
 };
 
+/// Elements of lists that were left out of a sample when it was read.
+struct LeftOutElements {
+  std::uint64_t count{};
+  std::string why;  ///< of the first one: field and what is wrong, one sentence
+};
+
 /// Conversion of one message between its domain struct and its IDL struct. Both are passed as untyped pointers to the right struct.
 class MessageType {
  public:
@@ -39,7 +46,13 @@ class MessageType {
   /// A stamp of 0 becomes `now`. `wire` is reused: its buffers grow and stay.
   virtual bool to_wire(const void* message, Stamp now, void* wire, std::string& why) const = 0;
   /// IDL -> domain, validated; `message` is reused and undefined after a rejection.
-  virtual bool from_wire(const void* wire, void* message, std::string& why) const = 0;
+  bool from_wire(const void* wire, void* message, std::string& why) const {
+    LeftOutElements left_out;
+    return from_wire(wire, message, why, left_out);
+  }
+  /// Of an observation, malformed elements of a list are left out singly and counted (idl/README.md); every other message is accepted or
+  /// rejected whole.
+  virtual bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements& left_out) const = 0;
   virtual Stamp stamp(const void* wire) const = 0;
   virtual void set_stamp(void* wire, Stamp stamp) const = 0;
   /// Value of the key field; empty for topics without key.

@@ -53,6 +53,7 @@ void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w) {
   io.text("name", m.name, w.name, Text::name);
   io.point("position", m.position, w.position);
   io.point("velocity", m.velocity, w.velocity);
+  io.number("age", m.age, w.age, kTime);
 }
 
 void describe(WireIo& io, Vector& m, handsel_AxisPoint& w) { io.vector("values", m, w.values, kCoordinate); }

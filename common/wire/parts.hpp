@@ -23,6 +23,7 @@ void describe(WireIo& io, Attachment& m, handsel_Attachment& w);
 void describe(WireIo& io, RequestId& m, handsel_RequestId& w);
 void describe(WireIo& io, Primitive& m, handsel_Primitive& w);
 void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);
+void describe(WireIo& io, Person& m, handsel_Person& w);
 
 inline void describe_contacts(WireIo& io, std::vector<std::string>& m, dds_sequence_string64& w) { io.texts("allowed_contacts", m, w, 32); }
 
@@ -51,8 +52,9 @@ class DescribedType final : public MessageType {
     describe(io, *const_cast<M*>(static_cast<const M*>(message)), *static_cast<W*>(wire));
     return io.ok();
   }
-  bool from_wire(const void* wire, void* message, std::string& why) const override {
-    WireIo io = WireIo::from_wire(row().type, why);
+  using MessageType::from_wire;
+  bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements& left_out) const override {
+    WireIo io = WireIo::from_wire(row().type, why, &left_out);
     describe(io, *static_cast<M*>(message), *const_cast<W*>(static_cast<const W*>(wire)));
     return io.ok();
   }

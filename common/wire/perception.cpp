@@ -13,10 +13,19 @@ void describe(WireIo& io, ObservedJoint& m, handsel_ObservedJoint& w) {
 
 void describe(WireIo& io, ObservedPerson& m, handsel_ObservedPerson& w) {
   io.text("body", m.body, w.body, Text::name);
-  io.list("joints", m.joints, w.joints, 64);
-  io.flag("has_gaze", m.has_gaze, w.has_gaze);
-  io.point("gaze_origin", m.gaze_origin, w.gaze_origin);
-  io.direction("gaze_direction", m.gaze_direction, w.gaze_direction, m.has_gaze);
+  const std::size_t without = io.spared_list("joints", m.joints, w.joints, 64);
+  const bool gaze = io.spare([&] {
+    io.flag("has_gaze", m.has_gaze, w.has_gaze);
+    io.point("gaze_origin", m.gaze_origin, w.gaze_origin);
+    io.direction("gaze_direction", m.gaze_direction, w.gaze_direction, m.has_gaze);
+  });
+  if (!io.converting() || (without == 0 && gaze)) return;
+  if (!gaze) {
+    m.has_gaze = false;
+    m.gaze_origin.setZero();
+    m.gaze_direction = Vector3::UnitX();
+  }
+  io.check(!m.joints.empty() || m.has_gaze, "joints", "hold no well-formed joint, and there is no well-formed gaze");
 }
 
 void describe(WireIo& io, Coverage& m, handsel_Coverage& w) {
@@ -43,13 +52,14 @@ void describe(WireIo& io, HumanObservation& m, handsel_HumanObservation& w) {
   io.text("source", m.source, w.source, Text::name);
   io.stamp(m.stamp, w.stamp);
   io.part("coverage", m.coverage, w.coverage);
-  io.list("people", m.people, w.people, 16);
+  // A person left out may be anywhere: then the source has shown no place to be empty.
+  if (io.spared_list("people", m.people, w.people, 256) > 0) m.coverage.high = m.coverage.low;
 }
 
 void describe(WireIo& io, ObjectObservation& m, handsel_ObjectObservation& w) {
   io.text("source", m.source, w.source, Text::name);
   io.stamp(m.stamp, w.stamp);
-  io.list("objects", m.objects, w.objects, 64);
+  io.spared_list("objects", m.objects, w.objects, 1024);
 }
 
 HANDSEL_WIRE_KEYED(HumanObservation, source)

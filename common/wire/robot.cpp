@@ -26,6 +26,8 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.number("payload", m.payload, w.payload, {-1e3, 1e3});
   io.choice("mode", m.mode, w.mode, kDriveModeNames);
   io.list("other_hands", m.other_hands, w.other_hands, 3);
+  io.integer("refused_set_points", m.refused_set_points, w.refused_set_points);
+  io.text("refusal", m.refusal, w.refusal, Text::sentence);
   const auto n = m.position.size();
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");

@@ -230,7 +230,8 @@ class RosType final : public MessageType {
     write(*static_cast<const M*>(message), *static_cast<W*>(wire));
     return true;
   }
-  bool from_wire(const void* wire, void* message, std::string& why) const override {
+  using MessageType::from_wire;
+  bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements&) const override {
     Judge judge{why};
     if (read(*static_cast<const W*>(wire), *static_cast<M*>(message), judge)) return true;
     why = topic_ + ": " + why;

@@ -17,6 +17,13 @@ void describe(WireIo& io, TopicHealth& m, handsel_TopicHealth& w) {
   io.integer("deadline_misses", m.deadline_misses, w.deadline_misses);
   io.integer("rejected", m.rejected, w.rejected);
   io.text("last_rejection", m.last_rejection, w.last_rejection, Text::sentence);
+  io.integer("refused", m.refused, w.refused);
+  io.text("second_writer", m.second_writer, w.second_writer, Text::sentence);
+}
+
+void describe(WireIo& io, NamedCount& m, handsel_NamedCount& w) {
+  io.text("name", m.name, w.name, Text::sentence);
+  io.integer("count", m.count, w.count);
 }
 
 void describe(WireIo& io, ComponentHealth& m, handsel_ComponentHealth& w) {
@@ -30,6 +37,32 @@ void describe(WireIo& io, ComponentHealth& m, handsel_ComponentHealth& w) {
   io.number("memory_mb", m.memory_mb, w.memory_mb, {0, 1e9});
   io.number("uptime", m.uptime, w.uptime, kTime);
   io.list("topics", m.topics, w.topics, 64);
+  io.list("left_out", m.left_out, w.left_out, 32);
+}
+
+void describe(WireIo& io, SafetyState& m, handsel_SafetyState& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.integer("revision", m.revision, w.revision);
+  io.flag("paused", m.paused, w.paused);
+  io.number("override_factor", m.override_factor, w.override_factor, {0, 1});
+  io.flag("fault", m.fault, w.fault);
+  io.flag("awaits_person", m.awaits_person, w.awaits_person);
+  io.text("reason", m.reason, w.reason, Text::sentence);
+  io.list("lost", m.lost, w.lost, 16);
+}
+
+void describe(WireIo& io, SimClock& m, handsel_SimClock& w) {
+  io.stamp(m.stamp, w.stamp);
+  io.integer("incarnation", m.incarnation, w.incarnation);
+  io.integer("sequence", m.sequence, w.sequence_number);
+  io.number("time", m.time, w.time, kTime);
+}
+
+void describe(WireIo& io, ClockReached& m, handsel_ClockReached& w) {
+  io.text("component", m.component, w.component, Text::name);
+  io.stamp(m.stamp, w.stamp);
+  io.integer("incarnation", m.incarnation, w.incarnation);
+  io.integer("sequence", m.sequence, w.sequence_number);
 }
 
 void describe(WireIo& io, SimControl& m, handsel_SimControl& w) {
@@ -82,6 +115,9 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
 }
 
 HANDSEL_WIRE_KEYED(ComponentHealth, component)
+HANDSEL_WIRE(SafetyState)
+HANDSEL_WIRE(SimClock)
+HANDSEL_WIRE_KEYED(ClockReached, component)
 HANDSEL_WIRE(SimControl)
 HANDSEL_WIRE(StudyMark)
 HANDSEL_WIRE(GroundTruth)

@@ -35,7 +35,7 @@ void describe(WireIo& io, TaskStatus& m, handsel_TaskStatus& w) {
   io.integer("id", m.id, w.id);
   io.choice("kind", m.kind, w.kind, kTaskKindNames);
   io.choice("state", m.state, w.state, kTaskStateNames);
-  io.texts("plan", m.plan, w.plan, 64, Text::sentence);
+  io.texts("plan", m.plan, w.plan, 64, Text::sentence, true);
   io.integer("step", m.step, w.step);
   io.text("phase", m.phase, w.phase, Text::sentence);
   io.text("reason", m.reason, w.reason, Text::sentence);

@@ -1,5 +1,8 @@
 #include "common/bus/topics.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace handsel {
 
 const char* name(Profile profile) {
@@ -15,6 +18,13 @@ const TopicRow* find_topic(std::string_view wanted) {
     if (wanted == row.type || wanted == topic || wanted == topic.substr(kPrefix.size())) return &row;
   }
   return nullptr;
+}
+
+bool has_one_writer(const TopicRow& row) {
+  constexpr std::string_view kSafety[] = {"handsel/joint_command", "handsel/go",          "handsel/safety_state", "handsel/trajectory",
+                                          "handsel/hand_command",  "handsel/human_state", "handsel/robot_state",  "handsel/scene",
+                                          "handsel/action_status"};
+  return std::find(std::begin(kSafety), std::end(kSafety), row.topic) != std::end(kSafety);
 }
 
 bool named_in(const char* list, std::string_view component) {

@@ -65,8 +65,9 @@ WireIo WireIo::to_wire(const char* message, Stamp now, std::string& why) {
   return io;
 }
 
-WireIo WireIo::from_wire(const char* message, std::string& why) {
+WireIo WireIo::from_wire(const char* message, std::string& why, LeftOutElements* left_out) {
   WireIo io(Mode::from_wire);
+  io.left_out_ = left_out;
   io.message_ = message;
   io.text_ = &why;
   return io;
@@ -119,6 +120,13 @@ void WireIo::fail(const char* field, const std::string& sentence) {
   if (failed_) return;
   failed_ = true;
   *text_ = path(field) + ' ' + sentence;
+}
+
+void WireIo::leave_out(int depth) {
+  failed_ = false;
+  depth_ = depth;
+  if (left_out_ != nullptr && left_out_->count++ == 0) left_out_->why = *text_;
+  text_->clear();
 }
 
 void WireIo::check(bool holds, const char* field, const char* sentence) {

@@ -3,6 +3,7 @@
 // with its bounds.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <functional>
@@ -36,7 +37,7 @@ inline constexpr std::size_t kMaxAxes = 64;
 class WireIo {
  public:
   static WireIo to_wire(const char* message, Stamp now, std::string& why);
-  static WireIo from_wire(const char* message, std::string& why);
+  static WireIo from_wire(const char* message, std::string& why, LeftOutElements* left_out = nullptr);
   static WireIo json(std::string& out);
   static WireIo leaves(const std::function<void(const WireLeaf&)>& visit);
   static WireIo fill(bool full);
@@ -114,11 +115,49 @@ class WireIo {
     }
     close_list();
   }
+  /// Runs `part`. What is malformed in it when received is counted as left out and does not fail the message. True: it is well-formed.
+  template <class Part>
+  bool spare(Part&& part) {
+    if (failed_) return false;
+    const int depth = depth_;
+    part();
+    if (!failed_ || mode_ != Mode::from_wire) return !failed_;
+    leave_out(depth);
+    return false;
+  }
+  /// As list(). When received, a malformed element is left out and counted, and so is what exceeds the bound: for observations, whose
+  /// elements do not depend on each other. Returns how many were left out.
+  template <class T, class Seq>
+  std::size_t spared_list(const char* field, std::vector<T>& m, Seq& w, std::size_t bound) {
+    if (mode_ != Mode::from_wire) {
+      list(field, m, w, bound);
+      return 0;
+    }
+    if (failed_) return 0;
+    const std::size_t n = std::min<std::size_t>(w._length, bound);
+    if (n < w._length) spare([&] { fits(field, w._length, bound); });
+    m.resize(n);
+    stack_[depth_++] = {field, -1};
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      at(static_cast<int>(i));
+      const bool good = spare([&] {
+        open(nullptr);
+        describe(*this, m[kept], w._buffer[i]);
+        close();
+      });
+      kept += good ? 1 : 0;
+    }
+    --depth_;
+    m.resize(kept);
+    return w._length - kept;
+  }
+  /// `cut`: what exceeds the bound is left out when sent instead of refused.
   template <class Seq>
-  void texts(const char* field, std::vector<std::string>& m, Seq& w, std::size_t bound, Text kind = Text::name) {
-    if (!open_list(field, m, w, bound)) return;
+  void texts(const char* field, std::vector<std::string>& m, Seq& w, std::size_t bound, Text kind = Text::name, bool cut = false) {
+    if (!open_list(field, m, w, bound, cut)) return;
     std::string no_text;
-    for (std::size_t i = 0; i < size(m, w); ++i) {
+    for (std::size_t i = 0; i < size(m, w, bound); ++i) {
       at(static_cast<int>(i));
       char no_wire[sizeof(*w._buffer)] = {};
       text_field(field, wire_only() ? no_text : m[i], mode_ == Mode::json ? no_wire : w._buffer[i], sizeof(*w._buffer) - 1, kind);
@@ -156,6 +195,7 @@ class WireIo {
   void leaf(const char* field, WireLeaf::Kind kind, void* value, std::size_t size);
   bool fits(const char* field, std::size_t size, std::size_t bound);
   void fail(const char* field, const std::string& sentence);
+  void leave_out(int depth);
   void at(int index);
   void open(const char* field);
   void close();
@@ -220,6 +260,7 @@ class WireIo {
   const char* message_{""};
   Stamp now_{};
   std::string* text_{};
+  LeftOutElements* left_out_{};
   const std::function<void(const WireLeaf&)>* visit_{};
 };
 

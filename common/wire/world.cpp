@@ -73,18 +73,31 @@ void describe(WireIo& io, Scene& m, handsel_Scene& w) {
   io.vector("robot_position", m.robot_position, w.robot_position, kCoordinate);
   io.list("objects", m.objects, w.objects, 64);
   io.list("boxes", m.boxes, w.boxes, 64);
+  io.integer("left_out", m.left_out, w.left_out);
   io.check(m.robot_known == (m.robot_position.size() > 0), "robot_position", "must be there exactly when robot_known is true");
+}
+
+void describe(WireIo& io, SourceView& m, handsel_SourceView& w) {
+  io.text("source", m.source, w.source, Text::name);
+  io.point("low", m.low, w.low);
+  io.point("high", m.high, w.high);
+  io.number("age", m.age, w.age, kTime);
+  io.flag("live", m.live, w.live);
+  io.text("reason", m.reason, w.reason, Text::sentence);
 }
 
 void describe(WireIo& io, HumanState& m, handsel_HumanState& w) {
   io.stamp(m.stamp, w.stamp);
   io.list("people", m.people, w.people, 16);
   io.flag("covered", m.covered, w.covered);
+  io.list("views", m.views, w.views, 16);
+  io.integer("left_out", m.left_out, w.left_out);
 }
 
 void describe(WireIo& io, Facts& m, handsel_Facts& w) {
   io.stamp(m.stamp, w.stamp);
   io.list("facts", m.facts, w.holding, 256);
+  io.integer("left_out", m.left_out, w.left_out);
 }
 
 void describe(WireIo& io, Costmap& m, handsel_Costmap& w) {

@@ -70,6 +70,10 @@ WorkSettings work_of(const config::AttentionWork& w, const TextPlace& place) {
 /// Whether behaviours and works fit each other.
 void check_together(const AttentionSettings& s, const TextPlace& root) {
   std::vector<Releaser> before;
+  constexpr std::size_t kMaxBehaviours = 16;  // bound of AttentionState.behaviours
+  if (s.behaviours.size() > kMaxBehaviours)
+    throw ConfigError(root.inside("behaviours", static_cast<int>(kMaxBehaviours)).of("name") + ": there are " +
+                      std::to_string(s.behaviours.size()) + " behaviours; at most " + std::to_string(kMaxBehaviours) + " are allowed");
   for (std::size_t i = 0; i < s.behaviours.size(); ++i) {
     const std::string place = root.inside("behaviours", static_cast<int>(i)).of("name");
     for (const Releaser& other : before)

@@ -66,7 +66,8 @@ Node::Node(Bus& bus, const NodeContext& context)
 
   bus_.subscribe<ComponentHealth>(
       [this](const ComponentHealth& health, const Receipt& receipt) {
-        if (health.state != HealthState::stopping) heard_[health.component] = receipt.arrival;
+        const bool known = named_in(TopicOf<ComponentHealth>::row.writers, health.component);
+        if (known && health.state != HealthState::stopping) heard_[health.component] = receipt.arrival;
       },
       {.period = kGraphPeriod});
   open_page();

@@ -7,7 +7,8 @@
 namespace handsel::collision_checker {
 namespace {
 
-constexpr int kTicks = 4;  // of the shortest period: periods between are rounded to them
+constexpr int kTicks = 4;                // of the shortest period: periods between are rounded to them
+constexpr std::size_t kMaxQueries = 16;  // that wait; each may hold 4096 states
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
 config::CollisionCheckerSettings load(const NodeContext& context) {
@@ -82,14 +83,19 @@ void Node::answer(const StateQuery& query) {
     std::shared_ptr<const HumanState> people;
     StateVerdict verdict;
   };
+  const bool full = queries_waiting_ >= kMaxQueries;
+  if (full) bus_.count_left_out("state queries: too many wait", 1);
   auto work = std::make_shared<Work>(Work{query, scene_, people_, {}});
-  if (!work->scene || !work->people) {
+  if (!work->scene || !work->people || full) {
     work->verdict.id = query.id;
-    work->verdict.reason = work->scene ? "no state of people is known" : "no scene is known";
+    work->verdict.reason = full          ? std::to_string(kMaxQueries) + " queries wait already, which is the limit; ask again later"
+                           : work->scene ? "no state of people is known"
+                                         : "no scene is known";
     work->verdict.free.assign(query.states.size(), 0);
     verdict_out_->publish(work->verdict);
     return;
   }
+  ++queries_waiting_;
   bus_.run_job(
       [this, work](const CancelToken&) {
         query_world_.set_scene(*work->scene);
@@ -98,7 +104,10 @@ void Node::answer(const StateQuery& query) {
         work->verdict = judge(*robot_, query_world_, work->query);
         return from_seconds(check_time_ * static_cast<double>(query_world_.checks() - before));
       },
-      [this, work] { verdict_out_->publish(work->verdict); });
+      [this, work] {
+        --queries_waiting_;
+        verdict_out_->publish(work->verdict);
+      });
 }
 
 }  // namespace handsel::collision_checker

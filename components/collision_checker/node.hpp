@@ -26,6 +26,7 @@ class Node {
   std::shared_ptr<const RobotModel> robot_;
   double check_time_{};
   Duration max_age_{};
+  std::size_t queries_waiting_{0};
   Forecaster forecaster_;
   CollisionWorld query_world_;  // used by jobs only, which run one after the other
   Pace pace_;

@@ -1,5 +1,7 @@
 #include "components/grasp_planner/grasp_book.hpp"
 
+#include "components/grasp_planner/grasp_fit.hpp"
+
 namespace handsel::grasp_planner {
 
 GraspBook::GraspBook(std::shared_ptr<const HandKit> kit, const GraspListSettings& settings, GraspStore store)
@@ -11,7 +13,8 @@ std::shared_ptr<const GraspPage> GraspBook::page(const ObjectModel& object, cons
   auto page = std::make_shared<GraspPage>();
   page->object = std::make_shared<const Graspable>(object, kit_->tip_radius(), settings_.step_share, settings_.seed);
   const std::uint64_t frames = frame_count(*kit_, *page->object, settings_);
-  if (auto stored = store_.load(kit_->hand.name(), object.name, key, frames)) page->list = std::move(*stored);
+  if (auto stored = store_.load(kit_->hand.name(), object.name, key, frames); stored && fits(*stored, kit_->hand, object))
+    page->list = std::move(*stored);
   if (page->list.frames < frames) {
     if (!workspaces_) workspaces_ = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit_));
     page->list = list_grasps(kit_, workspaces_, page->object, settings_, cancelled, std::move(page->list));

@@ -231,6 +231,9 @@ std::optional<GraspList> GraspStore::load(const std::string& hand, const std::st
 }
 
 std::optional<GraspList> GraspStore::read(const std::filesystem::path& file, std::uint64_t key) {
+  constexpr std::uintmax_t kMaxBytes = 256u << 20;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > kMaxBytes) return std::nullopt;
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};

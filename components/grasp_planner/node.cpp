@@ -9,6 +9,8 @@ namespace handsel::grasp_planner {
 namespace {
 
 constexpr std::size_t kRememberedReplies = 8;
+constexpr std::size_t kMaxPending = 16;  // requests of a kind that wait; one is worked on for up to some seconds
+constexpr const char* kFull = "16 requests wait already, which is the limit; ask again later";
 constexpr std::uint32_t kTakerPositions = 40, kTakerOrientations = 72;
 constexpr double kMoved = 0.01;  // [m] an object moved by more needs new candidates
 
@@ -212,6 +214,14 @@ void Node::answer(const GraspRequest& request) {
     return;
   }
   if (std::find(pending_.begin(), pending_.end(), request.id) != pending_.end()) return;
+  if (pending_.size() >= kMaxPending) {
+    bus_.count_left_out("grasp requests: too many wait", 1);
+    GraspReply reply;
+    reply.id = request.id;
+    reply.reason = kFull;
+    reply_out_->publish(reply);
+    return;
+  }
   pending_.push_back(request.id);
   choose(request, true);
 }
@@ -300,6 +310,15 @@ void Node::answer(const RegraspRequest& request) {
     regrasp_out_->publish(*regrasp_reply_);
     return;
   }
+  if (regrasps_waiting_ >= kMaxPending) {
+    bus_.count_left_out("regrasp requests: too many wait", 1);
+    RegraspReply reply;
+    reply.id = request.id;
+    reply.reason = kFull;
+    regrasp_out_->publish(reply);
+    return;
+  }
+  ++regrasps_waiting_;
   regrasp_pending_ = request.id;
   auto answer = std::make_shared<RegraspAnswer>();
   answer->reply.id = request.id;
@@ -320,6 +339,7 @@ void Node::answer(const RegraspRequest& request) {
         return regrasp_time(*answer);
       },
       [this, answer] {
+        --regrasps_waiting_;
         regrasp_pending_.reset();
         regrasp_reply_ = answer->reply;
         regrasp_out_->publish(*regrasp_reply_);

@@ -51,6 +51,7 @@ class Node {
   std::deque<GraspReply> replies_;  // the latest: asking twice is harmless
   std::deque<RequestId> pending_;
   std::optional<RequestId> regrasp_pending_;
+  std::size_t regrasps_waiting_{0};
   std::optional<RegraspReply> regrasp_reply_;  // the latest
   GraspRequest served_;                        // the request whose object candidates are kept up for
   TimePoint served_at_{};

@@ -93,22 +93,27 @@ void Node::on_request(const PathRequest& request) {
     cancel(request.id);
     return;
   }
-  switch (desk_.admit(request.id)) {
-    case RequestDesk::Admission::under_way:
+  using Admission = RequestQueue<PathReply>::Admission;
+  switch (requests_.admit(request.id)) {
+    case Admission::under_way:
       return;
-    case RequestDesk::Admission::answered:
-      reply_out_->publish(*desk_.answer(request.id));
+    case Admission::answered:
+      reply_out_->publish(*requests_.answer(request.id));
       return;
-    case RequestDesk::Admission::superseded:
+    case Admission::superseded:
       refuse(request.id, "superseded by a newer request of the same client");
       return;
-    case RequestDesk::Admission::cancelled:
+    case Admission::cancelled:
       refuse(request.id, kCancelled);
       return;
-    case RequestDesk::Admission::fresh:
+    case Admission::full:
+      bus_.count_left_out("path requests: too many wait", 1);
+      refuse_unheard(request.id, requests_.why_full());
+      return;
+    case Admission::fresh:
       break;
   }
-  for (auto& [number, token] : running_[request.id.client]) token.cancel();
+  stop_running(request.id.client, request.id.number);
   if (const std::string why = not_ready(); !why.empty()) {
     refuse(request.id, why);
     return;
@@ -138,9 +143,8 @@ Node::Seat Node::seat_for(const std::string& group) {
 
 /// What is asked for is answered at once; the work for it ends with its next check.
 void Node::cancel(const RequestId& id) {
-  for (auto& [number, token] : running_[id.client])
-    if (number <= id.number) token.cancel();
-  for (const RequestId& open : desk_.cancel(id)) refuse(open, kCancelled);
+  stop_running(id.client, id.number);
+  for (const RequestId& open : requests_.cancel(id)) refuse(open, kCancelled);
 }
 
 std::string Node::not_ready() const {
@@ -207,9 +211,9 @@ void Node::start(const PathRequest& request) {
     auto& of_client = running_[id.client];
     of_client.erase(id.number);
     if (of_client.empty()) running_.erase(id.client);
-    if (desk_.answer(id) != nullptr) return;  // cancelled
+    if (requests_.answer(id) != nullptr) return;  // cancelled
     PathReply reply = reply_of(work->request, work->result);
-    if (!reply.solved && reply.reason == "cancelled" && desk_.superseded(id))
+    if (!reply.solved && reply.reason == "cancelled" && requests_.superseded(id))
       reply.reason = "superseded by a newer request of the same client";
     if (!work->request.running.empty()) {
       ++live_outcomes_[static_cast<std::size_t>(work->outcome)];
@@ -217,7 +221,7 @@ void Node::start(const PathRequest& request) {
     } else if (!reply.solved) {
       reply.outcome = PathOutcome::blocked;
     }
-    desk_.close(reply);
+    requests_.close(reply);
     reply_out_->publish(reply);
   };
   running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, answer));
@@ -256,13 +260,28 @@ Result Node::from_nothing(const Seat& seat, const PathRequest& request, Problem&
   return result;
 }
 
+/// Ends the work for the requests of a client up to this number with its next check.
+void Node::stop_running(std::uint64_t client, std::uint64_t last) {
+  const auto of_client = running_.find(client);
+  if (of_client == running_.end()) return;
+  for (auto& [number, token] : of_client->second)
+    if (number <= last) token.cancel();
+}
+
 void Node::refuse(const RequestId& id, const std::string& reason) {
+  requests_.close(refusal(id, reason));
+  reply_out_->publish(*requests_.answer(id));
+}
+
+/// The answer is not remembered: the same request may be made again.
+void Node::refuse_unheard(const RequestId& id, const std::string& reason) { reply_out_->publish(refusal(id, reason)); }
+
+PathReply Node::refusal(const RequestId& id, const std::string& reason) {
   PathReply reply;
   reply.id = id;
   reply.reason = reason;
   reply.outcome = PathOutcome::blocked;
-  desk_.close(reply);
-  reply_out_->publish(reply);
+  return reply;
 }
 
 }  // namespace handsel::path_planner

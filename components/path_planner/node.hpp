@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/request_queue.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/collision/margins.hpp"
@@ -16,7 +17,6 @@
 #include "common/messages/world.hpp"
 #include "components/path_planner/driving.hpp"
 #include "components/path_planner/live_path.hpp"
-#include "components/path_planner/request_desk.hpp"
 
 namespace handsel::path_planner {
 
@@ -54,7 +54,10 @@ class Node {
   std::string complete(PathRequest& request) const;
   static std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far);
   Result from_nothing(const Seat& seat, const PathRequest& request, Problem& problem, const Pose& T_world_root, const Hooks& hooks);
+  void stop_running(std::uint64_t client, std::uint64_t last);
   void refuse(const RequestId& id, const std::string& reason);
+  void refuse_unheard(const RequestId& id, const std::string& reason);
+  static PathReply refusal(const RequestId& id, const std::string& reason);
   std::string not_ready() const;
 
   Bus& bus_;
@@ -69,7 +72,7 @@ class Node {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
-  RequestDesk desk_;
+  RequestQueue<PathReply> requests_{Newer::replaces};
   std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>> running_;  // client, number
 
   // Used by jobs only, which run one after the other.

@@ -12,7 +12,6 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(10);
 constexpr double kShown = 10;        // [s] a refusal is shown in the health
-constexpr int kCommandStrength = 1;  // while it hands over its command, the manipulation planner is not heard
 
 config::Ros2LaneSettings load(const NodeContext& context) {
   config::Ros2LaneSettings s;
@@ -169,7 +168,7 @@ void Node::send(const TrajectoryOutbox& out) {
   if (out.query) query_out_->publish(*out.query);
   if (out.request) request_out_->publish(*out.request);
   if (out.command) {
-    if (!command_out_) command_out_ = bus_.advertise<TrajectoryCommand>(kCommandStrength);
+    if (!command_out_) command_out_ = bus_.advertise<TrajectoryCommand>();
     command_out_->publish(*out.command);
   }
   if (out.command_done) command_out_.reset();

@@ -8,7 +8,7 @@
 namespace handsel::ros2_lane {
 namespace {
 
-constexpr std::size_t kMostBodies = 16;
+constexpr std::size_t kMostBodies = 256;  // as an observation holds; SPARK tracks the nearest
 constexpr std::size_t kFewestJoints = 3;  // frames of robots may be called alike: "head_tilt" alone is no body
 constexpr double kListAge = 2.0;          // [s] a list of tracked bodies counts
 

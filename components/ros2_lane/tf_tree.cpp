@@ -5,13 +5,22 @@
 namespace handsel::ros2_lane {
 namespace {
 constexpr std::size_t kMostFrames = 4096;
+constexpr double kForgotten = 10;  // [s] frames not sent for longer make room for new ones
 constexpr int kLongestWay = 64;
 }  // namespace
 
 bool TfTree::set(const ros2::Transform& transform, TimePoint arrival, bool is_static) {
-  if (frames_.size() >= kMostFrames && !frames_.contains(transform.child)) return false;
+  if (frames_.size() >= kMostFrames && !frames_.contains(transform.child) && !make_room(arrival)) return false;
   frames_[transform.child] = {transform, arrival, is_static};
   return true;
+}
+
+/// Forgets what has not been sent for long, at most once a second. True: there is room.
+bool TfTree::make_room(TimePoint now) {
+  if (swept_ && to_seconds(now - *swept_) < 1) return false;
+  swept_ = now;
+  std::erase_if(frames_, [&](const auto& entry) { return !entry.second.is_static && to_seconds(now - entry.second.arrival) > kForgotten; });
+  return frames_.size() < kMostFrames;
 }
 
 std::optional<TfTree::Place> TfTree::find(const std::string& frame, const std::string& root) const {

@@ -12,7 +12,7 @@ namespace handsel::ros2_lane {
 
 class TfTree {
  public:
-  /// A static frame does not grow old. Frames beyond 4096 are not taken: false.
+  /// A static frame does not grow old. At 4096 frames those not sent for ten seconds are forgotten; while there is no room, false.
   bool set(const ros2::Transform&, TimePoint arrival, bool is_static);
 
   struct Place {
@@ -29,7 +29,9 @@ class TfTree {
     TimePoint arrival{};
     bool is_static{};
   };
+  bool make_room(TimePoint now);
   std::map<std::string, Frame> frames_;  // by child
+  std::optional<TimePoint> swept_;
 };
 
 }  // namespace handsel::ros2_lane

@@ -142,8 +142,23 @@ void ExchangeFacts::waited_for(const Person& person, const Scene& scene, std::ve
   }
 }
 
+/// What is remembered of objects that are no longer in the scene, and of people and moments that are over.
+void ExchangeFacts::forget(const Scene& scene, const HumanState& people, TimePoint now) {
+  std::set<std::string> there{kRobotName};
+  for (const SceneObject& object : scene.objects) there.insert(object.id);
+  std::erase_if(holders_, [&](const auto& entry) { return !there.contains(entry.first); });
+  for (const Person& person : people.people) there.insert(person.id);
+  const auto over = [&](const auto& entry) {
+    return to_seconds(now - entry.second) > settings_.memory() &&
+           (!there.contains(entry.first.first) || !there.contains(entry.first.second));
+  };
+  std::erase_if(offering_, over);
+  std::erase_if(reaching_, over);
+}
+
 void ExchangeFacts::find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now,
                          std::vector<Candidate>& out) {
+  forget(scene, people, now);
   for (const SceneObject& object : scene.objects) held_and_released(object, now, out);
   for (const SceneObject& object : scene.objects) offered(object, people, robot, now, out);
   for (const Person& person : people.people) {

@@ -38,6 +38,7 @@ class ExchangeFacts {
   void held_and_released(const SceneObject& object, TimePoint now, std::vector<Candidate>& out);
   void offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
   void reached_for(const Person& person, const std::string& target, const Vector3& where, TimePoint now, std::vector<Candidate>& out);
+  void forget(const Scene& scene, const HumanState& people, TimePoint now);
   void waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out);
 
   config::SparkSettings settings_;

@@ -9,6 +9,8 @@
 #include "common/cost/person_frame.hpp"
 #include "common/model/object_extent.hpp"
 #include "components/spark/directed.hpp"
+#include "components/spark/quotas.hpp"
+#include "components/spark/scene_model.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -183,6 +185,9 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
   if (scene.robot_known) robot_->forward(scene.robot_position, links_);
   extents_.clear();
   for (const SceneObject& object : scene.objects) extents_.push_back(extent(object));
+  std::erase_if(zones_, [&](const auto& zone) {
+    return std::none_of(people.people.begin(), people.people.end(), [&](const Person& person) { return person.id == zone.first; });
+  });
   const RobotPartner robot = partner(scene);
   std::vector<Candidate> judged, remembered;
   for (const Person& person : people.people) {
@@ -215,6 +220,8 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
   judged.erase(middle, judged.end());
   Facts out{0, lasting_.settle(judged, now)};
   for (Fact& fact : instant_.settle(remembered, now)) out.facts.push_back(std::move(fact));
+  const Coverage reach = reach_of(*robot_, scene.T_world_base.translation());
+  out.left_out = keep_most_relevant(out.facts, quotas_of(settings_).facts, scene, people, reach).count;
   return out;
 }
 

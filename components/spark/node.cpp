@@ -1,6 +1,7 @@
 #include "components/spark/node.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"
@@ -16,6 +17,7 @@ config::SparkSettings load_settings(const NodeContext& context) {
     throw ConfigError("spark.txtpb: publish_period and human_period must be > 0");
   if (!(settings.news_period() > 0) || settings.longest_period() < std::max(settings.human_period(), settings.publish_period()))
     throw ConfigError("spark.txtpb: news_period must be > 0 and longest_period not below human_period and publish_period");
+  check_quotas(settings, context.settings / "spark.txtpb");
   *settings.mutable_people() = load_people(context.settings).people();
   return settings;
 }
@@ -73,23 +75,31 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       news_pace_(settings_.news_period(), settings_.longest_period(), settings_.news_period()),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
-      facts_out_(bus.advertise<Facts>()) {
-  bus.subscribe<HumanObservation>([this](const HumanObservation& observation, const Receipt& receipt) {
-    const TimePoint seen = receipt.arrival - receipt.age - from_seconds(settings_.least_latency());
-    HumanObservation there = observation;
-    calibration_.to_world(there);
-    tracker_.observe(there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles());
-    publish_people(bus_.now());
-  });
+      facts_out_(bus.advertise<Facts>()),
+      quotas_(quotas_of(settings_)),
+      started_(bus.now()) {
+  bus.subscribe<HumanObservation>([this](const HumanObservation& observation, const Receipt& receipt) { observe(observation, receipt); });
   bus.subscribe<ObjectObservation>([this](const ObjectObservation& observation, const Receipt& receipt) {
     ObjectObservation there = observation;
     calibration_.to_world(there);
     scene_.observe(there, receipt.arrival - receipt.age);
     publish_news(bus_.now());
   });
-  bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { scene_.update(state); });
+  bus.subscribe<RobotState>([this, robot = context.robot->name()](const RobotState& state, const Receipt&) {
+    if (state.robot == robot)
+      scene_.update(state);
+    else
+      bus_.count_left_out("robot_state: of another robot", 1);
+  });
   bus.subscribe<TaskGoal>([this](const TaskGoal& goal, const Receipt&) {
+    scene_.want(goal.object);
     if (goal.kind == TaskKind::clear_person && tracker_.clear(goal.human, bus_.now()) > 0) publish_people(bus_.now());
+  });
+  bus.subscribe<SafetyState>([this](const SafetyState& safety, const Receipt& receipt) {
+    // A transient local sample may be older than its receipt says; a clock that differs only makes people older.
+    const Duration since = safety.stamp > 0 ? std::max(receipt.age, Duration(bus_.stamp_now() - safety.stamp)) : receipt.age;
+    tracker_.adopt(safety.lost, receipt.arrival - since, started_);
+    knows_lost_ = true;
   });
   bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt& r) {
     facts_pace_.advise(advice.people_period, r.arrival);
@@ -102,12 +112,46 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
   });
 }
 
+void Node::observe(const HumanObservation& observation, const Receipt& receipt) {
+  const TimePoint seen = receipt.arrival - receipt.age - from_seconds(settings_.least_latency());
+  HumanObservation there = observation;
+  calibration_.to_world(there);
+  const Coverage reach = scene_.reach();
+  const std::uint32_t bodies = tracker_.observe(there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles(), &reach);
+  bodies_left_out_.add(bodies, receipt.arrival);
+  bus_.count_left_out("bodies of an observation: farther than the nearest " + std::to_string(quotas_.bodies), bodies);
+  const LeftOut tracks = tracker_.keep_nearest(bus_.now(), reach);
+  bus_.count_left_out("people remembered: farther than the nearest " + std::to_string(quotas_.tracks), tracks.count);
+  count_left_out("observations of people: more than " + std::to_string(quotas_.sources) + " sources", tracker_.refused_observations(),
+                 refused_counted_);
+  publish_people(bus_.now());
+}
+
+void Node::count_left_out(const std::string& what, std::uint64_t so_far, std::uint64_t& counted) {
+  bus_.count_left_out(what, so_far - counted);
+  counted = so_far;
+}
+
+/// Returns everybody as of now. Before the safety state has been heard "nobody is there" is no fact: somebody may have been lost before.
+HumanState Node::people(TimePoint now, LeftOut* left_out) const {
+  HumanState state = tracker_.state(now, scene_.reach(), left_out);
+  state.covered = state.covered && knows_lost_;
+  return state;
+}
+
 void Node::publish_people(TimePoint now) {
-  human_out_->publish(tracker_.state(now, scene_.reach()));
+  HumanState people = this->people(now, &people_left_out_);
+  people.left_out += bodies_left_out_.get(now);
+  bus_.count_left_out("people: farther than the nearest " + std::to_string(quotas_.people), people.left_out);
+  human_out_->publish(people);
   people_published_ = now;
 }
 
 void Node::publish(const Scene& scene, TimePoint now) {
+  bus_.count_left_out("objects: less relevant than " + std::to_string(quotas_.objects) + " others", scene_.objects_left_out());
+  bus_.count_left_out("boxes: farther than the nearest " + std::to_string(quotas_.boxes), scene_.boxes_left_out());
+  count_left_out("objects remembered: less relevant than " + std::to_string(quotas_.known_objects) + " others", scene_.forgotten(),
+                 forgotten_counted_);
   scene_out_->publish(scene);
   scene_pace_.done(now);
   revision_published_ = scene.revision;
@@ -116,19 +160,36 @@ void Node::publish(const Scene& scene, TimePoint now) {
 void Node::publish_news(TimePoint now) {
   if (!news_pace_.due(now)) return;
   news_pace_.done(now);
-  const Scene scene = scene_.scene(now, tracker_.state(now, scene_.reach()));
+  const Scene scene = scene_.scene(now, people(now));
   if (scene.revision != revision_published_) publish(scene, now);
 }
 
+std::string Node::trouble(TimePoint now) const {
+  std::string out;
+  const auto add = [&out](const std::string& sentence) {
+    if (!sentence.empty()) out += (out.empty() ? "" : "; ") + sentence;
+  };
+  add(tracker_.trouble(now));
+  if (people_left_out_.count > 0 && people_left_out_.nearest <= arm_radius(scene_.reach())) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%u people are left out, the nearest %.2f m from the robot and within reach of the arm",
+                  people_left_out_.count, people_left_out_.nearest);
+    add(text);
+  }
+  add(scene_.trouble(now));
+  return out;
+}
+
 void Node::interpret(TimePoint now) {
-  const std::string people_trouble = tracker_.trouble(now), things_trouble = scene_.trouble(now);
-  bus_.set_degraded(people_trouble + (people_trouble.empty() || things_trouble.empty() ? "" : "; ") + things_trouble);
+  bus_.set_degraded(trouble(now));
   const bool facts_due = facts_pace_.due(now), scene_due = scene_pace_.due(now);
   if (!facts_due && !scene_due) return;
-  const HumanState people = tracker_.state(now, scene_.reach());
-  const Scene scene = scene_.scene(now, people);
+  const HumanState all = people(now);
+  const Scene scene = scene_.scene(now, all);
   if (facts_due) {
-    facts_out_->publish(facts_.find(scene, people, now));
+    const Facts facts = facts_.find(scene, all, now);
+    bus_.count_left_out("facts: less relevant than " + std::to_string(quotas_.facts) + " others", facts.left_out);
+    facts_out_->publish(facts);
     facts_pace_.done(now);
   }
   if (scene_due || scene.revision != revision_published_) publish(scene, now);

@@ -8,6 +8,7 @@
 #include "common/bus/process.hpp"
 #include "common/config/scenario.pb.h"
 #include "common/messages/attention.hpp"
+#include "common/messages/system.hpp"
 #include "common/messages/task.hpp"
 #include "components/spark/calibration.hpp"
 #include "components/spark/fact_finder.hpp"
@@ -22,7 +23,11 @@ class Node {
 
  private:
   Node(Bus& bus, const NodeContext& context, const config::Scenario& place);
+  void observe(const HumanObservation& observation, const Receipt& receipt);
+  HumanState people(TimePoint now, LeftOut* left_out = nullptr) const;
   void publish_people(TimePoint now);
+  void count_left_out(const std::string& what, std::uint64_t so_far, std::uint64_t& counted);
+  std::string trouble(TimePoint now) const;
   void publish(const Scene& scene, TimePoint now);
   void publish_news(TimePoint now);  // the scene, when it has changed in a way that matters to a planner
   void interpret(TimePoint now);     // facts and scene, each when it is due
@@ -38,7 +43,12 @@ class Node {
   std::unique_ptr<Publisher<HumanState>> human_out_;
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<Facts>> facts_out_;
-  TimePoint people_published_{};
+  Quotas quotas_;
+  RecentCount bodies_left_out_;  // of an observation
+  LeftOut people_left_out_;      // of the last HumanState
+  std::uint64_t refused_counted_{0}, forgotten_counted_{0};
+  TimePoint started_, people_published_{};
+  bool knows_lost_{false};  // the safety state has been heard: who was lost before the start is known
   std::uint64_t revision_published_{0};
 };
 

@@ -19,12 +19,13 @@ constexpr double kSettled = 0.08;    // a body moves by this between two looks w
 constexpr double kConfirmed = 0.15;  // where a lost person may have been counts so long after the first look [s]
 constexpr double kGapOfHand = 0.5;   // beyond this a hand's motion is found anew [s]
 constexpr double kLeastConfidence = 0.05;
-constexpr double kGuessed = 3;   // a joint that was not seen is this much noisier
-constexpr double kGrid = 0.3;    // places of a lost person are tried this far apart [m]
-constexpr double kFarthest = 5;  // and no farther than this [m]
-constexpr std::size_t kMostPeople = 16;
-constexpr int kAheads = 5;      // looks ahead at a hand
-constexpr double kAhead = 0.1;  // this far apart [s]
+constexpr double kGuessed = 3;          // a joint that was not seen is this much noisier
+constexpr double kGrid = 0.3;           // places of a lost person are tried this far apart [m]
+constexpr double kFarthest = 5;         // and no farther than this [m]
+constexpr double kWidest = 4;           // no joints of a body are farther apart: beyond, two bodies need not be compared joint by joint [m]
+constexpr double kMaxInflation = 1000;  // farther than any robot; HumanState has room for 10 km [m]
+constexpr int kAheads = 5;              // looks ahead at a hand
+constexpr double kAhead = 0.1;          // this far apart [s]
 
 int index(const char* name) { return body_joint_index(name); }
 const int kHead = index("head"), kTorso = index("torso");
@@ -53,6 +54,12 @@ ObservedPerson with_head(const ObservedPerson& body) {
   return out;
 }
 
+Vector3 middle_of(const ObservedPerson& body) {
+  Vector3 sum = Vector3::Zero();
+  for (const ObservedJoint& joint : body.joints) sum += joint.position;
+  return body.joints.empty() ? sum : Vector3(sum / static_cast<double>(body.joints.size()));
+}
+
 }  // namespace
 
 double PeopleTracker::distance(const Track& track, const ObservedPerson& body) const {
@@ -73,12 +80,14 @@ std::vector<int> PeopleTracker::associate(const HumanObservation& observation, T
   std::vector<std::tuple<double, int, int>> pairs;
   for (std::size_t b = 0; b < observation.people.size(); ++b) {
     const ObservedPerson body = with_head(observation.people[b]);
+    const Vector3 middle = middle_of(body);
     for (std::size_t t = 0; t < tracks_.size(); ++t) {
       const Track& track = tracks_[t];
       const auto known = track.bodies.find(observation.source);
       const bool same_id = known != track.bodies.end() && known->second == body.body;
       const double gap = std::max(0.0, age(track, seen));
       const double reach = settings_.association_distance() + settings_.lost_speed() * (same_id ? gap : std::min(gap, kPause));
+      if ((middle - position(track.person, kTorso)).head<2>().norm() > reach + kWidest) continue;
       const double d = distance(track, body);
       if (d <= reach) pairs.emplace_back(d - (same_id ? kSameId : 0.0), static_cast<int>(b), static_cast<int>(t));
     }
@@ -174,6 +183,7 @@ void PeopleTracker::update(Track& track, const ObservedPerson& body, TimePoint s
   track.seen = at;
   track.empty_since.reset();
   track.left_by.clear();
+  track.adopted = false;
 }
 
 /// A wrist tells where the hand is as well.
@@ -269,7 +279,10 @@ bool PeopleTracker::at_edge(const Source& source, const Vector3& place) const {
 void PeopleTracker::confine(Track& track, TimePoint now) const {
   for (const auto& [name, source] : sources_) {
     if (!track.left_by.empty()) break;
-    const bool watched = recent(source, now) && source.seen > track.seen && source.unbroken <= track.seen;
+    // Who was adopted was lost before this process began to look: a look of empty_after without a gap stands for the time before.
+    const bool looked_on =
+        source.unbroken <= track.seen || (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after());
+    const bool watched = recent(source, now) && source.seen > track.seen && looked_on;
     if (watched && at_edge(source, position(track.person, kTorso))) track.left_by = name, track.confined = source.seen;
   }
   const auto found = sources_.find(track.left_by);
@@ -329,16 +342,18 @@ void PeopleTracker::forget(TimePoint now, const Obstacles& obstacles) {
   }
 }
 
-void PeopleTracker::observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles) {
+std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles,
+                                     const Coverage* reach) {
   const bool first = !sources_.contains(observation.source);
+  if (first && !room_for_source(seen)) return 0;
   Source& source = sources_[observation.source];
   if (first) {
     if (const auto eye = eyes_.find(observation.source); eye != eyes_.end()) source.eye = eye->second;
   } else if (seen < source.seen) {
-    return;
+    return 0;
   }
   source.repeats = !first && !observation.people.empty() && same(observation.people, source.people);
-  if (source.repeats) return;
+  if (source.repeats) return 0;
   const bool moved = source.coverage.low != observation.coverage.low || source.coverage.high != observation.coverage.high;
   if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory()) source.unbroken = seen;
   source.coverage = observation.coverage;
@@ -353,9 +368,17 @@ void PeopleTracker::observe(const HumanObservation& observation, TimePoint seen,
     track.bodies[observation.source] = body.body;
     update(track, body, seen, body.joints.empty() ? 0.0 : distance(track, body));
   }
-  for (std::size_t b = 0; b < of.size(); ++b)
-    if (of[b] < 0) add(with_head(observation.people[b]), observation.source, seen);
+  const std::vector<bool> near = nearest_of(observation.people, quotas_of(settings_).bodies, reach);
+  std::uint32_t left_out = 0;
+  for (std::size_t b = 0; b < of.size(); ++b) {
+    if (of[b] >= 0) continue;
+    if (near[b])
+      add(with_head(observation.people[b]), observation.source, seen);
+    else
+      ++left_out;
+  }
   forget(seen, obstacles);
+  return left_out;
 }
 
 std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
@@ -363,20 +386,44 @@ std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
       tracks_, [&](const Track& track) { return age(track, now) > settings_.lost_after() && (id.empty() || track.person.id == id); });
 }
 
-HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
+/// How far a lost or doubted person may be from the last body [m].
+double PeopleTracker::inflation(const Track& track, TimePoint now) const {
+  double out = 0;
+  const double unseen = std::max(0.0, age(track, now));
+  if (unseen > settings_.lost_after()) {
+    out = std::min(kMaxInflation, settings_.lost_speed() * unseen);
+    if (!track.left_by.empty())
+      out = std::min(out, settings_.edge() + settings_.lost_speed() * std::max(0.0, to_seconds(now - track.confined)));
+  }
+  return now < track.doubted_until ? std::max(out, track.doubt) : out;
+}
+
+LeftOut PeopleTracker::keep_nearest(TimePoint now, const Coverage& reach) {
+  const auto rank = [&](const Track& track) { return Rank{0, distance_to_arm(track.person, reach) - inflation(track, now)}; };
+  return keep_lowest(tracks_, quotas_of(settings_).tracks, rank);
+}
+
+/// Whether a new source is listened to: at the quota it takes the place of the one that has been silent for longest.
+bool PeopleTracker::room_for_source(TimePoint seen) {
+  if (sources_.size() < quotas_of(settings_).sources) return true;
+  const auto oldest =
+      std::min_element(sources_.begin(), sources_.end(), [](const auto& a, const auto& b) { return a.second.seen < b.second.seen; });
+  if (recent(oldest->second, seen) || eyes_.contains(oldest->first)) {
+    ++refused_observations_;
+    return false;
+  }
+  for (Track& track : tracks_) track.bodies.erase(oldest->first);
+  sources_.erase(oldest);
+  return true;
+}
+
+HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* report) const {
   HumanState out;
   for (const Track& track : tracks_) {
     Person person = track.person;
     person.age = std::max(0.0, age(track, now));
     person.gaze_known = track.gaze_seen && to_seconds(now - *track.gaze_seen) <= settings_.gaze_memory();
-    if (person.age > settings_.lost_after()) {
-      person.inflation = settings_.lost_speed() * person.age;
-      if (!track.left_by.empty()) {
-        const double unseen = std::max(0.0, to_seconds(now - track.confined));
-        person.inflation = std::min(person.inflation, settings_.edge() + settings_.lost_speed() * unseen);
-      }
-    }
-    if (now < track.doubted_until) person.inflation = std::max(person.inflation, track.doubt);
+    person.inflation = inflation(track, now);
     if (person.age <= settings_.lost_after()) person.hands = hands_ahead(track, person, now);
     out.people.push_back(std::move(person));
   }
@@ -384,14 +431,10 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach) const {
   for (const auto& [name, source] : sources_)
     if (recent(source, now)) looked_at.push_back(source.coverage);
   out.covered = covers(looked_at, reach);
-  if (out.people.size() > kMostPeople) {
-    const Vector3 middle = (reach.low + reach.high) / 2;
-    const auto far = [&](const Person& p) { return (position(p, kTorso) - middle).norm() - p.inflation; };
-    std::sort(out.people.begin(), out.people.end(), [&](const Person& a, const Person& b) { return far(a) < far(b); });
-    const bool near = std::any_of(out.people.begin() + kMostPeople, out.people.end(), [&](const Person& p) { return far(p) < kFarthest; });
-    out.people.resize(kMostPeople);
-    out.covered = out.covered && !near;
-  }
+  const LeftOut left_out = spark::keep_nearest(out.people, quotas_of(settings_).people, reach);
+  out.left_out = left_out.count;
+  out.covered = out.covered && left_out.nearest >= kFarthest;
+  if (report != nullptr) *report = left_out;
   return out;
 }
 

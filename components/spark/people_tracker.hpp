@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "components/spark/body_motion.hpp"
 #include "components/spark/body_size.hpp"
 #include "components/spark/hand_predictor.hpp"
+#include "components/spark/quotas.hpp"
 #include "components/spark/sources.hpp"
 
 namespace handsel::spark {
@@ -36,11 +38,22 @@ class PeopleTracker {
       : settings_(settings), eyes_(std::move(eyes)) {}
 
   /// `seen`: when the observation was true (arrival less its age).
-  void observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles = {});
+  /// Where `reach` is given, only the nearest bodies, by the quota, become new people; whoever is known already is followed all the same.
+  /// Returns how many bodies became nobody.
+  std::uint32_t observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles = {},
+                        const Coverage* reach = nullptr);
   /// An operator says that a lost person is gone: `id`, or everybody lost when it is empty. Who is seen stays. How many went.
   std::size_t clear(const std::string& id, TimePoint now);
+  /// Adopts people whom a SPARK before this one had lost: last seen before `started`, `age` counted from `now`. Each is adopted once. A
+  /// person who is seen where the lost one may be, under the same id or at the same place, is that person.
+  void adopt(const std::vector<Person>& lost, TimePoint now, TimePoint started);
   /// Everybody as of now, ages and inflation filled in. `covered`: sources looked at the whole of `reach` lately.
-  HumanState state(TimePoint now, const Coverage& reach) const;
+  /// `left_out`, if not null: what the quota of people has left out.
+  HumanState state(TimePoint now, const Coverage& reach, LeftOut* left_out = nullptr) const;
+  /// Forgets the people farthest from the arm beyond the quota of tracks: nobody forgotten is nearer than anybody kept.
+  LeftOut keep_nearest(TimePoint now, const Coverage& reach);
+  /// Observations of sources beyond the quota, which were not taken.
+  std::uint64_t refused_observations() const { return refused_observations_; }
   /// Which source is silent or repeats itself; empty: none.
   std::string trouble(TimePoint now) const;
 
@@ -59,6 +72,7 @@ class PeopleTracker {
     double doubt{};  // [m], until doubted_until
     TimePoint doubted_until{};
     std::optional<TimePoint> empty_since;
+    bool adopted{};        // from the safety state, and not seen by this process yet
     bool came_in{};        // appeared at an edge, and nobody who had left is known to be it
     std::string left_by;   // source through whose edge they left; empty: they did not
     TimePoint confined{};  // when that source last showed that they had not come back
@@ -66,6 +80,8 @@ class PeopleTracker {
 
   std::vector<int> associate(const HumanObservation& observation, TimePoint seen) const;
   double distance(const Track& track, const ObservedPerson& body) const;
+  double inflation(const Track& track, TimePoint now) const;
+  bool room_for_source(TimePoint seen);
   double age(const Track& track, TimePoint now) const { return to_seconds(now - track.seen); }
   bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
@@ -79,6 +95,7 @@ class PeopleTracker {
   void guess_unseen(const Track& track, std::vector<BodyJoint>& body) const;
   void follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const;
   std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) const;
+  Track* same_as(const Person& lost);
   void add(const ObservedPerson& body, const std::string& source, TimePoint seen);
   void forget(TimePoint now, const Obstacles& obstacles);
 
@@ -87,6 +104,8 @@ class PeopleTracker {
   std::vector<Track> tracks_;
   std::map<std::string, Source> sources_;
   int unnamed_{0};
+  std::uint64_t refused_observations_{0};
+  std::set<std::string> adopted_;  // ids of all people adopted so far
 };
 
 }  // namespace handsel::spark

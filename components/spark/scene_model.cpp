@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "common/model/human_body.hpp"
@@ -44,6 +45,8 @@ Coverage around(const Vector3& centre, double arm) {
 
 bool differs(const Scene& a, const Scene& b) {
   if (a.objects.size() != b.objects.size() || a.boxes.size() != b.boxes.size() || a.robot_known != b.robot_known) return true;
+  for (std::size_t i = 0; i < a.boxes.size(); ++i)
+    if (a.boxes[i].id != b.boxes[i].id) return true;
   for (std::size_t i = 0; i < a.objects.size(); ++i) {
     const auto &x = a.objects[i], &y = b.objects[i];
     if (x.id != y.id || x.model != y.model || x.holder != y.holder || x.holder_id != y.holder_id) return true;
@@ -144,6 +147,7 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
                                        : " is of model " + observed.model + ", which is not described, and has no primitive") +
                " with a size above 0";
   }
+  shorten(looks);
   unswap(looks, seen);
   for (const ObservedObject& observed : looks) {
     Known& known = objects_[observed.id];
@@ -164,11 +168,58 @@ void SceneModel::observe(const ObjectObservation& observation, TimePoint seen) {
     known.wandered = 0;
     if (robot_known_) known.T_palm_object = hands_[known.by].T_world_palm.inverse() * observed.T_world_object;
   }
+  forget_least_relevant();
+}
+
+void SceneModel::want(const std::string& object) {
+  constexpr std::size_t kMaxWanted = 8;
+  if (object.empty() || std::find(wanted_.begin(), wanted_.end(), object) != wanted_.end()) return;
+  wanted_.push_back(object);
+  if (wanted_.size() > kMaxWanted) wanted_.pop_front();
+}
+
+Rank SceneModel::rank(const SceneObject& object) const {
+  return rank_of(object, std::find(wanted_.begin(), wanted_.end(), object.id) != wanted_.end(), reach());
+}
+
+/// Of an observation as many as are remembered.
+void SceneModel::shorten(std::vector<ObservedObject>& seen) {
+  const LeftOut left_out = keep_lowest(seen, quotas_of(settings_).known_objects, [&](const ObservedObject& observed) {
+    SceneObject object;
+    if (const auto known = objects_.find(observed.id); known != objects_.end()) object.holder = known->second.object.holder;
+    object.id = observed.id;
+    object.T_world_object = observed.T_world_object;
+    return rank(object);
+  });
+  forgotten_ += left_out.count;
+}
+
+void SceneModel::forget_least_relevant() {
+  const std::size_t max = quotas_of(settings_).known_objects;
+  if (objects_.size() <= max) return;
+  std::vector<std::pair<Rank, std::string>> ranked;
+  for (const auto& [id, known] : objects_) ranked.emplace_back(rank(known.object), id);
+  std::sort(ranked.begin(), ranked.end());
+  for (std::size_t i = max; i < ranked.size(); ++i) objects_.erase(ranked[i].second);
+  forgotten_ += ranked.size() - max;
+}
+
+std::string SceneModel::left_out_in_reach() const {
+  std::string out;
+  for (const auto& [left_out, what] : {std::pair{&objects_left_out_, "objects"}, std::pair{&boxes_left_out_, "boxes"}}) {
+    if (left_out->count == 0 || left_out->nearest > arm_radius(reach())) continue;
+    char text[160];
+    std::snprintf(text, sizeof text, "%u %s are left out of the scene, the nearest %.2f m from the robot and within its reach",
+                  left_out->count, what, left_out->nearest);
+    out += (out.empty() ? "" : "; ") + std::string(text);
+  }
+  return out;
 }
 
 std::string SceneModel::trouble(TimePoint now) const {
-  if (refused_ == 0 || to_seconds(now - refused_at_) > kTold) return "";
-  return refusal_ + ": refused, " + std::to_string(refused_) + " so far";
+  const std::string crowded = left_out_in_reach();
+  if (refused_ == 0 || to_seconds(now - refused_at_) > kTold) return crowded;
+  return refusal_ + ": refused, " + std::to_string(refused_) + " so far" + (crowded.empty() ? "" : "; ") + crowded;
 }
 
 // Velocity by a first-order filter over what was seen; steps of the averaged place would look like jerks.
@@ -377,6 +428,10 @@ Scene SceneModel::scene(TimePoint now, const HumanState& people) {
     if (object.holder == Holder::robot && object.age > kMissed) object.T_world_object = hands_[known.by].T_world_palm * known.T_palm_object;
     out.objects.push_back(std::move(object));
   }
+  const Quotas quotas = quotas_of(settings_);
+  objects_left_out_ = keep_lowest(out.objects, quotas.objects, [&](const SceneObject& object) { return rank(object); });
+  boxes_left_out_ = keep_lowest(out.boxes, quotas.boxes, [&](const SceneBox& box) { return Rank{0, distance_to_arm(box, reach())}; });
+  out.left_out = objects_left_out_.count + boxes_left_out_.count;
   if (revision_ == 0 || differs(out, last_)) {
     ++revision_;
     last_ = out;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include "common/messages/world.hpp"
 #include "common/model/robot_capsules.hpp"
 #include "common/model/robot_model.hpp"
+#include "components/spark/quotas.hpp"
 #include "components/spark/sources.hpp"
 
 namespace handsel::spark {
@@ -34,7 +36,13 @@ class SceneModel {
   /// What is neither described nor a primitive of a size is refused and counted.
   void observe(const ObjectObservation& observation, TimePoint seen);
   std::uint64_t refused() const { return refused_; }
-  /// One sentence about the objects refused lately; empty: none.
+  /// The task wants this object: it is kept before others when there are too many. The last few count.
+  void want(const std::string& object);
+  /// Objects and boxes left out of the last scene.
+  std::uint32_t objects_left_out() const { return objects_left_out_.count; }
+  std::uint32_t boxes_left_out() const { return boxes_left_out_.count; }
+  std::uint64_t forgotten() const { return forgotten_; }  ///< observations of objects beyond what is remembered
+  /// One sentence about the objects refused lately and what is left out within reach of the arm; empty: none.
   std::string trouble(TimePoint now) const;
   void update(const RobotState& state);
   /// Decides who holds what from geometry, the hand's load and the people's hands.
@@ -76,6 +84,10 @@ class SceneModel {
     Pose T_world_palm{Pose::Identity()};
   };
   void locate_hands();
+  Rank rank(const SceneObject& object) const;
+  void shorten(std::vector<ObservedObject>& seen);
+  void forget_least_relevant();
+  std::string left_out_in_reach() const;
   /// Of the hands that feel it together, the one that has it: whoever had it, while it feels some of the load; else who feels most of it.
   std::optional<std::size_t> loaded_hand(const Known& known) const;
   void follow(Known& known, const ObservedObject& observed, TimePoint seen) const;
@@ -109,6 +121,9 @@ class SceneModel {
   std::uint64_t refused_{0};
   std::string refusal_;
   TimePoint refused_at_{};
+  std::deque<std::string> wanted_;
+  LeftOut objects_left_out_, boxes_left_out_;
+  std::uint64_t forgotten_{0};
 };
 
 }  // namespace handsel::spark

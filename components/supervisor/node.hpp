@@ -6,6 +6,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/model/arm_reach.hpp"
+#include "components/supervisor/state_store.hpp"
 #include "components/supervisor/supervisor.hpp"
 
 namespace handsel::supervisor {
@@ -15,17 +16,23 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
+  Node(Bus& bus, const NodeContext& context, const config::SupervisorSettings& settings);
   template <class M>
   void feed();
+  void on_scene(const Scene& scene, TimePoint arrival);
   void step(TimePoint now);
+  void store(const DurableState& state);
 
   Bus& bus_;
   config::SupervisorSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
+  std::shared_ptr<const StateStore> store_;  ///< none: nothing is kept
   Supervisor core_;
+  std::uint64_t turned_away_counted_{0};
   std::unique_ptr<Publisher<ActionGoal>> action_out_;
   std::unique_ptr<Publisher<TaskStatus>> status_out_;
   std::unique_ptr<Publisher<Go>> go_out_;
+  std::unique_ptr<Publisher<SafetyState>> safety_out_;
 };
 
 }  // namespace handsel::supervisor

@@ -1,12 +1,16 @@
 #include "components/supervisor/situation.hpp"
 
 namespace handsel::supervisor {
+namespace {
+constexpr std::size_t kMaxMet = 1024;  // people that are remembered to have been seen
+}  // namespace
 
 void Situation::on(const Facts& facts, TimePoint now) {
   if (!known() && scene_) known_since_ = now;
   facts_ = facts;
   for (const Fact& fact : facts.facts)
     if (known_predicates()[static_cast<std::size_t>(fact.kind)].types[0] == Type::human) met_.insert(fact.subject);
+  while (met_.size() > kMaxMet) met_.erase(met_.begin());
   world_.reset();
 }
 

@@ -1,11 +1,13 @@
 #include "components/supervisor/task_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace handsel::supervisor {
 namespace {
 
 constexpr std::size_t kMostRefusals = 64;
+constexpr const char* kRunsActions = "manipulation_planner";
 
 bool only_rests(const Plan& plan) {
   return std::all_of(plan.actions.begin(), plan.actions.end(), [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
@@ -172,8 +174,20 @@ void TaskRun::look_for_somebody(TimePoint now, TaskWishes& wishes) {
   finish(TaskState::failed, query.needs_person ? "nobody is in sight to " + text_ : query.reason);
 }
 
-void TaskRun::step(TimePoint now, bool may_begin, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes) {
+/// A required component that stays away ends the task, unless an action runs that may end without it.
+bool TaskRun::is_stranded(TimePoint now, const std::vector<std::string>& missing) {
+  const bool long_missing = lasts(missing_, !missing.empty(), now, settings_.missing_timeout());
+  return long_missing && (!begun_ || std::find(missing.begin(), missing.end(), kRunsActions) != missing.end());
+}
+
+void TaskRun::step(TimePoint now, const std::vector<std::string>& missing, std::uint64_t go_epoch, std::uint64_t& next_id,
+                   TaskWishes& wishes) {
   if (over_ || status_.state == TaskState::paused || !situation_.known()) return;
+  if (is_stranded(now, missing)) {
+    wishes.changed = true;
+    const std::string patience = std::to_string(std::lround(settings_.missing_timeout())) + " s";
+    return finish(TaskState::failed, missing.front() + " has not been there for " + patience);
+  }
   if (!planned_) return look_for_somebody(now, wishes);
   if (begun_) {
     const auto& action = situation_.action();
@@ -192,7 +206,7 @@ void TaskRun::step(TimePoint now, bool may_begin, std::uint64_t go_epoch, std::u
     }
     return;
   }
-  if (now < not_before_ || !may_begin) return;
+  if (now < not_before_ || !missing.empty()) return;
   if (progress_.current() == nullptr) {
     wishes.changed = true;
     return all_done(now);

@@ -29,7 +29,7 @@ class TaskRun {
   Start start(TimePoint now);
 
   /// `may_begin`: a new action may be sent; `next_id` makes ids of actions.
-  void step(TimePoint now, bool may_begin, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
+  void step(TimePoint now, const std::vector<std::string>& missing, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
   void pause(bool paused);
   void cancel(TaskWishes& wishes);
   /// Ends in order: what is in the hand is put back.
@@ -57,6 +57,7 @@ class TaskRun {
   void all_done(TimePoint now);
   void finish(TaskState state, const std::string& reason);
   void say(const std::string& phase, TaskWishes& wishes);
+  bool is_stranded(TimePoint now, const std::vector<std::string>& missing);
   bool lasts(std::optional<TimePoint>& since, bool is, TimePoint now, double time) const;
   std::string held_for(const PlannedAction& action);
 
@@ -76,7 +77,7 @@ class TaskRun {
   TimePoint sent_{}, not_before_{}, ended_at_{};
   std::string stop_reason_;
   std::optional<PlannedAction> last_;  // succeeded; the facts may not show it yet
-  std::optional<TimePoint> broken_, obsolete_, hopeless_;
+  std::optional<TimePoint> broken_, obsolete_, hopeless_, missing_;
 
   Forbidden forbidden_;
   std::map<std::string, std::uint32_t> tries_;

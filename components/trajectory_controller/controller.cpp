@@ -12,11 +12,13 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
-constexpr double kLeastLook = 0.6;    // speed factor looked ahead with at least: who goes on must also be able to stop
-constexpr double kBackward = 0.02;    // it runs back
-constexpr int kYieldEvery = 10;       // cycles
-constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
+constexpr double kStopSlack = 0.05;     // [s] after detection and the fastest stop the robot rests
+constexpr double kLeastLook = 0.6;      // speed factor looked ahead with at least: who goes on must also be able to stop
+constexpr double kBackward = 0.02;      // it runs back
+constexpr int kYieldEvery = 10;         // cycles
+constexpr int kMaxRejoins = 4;          // of a path, one soon after the other, that end in a set-point without a checked stop
+constexpr double kUnprovenShown = 0.5;  // [s] that the cause is shown after a set-point without a checked stop
+constexpr double kGuardSlack = 0.02;    // [s] likewise when the guard asks for less speed: the rest is the person's
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot, const Group* fingers) {
   std::vector<int> axes;
@@ -48,6 +50,9 @@ std::vector<int> trajectory_axes(const RobotModel& robot) {
   return axes;
 }
 
+/// Does the robot side follow set-points? It may stand although its drives are enabled.
+bool follows(const RobotState& state) { return state.mode == DriveMode::enabled && state.refusal.empty(); }
+
 void require(bool good, const char* sentence) {
   if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
 }
@@ -63,7 +68,9 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       runner_(settings.period),
       movers_(static_cast<std::size_t>(robot_->dof())),
       contact_(settings.contact, trajectory_axes(*robot_)),
-      modes_(settings.timeouts) {
+      modes_(settings.timeouts),
+      proof_(settings.proof, *robot_, robot_capsules(*robot_)),
+      reach_limit_(proof_) {
   require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
   require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
   require(settings.forecast_slow > settings.forecast_hold, "forecast_slow must be above forecast_hold");
@@ -101,12 +108,13 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
   touched_ = contact_.update(state.external_torque, since, arm_ == Arm::standing) && exchanging_.empty();
   const bool restarted = robot_seen_.ever && state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart;
   state_ = state;
+  gate_.hear(state.mode);
   robot_seen_.mark(sampled);
   new_state_ = true;
   constexpr Duration kFresh = std::chrono::milliseconds(50);  // older ones waited while this process slept
   if (asleep_ && age < kFresh) {
     asleep_ = false;
-    ready_ = state.mode == DriveMode::enabled;
+    ready_ = follows(state);
   }
   if (ready_ && !restarted) return;
   // The posture of a robot side that has just come up is the first set-point.
@@ -150,10 +158,17 @@ void Controller::on(const ActionStatus& action, TimePoint) {
 }
 
 void Controller::on(const Go& go, TimePoint sampled) {
-  if (go_seen_.ever && go.epoch < go_.epoch) return;
+  const GoRefusal refusal = gate_.hear(go);
+  if (refusal == GoRefusal::older_epoch) return;
+  go_seen_.mark(sampled);
+  if (refusal != GoRefusal::none) return;
   go_ = go;
   go_.override_factor = std::clamp(std::isfinite(go.override_factor) ? go.override_factor : 0.0, 0.0, 1.0);
-  go_seen_.mark(sampled);
+}
+
+void Controller::on(const SafetyState& safety) {
+  gate_.hear(safety);
+  safety_reason_ = safety.reason;
 }
 
 void Controller::on(const TrajectoryForecast& forecast, TimePoint sampled) {
@@ -277,8 +292,26 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
   }
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
-  verdict = guard(settings_.guard, capsules_, {&full_velocity_, &full_acceleration_, &links_, &twists_}, state_.T_world_base,
-                  robot_->stop_limits(), crowd_, settings_.walls, std::max(0.0, human_seen_.age(now)), speed_factor());
+  const PathMotion motion{&full_velocity_, &full_acceleration_, &links_, &twists_};
+  const StopTable stop = stop_table(motion, robot_->stop_limits());
+  const double age = std::max(0.0, human_seen_.age(now));
+  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, stop, crowd_, settings_.walls, age, speed_factor());
+  const ReachQuery query{posture_, full_velocity_, set_point_.acceleration, stop, state_.T_world_base, onward_ease(), age, held_payload()};
+  const double forward = reach_limit_.factor(query, crowd_, false);
+  verdict.separation = verdict.separation || forward < verdict.forward;
+  verdict.forward = std::min(verdict.forward, forward);
+  if (advice_.speed_factor < 0.0 || speed_factor() < 0.0)
+    verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, crowd_, true));
+}
+
+/// In which the stop limits take away the acceleration that still makes the arm faster [s].
+double Controller::onward_ease() const noexcept {
+  double longest = 0.0;
+  for (int axis : arm_axes_) {
+    const double onward = std::copysign(1.0, set_point_.velocity[axis]) * set_point_.acceleration[axis];
+    longest = std::max(longest, onward / robot_->stop_limits().jerk[axis]);
+  }
+  return longest;
 }
 
 bool Controller::attention_silent(TimePoint now) const noexcept {
@@ -316,10 +349,11 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.running_for = in.running ? to_seconds(now - started_) : 0.0;
   in.at_rest = at_rest();
   in.drive_enabled = state_.mode == DriveMode::enabled;
+  in.set_points_late = in.drive_enabled && !follows(state_);
 
   double off = 0.0;
   for (int axis : arm_axes_) off = std::max(off, std::abs(state_.position[axis] - set_point_.position[axis]));
-  tracking_for_ = in.drive_enabled && !settings_.dry_run && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
+  tracking_for_ = follows(state_) && !settings_.dry_run && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
   in.tracking_error = tracking_for_ > settings_.tracking_time;
   in.limit_violation = limit_violation_;
   limit_violation_ = false;
@@ -340,9 +374,12 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.human_unknown = human_seen_.ever && !crowd_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.cost_slow = in.running && cost_share() < 0.999;
+  in.stop_unproven = unproven_shown_ > 0;
   in.override_slow = go_.override_factor < 0.999;
   in.go_epoch = go_.epoch;
-  in.go_allowed = go_.allowed;
+  in.go_allowed = gate_.allowed();
+  in.first_go_epoch = gate_.first_epoch();
+  in.awaits_person = gate_.awaits_person();
   in.go_acknowledge = go_.acknowledge;
   return in;
 }
@@ -526,7 +563,7 @@ void Controller::aim_away() noexcept {
 void Controller::step_yield(TimePoint now) noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
   const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && exchanging_.empty() &&
-                   state_.mode == DriveMode::enabled && settings_.yield_speed > 0.0 &&
+                   follows(state_) && settings_.yield_speed > 0.0 &&
                    std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
   // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.
   if (verdict_.mode >= Mode::hold && !held_before_) yield_waits_ = true;
@@ -568,16 +605,25 @@ void Controller::step_yield(TimePoint now) noexcept {
 }
 
 void Controller::resync(TimePoint now) noexcept {
-  const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || state_.mode != DriveMode::enabled;
+  const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || !follows(state_);
+  if (!wanted) adopted_ = false;
   if (!wanted || arm_ != Arm::standing || !at_rest() || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
-  constexpr double kDeadBand = 0.002;
-  for (int axis : arm_axes_) {
+  // A robot side that stands with its drives enabled moves its reference to set-points that rest: once these have been taken to the posture
+  // it came to rest in, they must not follow what a bent finger or a sagging arm makes of that motion.
+  constexpr double kRests = 0.05, kBent = 0.06;  // [rad/s], [rad]
+  const bool joins = state_.mode == DriveMode::enabled && !follows(state_);
+  const bool rests = state_.velocity.size() == 0 || state_.velocity.cwiseAbs().maxCoeff() < kRests;
+  const double dead_band = joins && rests && adopted_ ? kBent : 0.002;
+  adopted_ = joins && rests;
+  const auto go_there = [&](int axis) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
     const double measured = inside(axis, state_.position[axis]);
-    if (std::abs(measured - mover.target()) > kDeadBand)
+    if (std::abs(measured - mover.target()) > dead_band)
       mover.go_to(measured, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
-  }
-  for (Hand& hand : hands_) hand.executor.follow(state_.position);
+  };
+  for (int axis : arm_axes_) go_there(axis);
+  for (int axis : head_axes_) go_there(axis);
+  for (Hand& hand : hands_) hand.executor.follow(state_.position, dead_band);
 }
 
 void Controller::check_last() noexcept {
@@ -589,8 +635,13 @@ void Controller::check_last() noexcept {
   }
   if (!arm && !hand && !head) return;
   limit_violation_ = true;
+  if (arm && (arm_ == Arm::running || rejoin_)) give_up_path();
+  follow_checked_stop(arm, hand, head);
+}
+
+/// The parts named come to rest, each axis by itself, from what was sent last.
+void Controller::follow_checked_stop(bool arm, bool hand, bool head) noexcept {
   if (arm) {
-    if (arm_ == Arm::running || rejoin_) give_up_path();
     stop_arm();
     for (int axis : arm_axes_) write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
   }
@@ -604,6 +655,33 @@ void Controller::check_last() noexcept {
       movers_[static_cast<std::size_t>(axis)].take_over(sent(axis), limits_of(robot_->stop_limits(), axis));
       write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
     }
+}
+
+double Controller::held_payload() const noexcept {
+  double mass = 0.0;
+  for (const Hand& hand : hands_) mass += hand.payload;
+  return mass;
+}
+
+/// No set-point leaves without a checked stop behind it: otherwise the next one of the stop checked before is sent. The motion of the
+/// fingers in the hand alone is no reason.
+void Controller::prove_stop(TimePoint now) noexcept {
+  if (unproven_shown_ > 0) --unproven_shown_;
+  if (proof_.check(next_, crowd_, state_.T_world_base, std::max(0.0, human_seen_.age(now)), held_payload())) return;
+  // Fingers that open or close on something are light and their efforts are bounded: stopping them halfway would drop what they hold.
+  if (proof_.refutation().fingers) return;
+  ++unproven_;
+  rejoins_in_vain_ = unproven_shown_ > 0 ? rejoins_in_vain_ + (arm_ == Arm::running ? 1 : 0) : 0;
+  unproven_shown_ = static_cast<int>(kUnprovenShown / settings_.period);
+  if (arm_ == Arm::running && rejoins_in_vain_ > kMaxRejoins)
+    give_up_path();  // the planner finds another
+  else if (arm_ == Arm::running)
+    rejoin_ = !cancelled_;
+  const auto moves = [&](int axis) { return next_.velocity[axis] != 0.0 || next_.acceleration[axis] != 0.0; };
+  const bool hand = std::any_of(hands_.begin(), hands_.end(),
+                                [&](const Hand& h) { return std::any_of(h.executor.axes().begin(), h.executor.axes().end(), moves); });
+  follow_checked_stop(std::any_of(arm_axes_.begin(), arm_axes_.end(), moves), hand,
+                      std::any_of(head_axes_.begin(), head_axes_.end(), moves));
 }
 
 AxisState Controller::sent(int axis) const noexcept {
@@ -646,6 +724,7 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   step_hands(now);
   step_head();
   check_last();
+  prove_stop(now);
   measure(set_point_, next_, robot_->guard_limits(), settings_.period, shares_);
   set_point_ = next_;
   return true;

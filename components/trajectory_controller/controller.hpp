@@ -15,11 +15,14 @@
 #include "components/trajectory_controller/axis_mover.hpp"
 #include "components/trajectory_controller/contact_watch.hpp"
 #include "components/trajectory_controller/gaze.hpp"
+#include "components/trajectory_controller/go_gate.hpp"
 #include "components/trajectory_controller/guard.hpp"
 #include "components/trajectory_controller/hand_executor.hpp"
 #include "components/trajectory_controller/mode_machine.hpp"
 #include "components/trajectory_controller/path_runner.hpp"
+#include "components/trajectory_controller/reach_limit.hpp"
 #include "components/trajectory_controller/setpoint_check.hpp"
+#include "components/trajectory_controller/stop_proof.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -47,6 +50,7 @@ struct ControllerSettings {
   std::vector<Wall> walls;            ///< that moving links never pass: virtual walls and the sides of the workspace
   TimeoutSettings timeouts;
   GuardSettings guard;
+  StopProofSettings proof;
   HandSettings hand;
   ContactSettings contact;
 };
@@ -76,6 +80,7 @@ class Controller {
   void on(const RobotState& state, TimePoint sampled, Duration age = {});
   void on(const HumanState& people, TimePoint sampled);
   void on(const Go& go, TimePoint sampled);
+  void on(const SafetyState& safety);
   void on(const TrajectoryForecast& forecast, TimePoint sampled);
   void on(const AttentionAdvice& advice, TimePoint sampled);
   void on(const ActionStatus& action, TimePoint sampled);
@@ -92,6 +97,8 @@ class Controller {
   const Vector& other_payloads() const { return other_payloads_; }  ///< likewise of the others, in the order of hands_of()
   Mode mode() const { return verdict_.mode; }
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
+  /// Set-points that had no checked stop behind them, and were replaced by the next one of the checked stop.
+  std::uint64_t unproven_set_points() const { return unproven_; }
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
   StatusKey status_key() const;
   ExecutionStatus status() const;   ///< stamp left to the publisher
@@ -139,6 +146,7 @@ class Controller {
   const Piece& piece() const noexcept { return pieces_[current_]; }
   void find_piece() noexcept;
   MotionState told_motion() const noexcept;
+  std::string why_no_go() const;
   KinematicLimits of_axes(const KinematicLimits& limits, const std::vector<std::uint32_t>& axes) const;
   PathLimits path_limits(const std::vector<std::uint32_t>& axes) const;
   double inside(int axis, double position) const noexcept;
@@ -146,6 +154,7 @@ class Controller {
   bool too_fast() const noexcept;
   bool must_leave_path(TimePoint now) const noexcept;
   double fastest_stop() const noexcept;
+  double onward_ease() const noexcept;
   void give_up_path() noexcept;
   void go_back_to_path(TimePoint now) noexcept;
   void stand_arm() noexcept;
@@ -169,6 +178,9 @@ class Controller {
   Vector where_path_ends();
   bool attention_silent(TimePoint now) const noexcept;
   void check_last() noexcept;
+  void prove_stop(TimePoint now) noexcept;
+  void follow_checked_stop(bool arm, bool hand, bool head) noexcept;
+  double held_payload() const noexcept;
   AxisState sent(int axis) const noexcept;
   bool at_rest() const noexcept { return set_point_.velocity.isZero(0.0) && set_point_.acceleration.isZero(0.0); }
   void write(int axis, const AxisState& s) noexcept;
@@ -187,6 +199,8 @@ class Controller {
   RobotState state_;
   HumanState people_;
   Go go_;
+  GoGate gate_;
+  std::string safety_reason_;  // why the safety state does not permit motion
   TrajectoryForecast forecast_;
   AttentionAdvice advice_;
   ActionStatus action_;
@@ -198,6 +212,7 @@ class Controller {
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
+  bool adopted_{};  // the measured posture, since the robot side last followed
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};
   MotionState3 set_point_, next_;
@@ -241,6 +256,11 @@ class Controller {
   std::vector<Pose> links_;
   std::vector<LinkTwist> twists_;
 
+  StopProof proof_;
+  ReachLimit reach_limit_;
+  std::uint64_t unproven_{};  // set-points replaced by those of a checked stop so far
+  int unproven_shown_{};      // cycles for which the cause is still shown
+  int rejoins_in_vain_{};     // how often, lately, the path was left again for want of a proof
   double too_near_for_{}, tracking_for_{};
   bool limit_violation_{}, new_people_{}, touched_{};
   int late_in_a_row_{};

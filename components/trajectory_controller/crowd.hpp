@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "common/messages/world.hpp"
 #include "common/model/robot_capsules.hpp"
+#include "components/trajectory_controller/contact_budget.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -20,12 +22,15 @@ struct CrowdCapsule {
   double fastest{};                     ///< of the joints [m/s]
   double age{};                         ///< since this person was last seen, when the radius does not hold it yet [s]
   bool excepted{};                      ///< exchanging forearm or hand
+  bool measured{};                      ///< the joints that carry it were themselves measured just now
+  BodyRegion region{BodyRegion::torso};
 };
 
 /// The people of one HumanState sample.
 struct Crowd {
   std::vector<CrowdCapsule> capsules;
   bool covered{};
+  std::uint64_t revision{};  ///< grows with every change
 };
 
 /// `exception` as in common/model; a person not seen for longer than `unknown_after` [s] has no known velocity. May allocate.

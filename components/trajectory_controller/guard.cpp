@@ -1,7 +1,6 @@
 #include "components/trajectory_controller/guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "common/geometry/segments.hpp"
@@ -10,31 +9,9 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr int kGrid = 16;
 constexpr double kSideways = 0.05;  // share of a link's speed
 constexpr double kAway = 0.5;       // likewise
 constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not closing
-
-/// Stop of the axes that move along the path, for factors on a grid of [0, 1].
-struct StopTable {
-  std::array<double, kGrid + 1> time{}, way{};  // way: per unit of speed at the factor
-};
-
-void add_stop(const PathMotion& motion, const KinematicLimits& limits, int g, StopTable& table) noexcept {
-  const double factor = static_cast<double>(g) / kGrid;
-  const auto k = static_cast<std::size_t>(g);
-  for (Eigen::Index i = 0; i < motion.velocity->size(); ++i) {
-    const double v = factor * std::abs((*motion.velocity)[i]);
-    if (v < 1e-9) continue;
-    const double onward = (*motion.acceleration)[i] * std::copysign(1.0, (*motion.velocity)[i]);
-    const double a = std::min(factor * factor * std::max(0.0, onward), limits.acceleration[i]);
-    const double ease = a / limits.jerk[i];
-    const double peak = v + 0.5 * a * ease;
-    const double rest = stop_time(peak, limits.acceleration[i], limits.jerk[i]);
-    table.time[k] = std::max(table.time[k], ease + rest);
-    table.way[k] = std::max(table.way[k], peak / v * (ease + 0.5 * rest));
-  }
-}
 
 /// No direction gives more.
 double fastest(const CrowdCapsule& c, const GuardSettings& s) noexcept {
@@ -48,30 +25,7 @@ double directed_speed(const CrowdCapsule& c, const Vector3& toward_robot, const 
   return std::clamp(v + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
-/// A link's capsule in the world with the velocities of its ends.
-struct MovingCapsule {
-  Vector3 a, b, va, vb;
-  double radius;
-};
-
-MovingCapsule placed(const LinkCapsule& link, const PathMotion& motion, const Pose& T_world_base) noexcept {
-  const auto k = static_cast<std::size_t>(link.link);
-  const Pose& T = (*motion.links)[k];
-  const LinkTwist& twist = (*motion.twists)[k];
-  const Eigen::Matrix3d& R = T_world_base.linear();
-  const Vector3 ra = T.linear() * link.a, rb = T.linear() * link.b;
-  const Vector3 origin = T_world_base * T.translation();
-  return {origin + R * ra, origin + R * rb, R * (twist.linear + twist.angular.cross(ra)), R * (twist.linear + twist.angular.cross(rb)),
-          link.radius};
-}
-
 }  // namespace
-
-double stop_time(double v, double acceleration_limit, double jerk_limit) noexcept {
-  const double x = std::abs(v);
-  return x * jerk_limit < acceleration_limit * acceleration_limit ? 2.0 * std::sqrt(x / jerk_limit)
-                                                                  : x / acceleration_limit + acceleration_limit / jerk_limit;
-}
 
 double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept {
   const double at = deceleration * reaction;
@@ -80,23 +34,20 @@ double reference_speed(double separation, double v_h, double reaction, double de
 }
 
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const KinematicLimits& stop_limits, const Crowd& crowd, const std::vector<Wall>& walls, double age,
-                   double factor) noexcept {
+                   const StopTable& stop, const Crowd& crowd, const std::vector<Wall>& walls, double age, double factor) noexcept {
   GuardVerdict verdict;
   double forward = 1.0, backward = 1.0;
 
-  StopTable stop;
-  for (int g = 1; g <= kGrid; ++g) add_stop(motion, stop_limits, g, stop);
   const double reaction = settings.reaction + std::max(0.0, age);
   const double margin = settings.intrusion + settings.uncertainty_human + settings.uncertainty_robot;
   const auto needed = [&](double v_h, double closing, int g, double T_r, double extra) {
     const auto k = static_cast<std::size_t>(g);
-    const double v_r = closing * g / kGrid;
+    const double v_r = closing * g / kStopGrid;
     return v_h * (T_r + stop.time[k]) + v_r * (T_r + stop.way[k]) + extra;
   };
   // Largest factor whose need fits into the distance; exact on the grid, linear between.
   const auto allowed = [&](double distance, double v_h, double closing, double extra, double best) {
-    int low = 0, high = static_cast<int>(std::ceil(best * kGrid - 1e-9));
+    int low = 0, high = static_cast<int>(std::ceil(best * kStopGrid - 1e-9));
     if (needed(v_h, closing, high, reaction, extra) <= distance) return best;
     if (needed(v_h, closing, 0, reaction, extra) >= distance) return 0.0;
     while (high - low > 1) {
@@ -104,11 +55,11 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       (needed(v_h, closing, middle, reaction, extra) <= distance ? low : high) = middle;
     }
     const double n0 = needed(v_h, closing, low, reaction, extra), n1 = needed(v_h, closing, high, reaction, extra);
-    return std::min(best, (low + (distance - n0) / (n1 - n0)) / kGrid);
+    return std::min(best, (low + (distance - n0) / (n1 - n0)) / kStopGrid);
   };
 
-  const int present = std::clamp(static_cast<int>(std::ceil(std::abs(factor) * kGrid - 1e-9)), 0, kGrid);
-  int high = kGrid;  // of the factors still in question
+  const int present = std::clamp(static_cast<int>(std::ceil(std::abs(factor) * kStopGrid - 1e-9)), 0, kStopGrid);
+  int high = kStopGrid;  // of the factors still in question
   double quickest_person = 0.0, oldest = 0.0;
   for (const CrowdCapsule& part : crowd.capsules) {
     quickest_person = std::max(quickest_person, fastest(part, settings));
@@ -160,7 +111,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       const double sideways = std::max(kStill, kSideways * quickest), away = kAway * quickest;
       if (closing > -away) forward = allowed(left, v_h, std::max(closing, sideways), margin, forward);
       if (closing < away) backward = allowed(left, v_h, std::max(-closing, sideways), margin, backward);
-      high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kGrid - 1e-9)));
+      high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kStopGrid - 1e-9)));
       const bool closes_now = closing * factor > 0.05;
       if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > left) verdict.too_near = true;
     }

@@ -7,7 +7,7 @@
 
 #include "common/trajectory/trajectory.hpp"
 #include "components/trajectory_controller/crowd.hpp"
-#include "components/trajectory_controller/link_motion.hpp"
+#include "components/trajectory_controller/path_motion.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -25,14 +25,6 @@ struct GuardSettings {
   double exchange_speed{0.25};     ///< largest speed toward an excepted forearm or hand [m/s]
   double exchange_range{0.30};     ///< within this distance [m]
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
-};
-
-/// Motion along the running trajectory at full speed: of each axis, and of the links.
-struct PathMotion {
-  const Eigen::VectorXd* velocity{};       ///< q' all axes [rad/s]
-  const Eigen::VectorXd* acceleration{};   ///< q'' all axes [rad/s^2]
-  const std::vector<Pose>* links{};        ///< T_root_link
-  const std::vector<LinkTwist>* twists{};  ///< of the links at q', root axes
 };
 
 /// A half space the moving links stay in: normal . p >= offset.
@@ -55,13 +47,9 @@ struct GuardVerdict {
   bool exchange_clear{true};                                      ///< no excepted part within exchange_range
 };
 
-/// Time of the jerk-limited stop of one axis from velocity v (a = 0) [s]; the way is v times half of it.
-double stop_time(double v, double acceleration_limit, double jerk_limit) noexcept;
-
-/// `factor`: time-law factor in force. `age`: of the human data [s]. Allocates nothing.
+/// `stop`: of `motion`. `factor`: time-law factor in force. `age`: of the human data [s]. Allocates nothing.
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const KinematicLimits& stop_limits, const Crowd& crowd, const std::vector<Wall>& walls, double age,
-                   double factor) noexcept;
+                   const StopTable& stop, const Crowd& crowd, const std::vector<Wall>& walls, double age, double factor) noexcept;
 
 /// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not the rule used [m/s].
 double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept;

@@ -55,15 +55,16 @@ void HandExecutor::stop_from(const MotionState3& from) noexcept {
     fingers_[i].mover.take_over({from.position[axes_[i]], from.velocity[axes_[i]], from.acceleration[axes_[i]]}, limits(i, stop_, 1.0));
 }
 
-void HandExecutor::follow(const Vector& robot_position) noexcept {
-  constexpr double kDeadBand = 0.002;
+void HandExecutor::follow(const Vector& robot_position, double dead_band) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
-    f.target = f.final = std::clamp(robot_position[axes_[i]], lower_[i], upper_[i]);
-    if (std::abs(f.target - f.mover.target()) > kDeadBand * f.lever)
-      f.mover.go_to(f.target, limits(i, comfort_, 1.0), limits(i, stop_, 1.0));
+    const double measured = std::clamp(robot_position[axes_[i]], lower_[i], upper_[i]);
+    const bool there = std::abs(measured - f.mover.target()) <= dead_band * f.lever;
+    f.target = f.final = there ? f.mover.target() : measured;
+    if (!there) f.mover.go_to(f.target, limits(i, comfort_, 1.0), limits(i, stop_, 1.0));
   }
   phase_ = Phase::hold;
+  if (state_ == HandState::moving) state_ = HandState::refused;  // what was begun is not finished any more
   release_.disarm();
 }
 
@@ -282,7 +283,7 @@ void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionSt
   if (!in.may_move && !paused_) {
     paused_ = true;
     for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].mover.stop(limits(i, in.stop ? stop_ : comfort_, 1.0));
-  } else if (in.may_move && paused_) {
+  } else if (in.may_move && paused_ && at_rest()) {  // from the middle of a stop the gentle limits might not end inside the bounds
     paused_ = false;
     for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);
   }

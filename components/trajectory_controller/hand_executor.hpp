@@ -72,8 +72,8 @@ class HandExecutor {
   bool at_rest() const;
   /// The set-points before the last step were `from`: every axis stops from there as fast as it can.
   void stop_from(const MotionState3& from) noexcept;
-  /// Moves the set-points to the measured positions.
-  void follow(const Vector& robot_position) noexcept;
+  /// Moves the set-points to the measured positions where they are farther off than `dead_band` [rad].
+  void follow(const Vector& robot_position, double dead_band) noexcept;
 
  private:
   enum class Phase { hold, moving, closing, seeking, squeezing, loosened, releasing, regripping };

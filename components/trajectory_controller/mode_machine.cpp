@@ -15,6 +15,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(stop, Cause::robot_state_silent, in.robot_age > timeouts_.robot_state);
   set(stop, Cause::human_state_silent, in.human_age > timeouts_.human_state);
   set(stop, Cause::drive_not_enabled, in.robot_age >= 0 && !in.drive_enabled);
+  set(stop, Cause::cycle_late, in.set_points_late);
   set(stop, Cause::separation, in.separation_stop);
   set(stop, Cause::contact, in.contact_stop);
 
@@ -22,7 +23,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(hold, Cause::forecast_silent, in.running && forecast_age > timeouts_.forecast);
   set(hold, Cause::forecast_collision, in.forecast_collision_hold);
   set(hold, Cause::cycle_late, in.cycle_late);
-  set(hold, Cause::no_go, in.go_age >= 0 && !in.go_allowed);
+  set(hold, in.awaits_person ? Cause::awaits_person : Cause::no_go, in.go_age >= 0 && !in.go_allowed);
   const bool supervisor_silent = in.go_age > timeouts_.supervisor;
   set(supervisor_silent && !in.running ? hold : slow, Cause::supervisor_silent, supervisor_silent);
 
@@ -39,6 +40,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(slow, Cause::attention_slow, in.attention_slow);
   set(slow, Cause::cost_ahead, in.cost_slow);
   set(slow, Cause::override_slow, in.override_slow);
+  set(slow, Cause::stop_unproven, in.stop_unproven);
 
   if (fault | stop | hold) {
     latched_ = std::max(latched_, fault ? Mode::fault : stop ? Mode::stop : Mode::hold);
@@ -47,7 +49,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   if (latched_ == Mode::fault && !fault && in.go_acknowledge && in.go_epoch > epoch_) latched_ = Mode::stop;
   if (latched_ == Mode::stop && !stop && in.at_rest)
     latched_ = Mode::hold;
-  else if (latched_ == Mode::hold && !hold && !waiting && in.go_allowed && in.go_epoch > epoch_)
+  else if (latched_ == Mode::hold && !hold && !waiting && in.go_allowed && in.go_epoch > std::max(epoch_, in.first_go_epoch))
     latched_ = Mode::normal;
 
   ModeVerdict verdict;
@@ -64,11 +66,26 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
 }
 
 Cause gravest(std::uint32_t causes) {
-  constexpr Cause kOrder[] = {Cause::limit_violation, Cause::tracking_error,     Cause::drive_not_enabled,  Cause::robot_state_silent,
-                              Cause::contact,         Cause::human_state_silent, Cause::forecast_collision, Cause::separation,
-                              Cause::human_unknown,   Cause::forecast_silent,    Cause::cycle_late,         Cause::supervisor_silent,
-                              Cause::no_go,           Cause::attention_silent,   Cause::attention_slow,     Cause::wall,
-                              Cause::cost_ahead,      Cause::override_slow};
+  constexpr Cause kOrder[] = {Cause::limit_violation,
+                              Cause::tracking_error,
+                              Cause::drive_not_enabled,
+                              Cause::robot_state_silent,
+                              Cause::contact,
+                              Cause::stop_unproven,
+                              Cause::human_state_silent,
+                              Cause::forecast_collision,
+                              Cause::separation,
+                              Cause::human_unknown,
+                              Cause::forecast_silent,
+                              Cause::cycle_late,
+                              Cause::supervisor_silent,
+                              Cause::awaits_person,
+                              Cause::no_go,
+                              Cause::attention_silent,
+                              Cause::attention_slow,
+                              Cause::wall,
+                              Cause::cost_ahead,
+                              Cause::override_slow};
   for (Cause cause : kOrder)
     if (causes & bit(cause)) return cause;
   return Cause::none;

@@ -24,12 +24,15 @@ struct ModeInputs {
   bool running{};        ///< a trajectory is not finished
   bool at_rest{};        ///< no axis moves
   bool drive_enabled{};
+  bool set_points_late{};  ///< the robot side stands with its drives enabled because set-points stayed away
   bool tracking_error{}, limit_violation{}, cycle_late{};
   bool forecast_collision_hold{}, forecast_collision_slow{};
   bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{};
-  bool attention_slow{}, cost_slow{}, override_slow{};
+  bool attention_slow{}, cost_slow{}, override_slow{}, stop_unproven{};
   std::uint64_t go_epoch{};
   bool go_allowed{}, go_acknowledge{};
+  std::uint64_t first_go_epoch{};  ///< of the Go heard first since the start, which permits no motion
+  bool awaits_person{};            ///< motion is not permitted until a person resumes
 };
 
 struct ModeVerdict {

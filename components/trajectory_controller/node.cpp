@@ -1,5 +1,7 @@
 #include "components/trajectory_controller/node.hpp"
 
+#include <algorithm>
+
 #include "components/trajectory_controller/settings.hpp"
 
 namespace handsel::trajectory_controller {
@@ -15,15 +17,25 @@ Node::Node(Bus& bus, const NodeContext& context)
       active_out_(bus.advertise<ActiveTrajectory>()),
       status_out_(bus.advertise<ExecutionStatus>()) {
   command_.robot = context.robot->name();
-  bus.subscribe<RobotState>([this](const RobotState& m, const Receipt& r) { core_.on(m, r.arrival, r.age); });
-  bus.subscribe<HumanState>([this](const HumanState& m, const Receipt& r) { core_.on(m, r.arrival - r.age); });
-  bus.subscribe<Go>([this](const Go& m, const Receipt& r) { core_.on(m, r.arrival); });
+  read<RobotState>(bus, [this, &bus](const RobotState& m, const Receipt& r) {
+    if (m.robot == command_.robot)
+      core_.on(m, r.arrival, r.age);
+    else
+      bus.count_left_out("robot_state: of another robot", 1);
+  });
+  read<HumanState>(bus, [this](const HumanState& m, const Receipt& r) { core_.on(m, r.arrival - r.age); });
+  read<Go>(bus, [this](const Go& m, const Receipt& r) { core_.on(m, r.arrival); });
+  read<SafetyState>(bus, [this](const SafetyState& m, const Receipt&) { core_.on(m); });
   bus.subscribe<TrajectoryForecast>([this](const TrajectoryForecast& m, const Receipt& r) { core_.on(m, r.arrival); });
   bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& m, const Receipt& r) { core_.on(m, r.arrival); });
-  bus.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt& r) { core_.on(m, r.arrival); });
-  bus.subscribe<TrajectoryCommand>([this](const TrajectoryCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
-  bus.subscribe<HandCommand>([this](const HandCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
+  read<ActionStatus>(bus, [this](const ActionStatus& m, const Receipt& r) { core_.on(m, r.arrival); });
+  read<TrajectoryCommand>(bus, [this](const TrajectoryCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
+  read<HandCommand>(bus, [this](const HandCommand& m, const Receipt& r) { core_.accept(m, r.age, r.arrival); });
   timer_ = &bus.every(from_seconds(settings_.period), [this](TimePoint now) { tick(now); });
+}
+
+bool Node::has_second_writer() const {
+  return std::any_of(inputs_.begin(), inputs_.end(), [](const SubscriptionStatus* input) { return !input->second_writer.empty(); });
 }
 
 void Node::tick(TimePoint now) {
@@ -40,7 +52,9 @@ void Node::tick(TimePoint now) {
   }
   late_before_ = late;
   if (const StatusKey key = core_.status_key(); now >= next_status_ || !(key == told_)) {
-    status_out_->publish(core_.status());
+    ExecutionStatus status = core_.status();
+    if (has_second_writer()) status.causes |= bit(Cause::second_writer);
+    status_out_->publish(status);
     told_ = key;
     next_status_ = now + kReportPeriod - from_seconds(0.5 * settings_.period);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
@@ -14,13 +15,21 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
+  /// Subscribes to a topic with one writer.
+  template <class M>
+  void read(Bus& bus, std::function<void(const M&, const Receipt&)> on_sample) {
+    inputs_.push_back(&bus.subscribe<M>(std::move(on_sample)));
+  }
   void tick(TimePoint now);
+  /// Whether a topic this node reads has a second writer.
+  bool has_second_writer() const;
 
   ControllerSettings settings_;
   Controller core_;
   std::unique_ptr<Publisher<JointCommand>> command_out_;
   std::unique_ptr<Publisher<ActiveTrajectory>> active_out_;
   std::unique_ptr<Publisher<ExecutionStatus>> status_out_;
+  std::vector<const SubscriptionStatus*> inputs_;
   const TimerStatus* timer_{};
   std::uint64_t late_before_{};
   JointCommand command_;

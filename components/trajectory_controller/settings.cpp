@@ -1,5 +1,9 @@
 #include "components/trajectory_controller/settings.hpp"
 
+#include <algorithm>
+#include <array>
+#include <utility>
+
 #include "common/config/resources.hpp"
 #include "common/config/trajectory_controller.pb.h"
 
@@ -20,6 +24,36 @@ class Reader {
  private:
   std::filesystem::path file_;
 };
+
+StopProofSettings read_stop_proof(const config::ControllerStopProof& in, const Reader& read, const std::filesystem::path& file) {
+  constexpr double kTiny = 1e-6;
+  StopProofSettings s;
+  s.latency = read(in.latency(), "latency", 0, 0.5);
+  s.robot_side_delay = read(in.robot_side_delay(), "robot_side_delay", 0, 0.5);
+  s.tracker_error = read(in.tracker_error(), "tracker_error", 0, 1);
+  s.speed_error = read(in.speed_error(), "speed_error", 0, 2);
+  s.robot_error = read(in.robot_error(), "robot_error", 0, 1);
+  s.limit_ratio = read(in.limit_ratio(), "limit_ratio", kTiny, 1);
+  s.limit_margin = read(in.limit_margin(), "limit_margin", 0, 1);
+  s.min_robot_mass = read(in.min_robot_mass(), "min_robot_mass", kTiny, 1000);
+  s.min_finger_mass = read(in.min_finger_mass(), "min_finger_mass", kTiny, 1000);
+  std::array<bool, kBodyRegions> given{};
+  for (const auto& region : in.regions()) {
+    const auto found = std::find(std::begin(kBodyRegionNames), std::end(kBodyRegionNames), region.region());
+    if (found == std::end(kBodyRegionNames))
+      throw ConfigError(locate(file, "regions") + ": stop_proof.regions names \"" + region.region() +
+                        "\"; known are head, torso, upper_arm, forearm, hand, thigh and lower_leg");
+    const auto k = static_cast<std::size_t>(found - std::begin(kBodyRegionNames));
+    if (std::exchange(given[k], true))
+      throw ConfigError(locate(file, "regions") + ": stop_proof.regions gives " + region.region() + " twice; once is right");
+    s.contact[k] = {read(region.force(), "force", kTiny, 1e4), read(region.stiffness(), "stiffness", kTiny, 1e7),
+                    read(region.mass(), "mass", kTiny, 1e3)};
+    s.people[k] = {read(region.speed(), "speed", kTiny, 20), read(region.acceleration(), "acceleration", kTiny, 1000)};
+  }
+  for (std::size_t k = 0; k < kBodyRegions; ++k)
+    if (!given[k]) throw ConfigError(locate(file, "stop_proof") + ": stop_proof.regions lacks " + kBodyRegionNames[k]);
+  return s;
+}
 
 }  // namespace
 
@@ -71,6 +105,8 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.guard.exchange_speed = read(g.exchange_speed(), "exchange_speed", kTiny, 10);
   s.guard.exchange_range = read(g.exchange_range(), "exchange_range", 0, 10);
   s.guard.stop_persistence = read(g.stop_persistence(), "stop_persistence", 0, 10);
+
+  s.proof = read_stop_proof(in.stop_proof(), read, file);
 
   const auto& c = in.contact();
   s.contact.torque = read(c.torque(), "torque", kTiny, 1000);

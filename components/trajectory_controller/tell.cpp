@@ -5,6 +5,11 @@
 
 namespace handsel::trajectory_controller {
 
+/// Returns why the safety state, or the last Go, permits no motion.
+std::string Controller::why_no_go() const {
+  return gate_.last_refusal() != GoRefusal::none ? text_of(gate_.last_refusal()) : safety_reason_;
+}
+
 MotionState Controller::told_motion() const noexcept { return refused_ ? MotionState::refused : motion_; }
 
 StatusKey Controller::status_key() const {
@@ -37,7 +42,9 @@ ExecutionStatus Controller::status() const {
     s.reason = refusal_;
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
+    if (latched_cause_ == Cause::cycle_late && !state_.refusal.empty()) s.reason += ": " + state_.refusal;
     if (latched_cause_ == Cause::contact) s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
+    if ((verdict_.causes & bit(Cause::awaits_person)) != 0 && !why_no_go().empty()) s.reason += ": " + why_no_go();
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
     s.reason = name(cause);
     if (cause == Cause::attention_slow) s.reason += ": " + advice_.reason;

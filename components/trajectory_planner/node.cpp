@@ -71,11 +71,17 @@ Node::Node(Bus& bus, const NodeContext& context)
 }
 
 void Node::on_request(const TrajectoryRequest& request) {
-  if (const TrajectoryReply* known = desk_.answer(request.id)) {
-    reply_out_->publish(*known);
-    return;
+  using Admission = RequestQueue<TrajectoryReply>::Admission;
+  const Admission admission = requests_.admit(request.id);
+  if (admission == Admission::answered) reply_out_->publish(*requests_.answer(request.id));
+  if (admission == Admission::full) {
+    bus_.count_left_out("trajectory requests: too many wait", 1);
+    TrajectoryReply reply;
+    reply.id = request.id;
+    reply.reason = requests_.why_full();
+    reply_out_->publish(reply);
   }
-  if (!desk_.admit(request.id)) return;
+  if (admission != Admission::fresh) return;
   if (const std::string why = not_ready(); !why.empty()) return refuse(request.id, why);
   if (drives(request) && !(scene_->T_world_base.linear()(2, 2) > std::cos(kLevel)))
     return refuse(request.id, "the platform does not stand level: it cannot be planned for");
@@ -135,7 +141,7 @@ void Node::start(const TrajectoryRequest& request) {
 }
 
 void Node::answer(const TrajectoryReply& reply) {
-  desk_.close(reply);
+  requests_.close(reply);
   reply_out_->publish(reply);
 }
 

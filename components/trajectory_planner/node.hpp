@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "common/base/request_queue.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/messages/world.hpp"
-#include "components/trajectory_planner/request_desk.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
 
 namespace handsel::trajectory_planner {
@@ -44,7 +44,7 @@ class Node {
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
-  RequestDesk desk_;
+  RequestQueue<TrajectoryReply> requests_{Newer::beside};
 
   // Used by jobs only, which run one after the other.
   CollisionWorld world_;

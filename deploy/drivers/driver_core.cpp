@@ -34,35 +34,24 @@ DriverCore::DriverCore(const RobotModel& model, std::vector<int> arm_axes, const
       settings_(settings),
       side_(model, Vector::Zero(model.dof()), settings.watch),
       reference_(Vector::Zero(model.dof())),
-      set_point_(reference_),
       fading_(arm_axes_.size()) {
   measured_.position = measured_.velocity = measured_.effort = measured_.external_torque = reference_;
 }
 
 bool DriverCore::command(const JointCommand& command, double now) {
   if (!side_known_ || waits_for_person_ || command.position.size() != reference_.size() || !command.position.allFinite()) return false;
-  const bool was_following = following();
-  if (was_following && last_command_ >= 0.0) {
-    const KinematicLimits& guard = model_.guard_limits();
-    for (int axis : arm_axes_) {
-      const double jump = command.position[axis] - set_point_[axis];
-      if (std::abs(jump) <= guard.velocity[axis] * (now - last_command_ + settings_.wire_jitter)) continue;
-      ++refused_;
-      why_ = "the set-point of axis " + model_.axes()[static_cast<std::size_t>(axis)].name + " jumped by " + std::to_string(jump) + " rad";
-      return false;
-    }
+  const bool followed = side_.follows();
+  if (!side_.command(command, now)) {
+    if (followed && !side_.follows()) why_ = side_.refusal();
+    return false;
   }
-  if (!side_.command(command, now)) return false;
   has_followed_ = true;
-  last_command_ = now;
-  set_point_ = command.position;
   return true;
 }
 
 void DriverCore::settle() noexcept {
   for (SetpointFilter& f : fading_) f = {};
   told_ = {side_.position(), side_.velocity(), side_.acceleration()};
-  last_command_ = -1.0;
 }
 
 void DriverCore::update(const Measured& measured, double now, double dt) {
@@ -74,15 +63,15 @@ void DriverCore::update(const Measured& measured, double now, double dt) {
     side_.hold(measured.position, measured.mode);
     settle();
   } else if (was_stopped) {  // the arm may stand elsewhere by now
-    side_.hold(measured.position, DriveMode::protective_stop);
+    side_.hold(measured.position, DriveMode::braked);
     settle();
   }
   side_known_ = true;
-  const DriveMode before = side_.mode();
+  side_.measured(measured.position);
+  const bool followed = side_.follows();
   side_.step(now, dt, false);
-  if (before == DriveMode::enabled && side_.mode() == DriveMode::protective_stop) {
-    why_ = "no set-points for " + std::to_string(settings_.watch.max_gap) + " s";
-    last_command_ = -1.0;
+  if (followed && !side_.follows()) {
+    why_ = side_.refusal();
   }
   follow_set_points(dt);
 }
@@ -109,7 +98,7 @@ void DriverCore::follow_set_points(double dt) noexcept {
 
 void DriverCore::hold(const std::string& why) {
   why_ = why;
-  side_.hold(measured_.position, DriveMode::protective_stop);
+  side_.hold(measured_.position, DriveMode::braked);
   settle();
   reference_ = side_.position();
 }
@@ -124,7 +113,6 @@ void DriverCore::start_from(const Vector& position) noexcept {
 void DriverCore::stop(const std::string& why) {
   why_ = why;
   side_.stop(DriveMode::protective_stop);
-  last_command_ = -1.0;
 }
 
 void DriverCore::acknowledge() {
@@ -143,11 +131,13 @@ RobotState DriverCore::state(bool commanding) const {
   s.wrist_wrench = measured_.wrist_wrench;
   s.payload = measured_.payload;
   s.mode = side_.mode();
+  s.refusal = side_.refusal();
+  s.refused_set_points = side_.refused();
   if (settings_.dry_run) {
     s.position = reference_;
     s.velocity = side_.velocity();
-  } else if (s.mode == DriveMode::enabled && !commanding) {
-    s.mode = DriveMode::protective_stop;
+  } else if (s.mode == DriveMode::enabled && !commanding && side_.follows()) {
+    s.mode = DriveMode::braked;
   }
   if (!side_known_) s.mode = DriveMode::off;
   return s;

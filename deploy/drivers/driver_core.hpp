@@ -15,7 +15,6 @@ namespace handsel::drivers {
 
 struct DriverSettings {
   bool dry_run{false};                  ///< everything but the output: nothing is sent to the arm, the posture it would have is reported
-  double wire_jitter{0.005};            ///< a set-point may come this much earlier than its time [s]; a greater jump is refused
   double fade_share{0.1};               ///< share of the guard limits with which a jump between set-points and reference fades
   Pose T_world_base{Pose::Identity()};  ///< where the robot stands
   sim::RobotSideSettings watch;
@@ -51,13 +50,13 @@ class DriverCore {
   void acknowledge();
 
   const Vector& reference() const { return reference_; }  ///< all axes, for this cycle
-  bool following() const { return side_known_ && side_.mode() == DriveMode::enabled; }
+  bool following() const { return side_known_ && side_.mode() == DriveMode::enabled && side_.follows(); }
   bool waits_for_person() const { return waits_for_person_; }
   /// For the wire. `commanding`: the maker's controller follows references right now.
   RobotState state(bool commanding) const;
   /// Why the robot does not follow, one sentence; empty while it does.
   std::string trouble() const;
-  std::uint64_t refused() const { return refused_; }  ///< set-points not followed though the robot could move
+  std::uint64_t refused() const { return side_.refused(); }  ///< set-points not followed though the robot could move
   const DriverSettings& settings() const { return settings_; }
   const RobotModel& model() const { return model_; }
   const std::vector<int>& arm_axes() const { return arm_axes_; }
@@ -72,11 +71,9 @@ class DriverCore {
   sim::RobotSide side_;
   Measured measured_;
   bool side_known_{}, has_followed_{}, waits_for_person_{};
-  Vector reference_, set_point_;
+  Vector reference_;
   MotionState3 told_;                   // set-points as they were a cycle ago
   std::vector<SetpointFilter> fading_;  // reference minus set-points
-  double last_command_{-1.0};
-  std::uint64_t refused_{};
   mutable std::uint64_t sequence_{};
   std::string why_{"no set-points yet"};
 };

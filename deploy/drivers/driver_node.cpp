@@ -9,7 +9,10 @@ DriverNode::DriverNode(Bus& bus, const NodeContext& context, std::unique_ptr<Cyc
                        double cycle)
     : bus_(bus), context_(context), source_(std::move(source)), driver_(std::move(driver)), state_out_(bus.advertise<RobotState>()) {
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
-    if (m.robot != context_.robot->name()) return;
+    if (m.robot != context_.robot->name()) {
+      bus_.count_left_out("joint_command: for another robot", 1);
+      return;
+    }
     const std::lock_guard lock(mutex_);
     driver_->command(m, to_seconds(r.arrival.time_since_epoch()));
   });

@@ -4,6 +4,7 @@
 
 #include "common/config/driver.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/trajectory_controller.pb.h"
 
 namespace handsel::drivers {
 
@@ -26,10 +27,13 @@ class File {
 
 constexpr double kTiny = 1e-6;
 
-Place read_common(const File& file, const RobotModel& robot, const config::DriverCommon& in, DriverSettings& out) {
+Place read_common(const std::filesystem::path& folder, const File& file, const RobotModel& robot, const config::DriverCommon& in,
+                  DriverSettings& out) {
   out.dry_run = in.dry_run();
-  out.wire_jitter = file.in(in.wire_jitter(), "wire_jitter", 0.0, 0.1);
+  out.watch.max_ahead = file.in(in.wire_jitter(), "wire_jitter", 0.0, 0.1);
   out.fade_share = file.in(in.fade_share(), "fade_share", 0.01, 1.0);
+  config::TrajectoryControllerSettings controller;
+  out.watch.period = File(folder / "trajectory_controller.txtpb", controller).in(controller.period(), "period", kTiny, 0.02);
   out.watch.max_gap = file.in(in.max_setpoint_gap(), "max_setpoint_gap", 0.001, 1.0);
   out.T_world_base = Eigen::Translation3d(in.base_x(), in.base_y(), in.base_z()) * Eigen::AngleAxisd(in.base_yaw(), Vector3::UnitZ());
   const Group* group = robot.group(in.group());
@@ -43,7 +47,7 @@ Place load_settings(const std::filesystem::path& folder, const RobotModel& robot
   config::PositionArmSettings in;
   const File file(folder / "position_arm.txtpb", in);
   out.cycle = file.in(in.cycle(), "cycle", 0.001, 0.01);
-  return read_common(file, robot, in.common(), out.common);
+  return read_common(folder, file, robot, in.common(), out.common);
 }
 
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, ReflexSettings& out) {
@@ -67,7 +71,7 @@ Place load_settings(const std::filesystem::path& folder, const RobotModel& robot
     out.gripper.least_force = file.in(g.least_force(), "least_force", 0.0, 1000.0);
     out.gripper.most_force = file.in(g.most_force(), "most_force", out.gripper.least_force, 1000.0);
   }
-  return read_common(file, robot, in.common(), out.common);
+  return read_common(folder, file, robot, in.common(), out.common);
 }
 
 }  // namespace handsel::drivers

@@ -17,7 +17,8 @@ struct Place {
   std::vector<int> axes;  ///< robot axes in the order of the arm's controller
 };
 
-/// Reads <folder>/position_arm.txtpb or reflex_arm.txtpb. Throws ConfigError naming file and field.
+/// Reads <folder>/position_arm.txtpb or reflex_arm.txtpb, and the period of the set-points from <folder>/trajectory_controller.txtpb.
+/// Throws ConfigError naming file and field.
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, PositionSettings& out);
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, ReflexSettings& out);
 

@@ -22,7 +22,7 @@ void judge(const CyclicState& s, bool lost, Measured& out) {
     out.why = "the brakes are closed";
   } else {
     out.by_person = false;
-    out.mode = !lost && s.session >= Session::monitoring_ready ? DriveMode::enabled : DriveMode::protective_stop;
+    out.mode = !lost && s.session >= Session::monitoring_ready ? DriveMode::enabled : DriveMode::braked;
     out.why = lost ? "the arm's controller is silent" : "the arm's controller is not ready for commands";
   }
 }

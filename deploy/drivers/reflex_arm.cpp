@@ -56,7 +56,7 @@ void ReflexArm::judge() {
   } else {
     measured_.by_person = false;
     const bool silent = lost_ >= settings_.lost_cycles;
-    measured_.mode = silent ? DriveMode::protective_stop : DriveMode::enabled;
+    measured_.mode = silent ? DriveMode::braked : DriveMode::enabled;
     measured_.why = silent ? "the arm's controller is silent" : "";
   }
 }

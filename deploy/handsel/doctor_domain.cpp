@@ -15,6 +15,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/bus/dds_configuration.hpp"
+#include "common/bus/writer_pin.hpp"
 #include "common/config/resources.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/planning.hpp"
@@ -95,6 +96,21 @@ struct Offset {
   }
 };
 
+/// Writers of each topic with one writer: name, and whether the table lets it write there.
+Json writers_of(const DomainView& view) {
+  Json out = Json::object();
+  for (const DomainEndpoint& end : view.endpoints) {
+    const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;
+    if (row == nullptr || !has_one_writer(*row)) continue;
+    const std::string name = (end.owner.component.empty() ? "process " + end.owner.process : end.owner.component) + " (pid " +
+                             std::to_string(end.owner.pid) + " on " + end.owner.host + ")";
+    // The lane has a writer of its own only while it hands over a command.
+    if (row == &TopicOf<TrajectoryCommand>::row && end.owner.component == "ros2_lane") continue;
+    out[row->topic].push_back({{"who", name}, {"may", end.unmatched.empty() && may_write(*row, end.owner.component)}});
+  }
+  return out;
+}
+
 /// What one observer sees of the domain in a second or two.
 class Look {
  public:
@@ -122,6 +138,7 @@ class Look {
     const SystemStatus status = make_status(session_.snapshot(), session_.bus().now());
     out["system"] = !session_.snapshot().health.empty();
     out["troubles"] = status.troubles;
+    out["left_out"] = status.left_out;
     out["clocks"] = Json::object();
     for (const auto& [component, offset] : clocks_) out["clocks"][component] = offset.least;
     out["inputs"] = Json::array();
@@ -144,6 +161,7 @@ class Look {
     for (const DomainParticipant& commander : view.commanders)
       out["commanders"].push_back({{"who", commander.component + " (pid " + std::to_string(commander.pid) + " on " + commander.host + ")"},
                                    {"elsewhere", commander.host != host}});
+    out["writers"] = writers_of(view);
     out["strangers"] = Json::array();
     for (const DomainParticipant& one : view.participants)
       if (!one.host.empty() && one.host != host) out["strangers"].push_back(one.component + " on " + one.host);
@@ -353,6 +371,29 @@ void judge_calibration(const DoctorOptions& options, const Json& seen, std::vect
     out.push_back({"calibration", Verdict::good, "what comes on " + where(options.domain) + " is as the file says", ""});
 }
 
+/// A topic with one writer must have no other, and none that the table does not name.
+void judge_writers(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
+  const std::size_t before = out.size();
+  for (const auto& [topic, writers] : seen["writers"].items()) {
+    std::string names;
+    bool strange = false;
+    for (const Json& writer : writers) {
+      names += (names.empty() ? "" : ", ") + writer["who"].get<std::string>();
+      strange = strange || !writer["may"].get<bool>();
+    }
+    if (writers.size() > 1)
+      out.push_back({"second_writer", Verdict::bad, "more than one process writes " + topic + " on " + where(options.domain) + ": " + names,
+                     "end all but the rightful one; samples of the others are refused"});
+    else if (strange)
+      out.push_back({"second_writer", Verdict::bad,
+                     topic + " on " + where(options.domain) + " is written by " + names +
+                         ", which is no writer of this topic; its samples are refused",
+                     "end it, or give its participant the name of the component that it stands for"});
+  }
+  if (out.size() == before)
+    out.push_back({"second_writer", Verdict::good, "no topic with one writer has another on " + where(options.domain), ""});
+}
+
 void judge_company(const DoctorOptions& options, const Json& seen, bool held, std::vector<Finding>& out) {
   std::string commanders;
   for (const Json& commander : seen["commanders"]) commanders += (commanders.empty() ? "" : ", ") + commander["who"].get<std::string>();
@@ -382,6 +423,9 @@ void judge_company(const DoctorOptions& options, const Json& seen, bool held, st
     for (const Json& trouble : seen["troubles"])
       out.push_back({"system", Verdict::note, trouble.get<std::string>(), "look at `handsel status` and at the log of the process"});
   }
+  for (const Json& one : seen["left_out"])
+    out.push_back(
+        {"left out", Verdict::note, one.get<std::string>(), "less of it, or a higher quota: components/spark/README.md says what is kept"});
 }
 
 }  // namespace
@@ -430,6 +474,7 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
   judge_clocks(options, seen, out);
   judge_inputs(options, seen, out);
   judge_calibration(options, seen, out);
+  judge_writers(options, seen, out);
   judge_company(options, seen, held, out);
   return out;
 }

@@ -33,7 +33,7 @@ constexpr std::size_t kLikeness = 3;  // letters by which a name may differ
 /// malformed is told.
 class Lenient final : public MessageType {
  public:
-  using Told = std::function<void(const std::string& why)>;
+  using Told = std::function<void(const std::string& why, bool whole)>;
   Lenient(const MessageType& type, Told on_malformed) : type_(type), row_(type.row()), on_malformed_(std::move(on_malformed)) {
     row_.profile = Profile::sensor;
     row_.deadline = 0;
@@ -43,9 +43,11 @@ class Lenient final : public MessageType {
   bool to_wire(const void* message, Stamp now, void* wire, std::string& why) const override {
     return type_.to_wire(message, now, wire, why);
   }
-  bool from_wire(const void* wire, void* message, std::string& why) const override {
-    const bool good = type_.from_wire(wire, message, why);
-    if (!good) on_malformed_(why);
+  using MessageType::from_wire;
+  bool from_wire(const void* wire, void* message, std::string& why, LeftOutElements& left_out) const override {
+    const bool good = type_.from_wire(wire, message, why, left_out);
+    if (!good) on_malformed_(why, true);
+    if (good && left_out.count > 0) on_malformed_(left_out.why, false);
     return good;
   }
   Stamp stamp(const void* wire) const override { return type_.stamp(wire); }
@@ -158,9 +160,10 @@ PerceptionGround ground_of(const DoctorOptions& options) {
 std::vector<Finding> look(const DoctorOptions& options) {
   PerceptionReview review(ground_of(options));
   const Lenient humans(message_type<HumanObservation>(),
-                       [&](const std::string& why) { review.on_malformed(TopicOf<HumanObservation>::row.topic, why); });
-  const Lenient objects(message_type<ObjectObservation>(),
-                        [&](const std::string& why) { review.on_malformed(TopicOf<ObjectObservation>::row.topic, why); });
+                       [&](const std::string& why, bool whole) { review.on_malformed(TopicOf<HumanObservation>::row.topic, why, whole); });
+  const Lenient objects(message_type<ObjectObservation>(), [&](const std::string& why, bool whole) {
+    review.on_malformed(TopicOf<ObjectObservation>::row.topic, why, whole);
+  });
   DdsBus bus({.component = "doctor", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
   bool counts = false;
   std::set<std::string> heard;

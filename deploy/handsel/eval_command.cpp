@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <optional>
@@ -17,6 +18,8 @@
 #include "common/config/resources.hpp"
 #include "deploy/handsel/above_zero.hpp"
 #include "deploy/handsel/commands.hpp"
+#include "deploy/handsel/json_line.hpp"
+#include "deploy/handsel/json_lines.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "deploy/handsel/study.hpp"
 #include "deploy/handsel/system_options.hpp"
@@ -238,15 +241,25 @@ int report_files(const EvalOptions& options) {
   std::map<std::string, Tally> tallies;
   for (const std::string& file : options.from) {
     std::ifstream in(file);
+    if (std::filesystem::is_directory(file)) throw ConfigError(file + " is not a file");
     if (!in) throw MissingError("cannot read " + file);
     int number = 0;
     for (std::string text; std::getline(in, text);) {
       ++number;
-      const nlohmann::json line = nlohmann::json::parse(text, nullptr, false);
-      if (line.is_discarded() || !line.contains("scenario") || !line.contains("seed") || !line.contains("success"))
+      nlohmann::json line;
+      try {
+        line = command::parse_line(text);
+      } catch (const command::LineError& error) {
+        throw ConfigError(file + ":" + std::to_string(number) + ": " + error.what());
+      }
+      if (!line.contains("scenario") || !line.contains("seed") || !line.contains("success"))
         throw ConfigError(file + ":" + std::to_string(number) + ": this is no line of handsel eval");
-      study.add(line);
-      tallies[line["scenario"]].add(line);
+      try {
+        study.add(line);
+        tallies[line["scenario"]].add(line);
+      } catch (const nlohmann::json::exception&) {
+        throw ConfigError(file + ":" + std::to_string(number) + ": this is no line of handsel eval: a field is missing or of another type");
+      }
     }
   }
   print_table(tallies);

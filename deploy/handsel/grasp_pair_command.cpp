@@ -8,6 +8,7 @@
 
 #include "components/grasp_planner/grasp_choice.hpp"
 #include "deploy/handsel/above_zero.hpp"
+#include "deploy/handsel/finite_options.hpp"
 #include "deploy/handsel/grasp_stage.hpp"
 #include "deploy/handsel/pair_picture.hpp"
 #include "deploy/handsel/terminal.hpp"
@@ -222,7 +223,7 @@ void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
   doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")->capture_default_str();
   doubling->add_option("--best", d->most_of_each, "grasps taken from each list")->check(kAboveZero)->capture_default_str();
   doubling->add_flag("--spread", d->spread, "take the best of every orientation and side in turn, not the best of all");
-  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(CLI::NonNegativeNumber)->capture_default_str();
+  doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(kNotNegative)->capture_default_str();
   doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));
   doubling->add_flag("--pass", d->passed, "only those in which either hand can come and leave while the other holds");
   doubling->add_option("--png", d->png, "draws one of them into this file, from three sides");

@@ -8,6 +8,7 @@
 
 #include "common/base/errors.hpp"
 #include "deploy/handsel/above_zero.hpp"
+#include "deploy/handsel/finite_options.hpp"
 #include "deploy/handsel/grasp_input.hpp"
 #include "deploy/handsel/grasp_picture.hpp"
 
@@ -153,7 +154,7 @@ void add_grasp_show(CLI::App& grasp, int& exit_code) {
       ->check(CLI::IsMember({"grasp", "ellipsoids", "candidates", "curvature", "points", "workspace"}))
       ->capture_default_str();
   command->add_option("--rank", o->rank, "which grasp: 1 is the best")->check(kAboveZero)->capture_default_str();
-  command->add_option("--id", o->id, "which grasp, by its id in `grasp list`")->check(CLI::NonNegativeNumber);
+  command->add_option("--id", o->id, "which grasp, by its id in `grasp list`")->check(kNotNegative);
   command->add_option("--finger", o->finger, "whose workspace: 0 is the thumb")->capture_default_str();
   command->add_option("--depth", o->depth, "of the boxes of the tree")->check(CLI::Range(0, 12))->capture_default_str();
   command->add_option("--size", o->size, "height of the picture [points]")->check(CLI::Range(100, 2000))->capture_default_str();

@@ -1,13 +1,49 @@
 #include "deploy/handsel/json_lines.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <new>
 
 #include "common/base/errors.hpp"
+#include "deploy/handsel/json_line.hpp"
 
 namespace handsel::command {
 
 using nlohmann::json;
+
+namespace {
+
+constexpr std::size_t kMaxLine = 16u << 20;  // [bytes]
+constexpr int kMaxDepth = 64;                // of lists and objects: writing them recurses
+
+/// Depth of lists and objects, counted without parsing.
+int depth_of(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool in_text = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (in_text && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == '"') {
+      in_text = !in_text;
+    } else if (!in_text && (text[i] == '[' || text[i] == '{')) {
+      deepest = std::max(deepest, ++depth);
+    } else if (!in_text && (text[i] == ']' || text[i] == '}')) {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
+}  // namespace
+
+json parse_line(const std::string& line) {
+  if (line.size() > kMaxLine) throw LineError("a line of " + std::to_string(line.size() >> 20) + " MB; it may have 16 MB");
+  if (depth_of(line) > kMaxDepth) throw LineError("lists and objects are nested deeper than 64");
+  json item = json::parse(line, nullptr, false);
+  if (item.is_discarded()) throw LineError("this is not JSON");
+  return item;
+}
 
 int for_each_line(std::istream& in, std::ostream& out, const std::function<json(const json&)>& answer,
                   const std::function<std::string(const json&)>& show) {
@@ -22,18 +58,17 @@ int for_each_line(std::istream& in, std::ostream& out, const std::function<json(
       bad = true;
       out << json{{"line", number_of_line}, {"error", why}}.dump(-1, ' ', false, json::error_handler_t::replace) << '\n';
     };
-    const json item = json::parse(line, nullptr, false);
-    if (item.is_discarded()) {
-      refuse("this is not JSON");
-      continue;
-    }
     try {
-      const json result = answer(item);
+      const json result = answer(parse_line(line));
       out << (show ? show(result) : result.dump(-1, ' ', false, json::error_handler_t::replace)) << std::endl;
     } catch (const LineError& e) {
       refuse(e.what());
     } catch (const ConfigError& e) {
       refuse(e.what());
+    } catch (const json::exception& e) {
+      refuse("a field has another type than expected (" + std::string(e.what()) + ")");
+    } catch (const std::bad_alloc&) {
+      refuse("the numbers ask for more memory than there is");
     }
   }
   out.flush();

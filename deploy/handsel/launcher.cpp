@@ -20,8 +20,6 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kQuickDeath = std::chrono::seconds(2);
-constexpr int kMaxQuickDeaths = 5;
 constexpr std::size_t kKeptRuns = 20;
 
 std::string describe_exit(int status) {
@@ -45,15 +43,18 @@ struct Launcher::Child {
   pid_t pid{-1};
   int pid_fd{-1};
   int starts{0};
-  int quick_deaths{0};
-  TimePoint started{};
+  Backoff backoff;
+  TimePoint since{};               // started, or ended
+  std::string hung{};              // why it was killed
+  std::string why{};               // it ended
+  std::optional<TimePoint> due{};  // when it is started again
 };
 
 Launcher::Launcher(LauncherOptions options) : options_(std::move(options)) {
   std::error_code error;
   std::filesystem::create_directories(options_.log_directory, error);
   if (error) throw MissingError("cannot make the log directory " + options_.log_directory.string() + ": " + error.message());
-  for (const ProcessSpec& spec : options_.processes) children_.push_back({.spec = spec});
+  for (const ProcessSpec& spec : options_.processes) children_.push_back({.spec = spec, .backoff = Backoff(options_.backoff)});
   wake_fd_ = eventfd(0, EFD_CLOEXEC);
   thread_ = std::thread([this] { watch(); });
 }
@@ -81,15 +82,33 @@ void Launcher::watch() {
     for (const Child& child : children_) {
       if (child.pid_fd >= 0) fds.push_back({child.pid_fd, POLLIN, 0});
     }
-    poll(fds.data(), fds.size(), 1000);
+    poll(fds.data(), fds.size(), poll_time());
     std::lock_guard lock(mutex_);
     for (Child& child : children_) {
       int status = 0;
       if (stopping_ || child.pid < 0 || waitpid(child.pid, &status, WNOHANG) != child.pid) continue;
       handle_exit(child, status);
     }
+    if (!stopping_) start_due();
   }
   stop_children();
+}
+
+/// Until the next start [ms].
+int Launcher::poll_time() const {
+  constexpr Duration kLongest = std::chrono::seconds(1);
+  Duration left = kLongest;
+  for (const Child& child : children_)
+    if (child.due) left = std::min(left, *child.due - monotonic_now());
+  return static_cast<int>(std::max(left, Duration{}) / std::chrono::milliseconds(1)) + 1;
+}
+
+void Launcher::start_due() {
+  for (Child& child : children_) {
+    if (!child.due || *child.due > monotonic_now()) continue;
+    child.due.reset();
+    start(child);
+  }
 }
 
 void Launcher::start(Child& child) {
@@ -115,34 +134,51 @@ void Launcher::start(Child& child) {
     execv(arguments[0], arguments.data());
     _exit(3);
   }
+  child.since = monotonic_now();
   if (pid < 0) {
-    failure_ = LaunchFailure{child.spec.name, "cannot start " + child.spec.name + ": " + std::strerror(errno), 3};
-    failed_.notify_all();
+    const std::string why = std::string("cannot be started: ") + std::strerror(errno);
+    if (!ready_) return fail(child, child.spec.name + " " + why, 3);
+    child.why = why;
+    child.due = child.since + child.backoff.after_life_of({});
     return;
   }
   child.pid = pid;
   child.pid_fd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
-  child.started = monotonic_now();
   ++child.starts;
+}
+
+void Launcher::fail(const Child& child, const std::string& reason, int exit_code) {
+  failure_ = LaunchFailure{child.spec.name, reason, exit_code};
+  failed_.notify_all();
 }
 
 void Launcher::handle_exit(Child& child, int status) {
   close(child.pid_fd);
   child.pid = child.pid_fd = -1;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 0;
-  const bool quick = monotonic_now() - child.started < kQuickDeath;
-  child.quick_deaths = quick ? child.quick_deaths + 1 : 0;
-  const std::filesystem::path log = options_.log_directory / (child.spec.name + ".log");
-  if (code == 2 || code == 3) {
-    const std::string said = last_line(log);
-    failure_ = LaunchFailure{child.spec.name, child.spec.name + ": " + (said.empty() ? describe_exit(status) : said), code};
-    failed_.notify_all();
-  } else if (child.quick_deaths >= kMaxQuickDeaths) {
-    failure_ = LaunchFailure{child.spec.name, child.spec.name + " keeps dying: it " + describe_exit(status) + "; see " + log.string(), 3};
-    failed_.notify_all();
-  } else {
-    start(child);
-    say(child.spec.name + " " + describe_exit(status) + "; started again");
+  const TimePoint now = monotonic_now();
+  const Duration wait = child.backoff.after_life_of(now - child.since);
+  child.since = now;
+  child.why = child.hung.empty() ? describe_exit(status) : child.hung + ", killed";
+  child.hung.clear();
+  if (code != 0) {
+    const std::string said = last_line(options_.log_directory / (child.spec.name + ".log"));
+    if (!ready_ && (code == 2 || code == 3))
+      return fail(child, child.spec.name + ": " + (said.empty() ? describe_exit(status) : said), code);
+    if (!said.empty()) child.why += " (" + said + ")";
+  }
+  child.due = now + wait;
+  char when[32];
+  std::snprintf(when, sizeof when, "%.1f s", to_seconds(wait));
+  say(child.spec.name + " " + child.why + "; restart " + std::to_string(child.starts) + " in " + when);
+}
+
+void Launcher::replace(const std::string& name, pid_t pid, const std::string& why) {
+  std::lock_guard lock(mutex_);
+  for (Child& child : children_) {
+    if (child.spec.name != name || child.pid != pid || pid <= 0 || stopping_) continue;
+    child.hung = why;
+    kill(pid, SIGKILL);
   }
 }
 
@@ -175,8 +211,10 @@ void Launcher::say(const std::string& sentence) const {
 
 std::vector<ProcessStatus> Launcher::processes() const {
   std::lock_guard lock(mutex_);
+  const auto wait_of = [](const Child& child) { return child.due ? std::max(Duration{}, *child.due - monotonic_now()) : Duration{}; };
   std::vector<ProcessStatus> result;
-  for (const Child& child : children_) result.push_back({child.spec.name, child.pid, std::max(child.starts - 1, 0)});
+  for (const Child& child : children_)
+    result.push_back({child.spec.name, child.pid, std::max(child.starts - 1, 0), child.since, child.why, wait_of(child)});
   return result;
 }
 
@@ -190,12 +228,6 @@ std::optional<LaunchFailure> Launcher::failure(Duration patience) const {
   std::unique_lock lock(mutex_);
   failed_.wait_for(lock, patience, [this] { return failure_.has_value(); });
   return failure_;
-}
-
-std::filesystem::path state_directory() {
-  if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state) return std::filesystem::path(state) / "handsel";
-  if (const char* home = std::getenv("HOME"); home && *home) return std::filesystem::path(home) / ".local/state/handsel";
-  return std::filesystem::temp_directory_path() / "handsel";
 }
 
 std::filesystem::path new_run_directory(int domain) {

@@ -6,6 +6,7 @@ namespace handsel {
 namespace {
 
 constexpr std::size_t kMaxTimeline = 20000;
+constexpr std::size_t kMaxTasks = 4096, kMaxComponents = 64;
 
 std::string with_reason(std::string text, const std::string& reason) { return reason.empty() ? text : text + ": " + reason; }
 
@@ -34,10 +35,13 @@ Observer::Observer(Bus& bus) {
     seen.arrival = at;
   };
   watch<ComponentHealth>(bus, [this, keep](const ComponentHealth& health, TimePoint at) {
+    if (snapshot_.health.size() >= kMaxComponents && !snapshot_.health.contains(health.component)) return;
     auto& seen = snapshot_.health[health.component];
     const bool is_new = !seen.ever || seen.sample.incarnation != health.incarnation;
     if (is_new || seen.sample.state != health.state || seen.sample.reason != health.reason) {
-      note(at, with_reason(health.component + " " + (is_new && seen.ever ? "back, " : "") + name(health.state), health.reason));
+      note(at, with_reason(health.component + " " + (is_new && seen.ever && health.state != HealthState::stopping ? "back, " : "") +
+                               name(health.state),
+                           health.reason));
     }
     keep(seen, health, at);
   });
@@ -48,6 +52,7 @@ Observer::Observer(Bus& bus) {
       note(at, with_reason("task " + std::string(name(task.state)) + step, task.reason));
     }
     snapshot_.tasks[task.id] = task;
+    if (snapshot_.tasks.size() > kMaxTasks) snapshot_.tasks.erase(snapshot_.tasks.begin());
     keep(snapshot_.task, task, at);
   });
   watch<ActionStatus>(bus, [this, keep](const ActionStatus& action, TimePoint at) {
@@ -66,6 +71,12 @@ Observer::Observer(Bus& bus) {
       note(at, "mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " (" + causes + ")"));
     }
     keep(snapshot_.execution, execution, at);
+  });
+  watch<SafetyState>(bus, [this, keep](const SafetyState& safety, TimePoint at) {
+    const auto& seen = snapshot_.safety;
+    if (!seen.ever || seen.sample.reason != safety.reason)
+      if (seen.ever || !safety.reason.empty()) note(at, safety.reason.empty() ? "released by a person" : "held: " + safety.reason);
+    keep(snapshot_.safety, safety, at);
   });
   watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) { keep(snapshot_.advice, advice, at); });
   watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) { keep(snapshot_.attention, state, at); });

@@ -29,6 +29,7 @@ struct Snapshot {
   Seen<ActionStatus> action;
   std::string partner;  ///< the person the newest action that concerned one was about
   Seen<ExecutionStatus> execution;
+  Seen<SafetyState> safety;
   Seen<AttentionAdvice> advice;
   Seen<AttentionState> attention;
   Seen<TrajectoryForecast> forecast;

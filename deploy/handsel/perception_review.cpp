@@ -229,9 +229,10 @@ void PerceptionReview::on(const ObjectObservation& seen, TimePoint arrival, Stam
   }
 }
 
-void PerceptionReview::on_malformed(const std::string& topic, const std::string& why) {
+void PerceptionReview::on_malformed(const std::string& topic, const std::string& why, bool whole) {
   Malformed& malformed = malformed_[topic];
   ++malformed.count;
+  malformed.whole += whole;
   malformed.last = why;
 }
 
@@ -239,12 +240,14 @@ std::vector<Finding> PerceptionReview::findings() const {
   std::vector<Finding> out;
   for (const auto& [topic, malformed] : malformed_) {
     const auto good = received_.find(topic);
-    const std::size_t all = malformed.count + (good == received_.end() ? 0 : good->second);
+    const std::size_t all = malformed.whole + (good == received_.end() ? 0 : good->second);
     const bool gaze = malformed.last.find("gaze_direction") != std::string::npos;
-    out.push_back(bad(gaze ? "gaze" : "malformed",
-                      format("%zu of %zu samples on %s are malformed and dropped: ", malformed.count, all, topic.c_str()) + malformed.last,
-                      gaze ? "gaze_direction must be a unit vector, and finite; without a gaze leave has_gaze false"
-                           : "idl/perception.idl says what each field may hold; leave a joint out rather than send NaN"));
+    out.push_back(
+        bad(gaze ? "gaze" : "malformed",
+            format("%zu of %zu samples on %s are malformed and dropped, in whole or in part: ", malformed.count, all, topic.c_str()) +
+                malformed.last,
+            gaze ? "gaze_direction must be a unit vector, and finite; without a gaze leave has_gaze false"
+                 : "idl/perception.idl says what each field may hold; leave a joint out rather than send NaN"));
   }
   for (const auto& [source, bodies] : people_) judge(source, bodies, out);
   judge_coverage(out);

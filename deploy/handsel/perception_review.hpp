@@ -44,7 +44,8 @@ class PerceptionReview {
   void on(const HumanObservation&, TimePoint arrival, Stamp system_arrival);
   void on(const ObjectObservation&, TimePoint arrival, Stamp system_arrival);
   /// A sample on this topic that was rejected, and why (`MessageType::from_wire`).
-  void on_malformed(const std::string& topic, const std::string& why);
+  /// `whole`: the sample was dropped; else an element of a list.
+  void on_malformed(const std::string& topic, const std::string& why, bool whole = true);
 
   /// One sentence each; a source without a fault has one that is good. Sources and topics that never came have none.
   std::vector<Finding> findings() const;
@@ -69,7 +70,7 @@ class PerceptionReview {
     double lowest{1e300};
   };
   struct Malformed {
-    std::size_t count{0};
+    std::size_t count{0}, whole{0};
     std::string last;
   };
   void look(Bodies& bodies, const ObservedPerson& person) const;

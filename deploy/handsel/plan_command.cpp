@@ -140,6 +140,7 @@ class Batch {
     problem.upright.emplace();
     problem.upright->most = number(*upright, "most");
     if (upright->contains("axis")) problem.upright->axis_tool = vector3(*upright, "axis");
+    if (!(problem.upright->axis_tool.norm() > 1e-9)) throw LineError("\"axis\" of \"upright\" must not be zero");
   }
 
   /// Leaves the axes of the path in the problem.

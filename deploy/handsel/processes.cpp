@@ -1,8 +1,10 @@
 #include "deploy/handsel/processes.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "common/base/errors.hpp"
+#include "common/bus/state_directory.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
 #include "common/config/scenario_robot.hpp"
@@ -50,11 +52,17 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
                      binary,
                      {"--domain", std::to_string(options.domain), "--scenario", options.scenario, "--seed", std::to_string(options.seed)}};
     spec.arguments.insert(spec.arguments.end(), {"--robot", robot});
+    if (process == "supervisor") spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
     specs.push_back(std::move(spec));
   }
   if (specs.empty()) throw ConfigError("no process is left to be started");
   return specs;
+}
+
+std::filesystem::path state_folder(const SystemOptions& options) {
+  const bool here = !has(options.without, "supervisor") && (options.only.empty() || has(options.only, "supervisor"));
+  return here ? domain_state_directory(options.domain) : std::filesystem::path{};
 }
 
 std::string robot_of(const SystemOptions& options) { return options.robot.empty() ? scenario_robot(options.scenario) : options.robot; }
@@ -69,7 +77,9 @@ void check_system(const SystemOptions& options) {
     for (const Axis& axis : model.axes()) known = known || axis.name == joint;
     if (!known) throw ConfigError(file.string() + ": start names the joint \"" + joint + "\", which " + model.name() + " does not have");
   }
-  for (const config::ObjectPlacement& object : scenario.objects()) ObjectModel::load(object_description(object.model()));
+  std::set<std::string> models;
+  for (const config::ObjectPlacement& object : scenario.objects()) models.insert(object.model());
+  for (const std::string& model_name : models) ObjectModel::load(object_description(model_name));
 }
 
 }  // namespace handsel

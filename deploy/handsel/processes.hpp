@@ -28,17 +28,19 @@ struct SystemOptions {
   std::string robot;  ///< empty: the scenario's
   std::string scenario{"give_mug"};
   std::uint64_t seed{1};
-  bool ros2{false};                        ///< with the lane to ROS 2
-  int web_port{-1};                        ///< of the bridge; 0: any free one; -1: as its settings say
-  std::string record;                      ///< file to record into; empty: none
+  bool ros2{false};                          ///< with the lane to ROS 2
+  int web_port{-1};                          ///< of the bridge; 0: any free one; -1: as its settings say
+  std::string record;                        ///< file to record into; empty: none
   std::map<std::string, std::string> notes;  ///< of a study, for the record's metadata
-  std::vector<std::string> only, without;  ///< of kProcesses, when the others run on another host; both empty: all
+  std::vector<std::string> only, without;    ///< of kProcesses, when the others run on another host; both empty: all
   bool whole() const { return only.empty() && without.empty(); }
 };
 
 /// One ProcessSpec for each of kProcesses that is asked for, and of what else is; throws MissingError naming the first binary that is not
 /// beside this one, ConfigError when `only` or `without` names no process or nothing is left.
 std::vector<ProcessSpec> system_processes(const SystemOptions&);
+/// Folder of what survives the processes; empty when no supervisor is started here.
+std::filesystem::path state_folder(const SystemOptions&);
 /// The robot asked for, else the scenario's, else jido. Throws as check_system().
 std::string robot_of(const SystemOptions&);
 /// Reads the scenario, the robot and every object it names, as the processes will. Throws ConfigError / MissingError.

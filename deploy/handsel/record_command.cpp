@@ -6,6 +6,7 @@
 #include "common/base/errors.hpp"
 #include "common/wire/interface_id.hpp"
 #include "deploy/handsel/above_zero.hpp"
+#include "deploy/handsel/finite_options.hpp"
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/recorder.hpp"
 #include "deploy/handsel/replay.hpp"
@@ -47,7 +48,7 @@ void require_silence(DdsBus& bus, const std::vector<std::string>& topics) {
   const std::set<std::string> fed(topics.begin(), topics.end());
   for (const DomainEndpoint& end : bus.look_around().endpoints) {
     const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;
-    if (!row || row->profile != Profile::sensor || !fed.contains(row->topic)) continue;
+    if (!row || (row->profile != Profile::sensor && !has_one_writer(*row)) || !fed.contains(row->topic)) continue;
     throw ConfigError((end.owner.component.empty() ? "process " + std::to_string(end.owner.pid) : end.owner.component) + " writes " +
                       row->topic + " already; start the system with `handsel up --without sim`, or choose others with --topics");
   }
@@ -55,7 +56,7 @@ void require_silence(DdsBus& bus, const std::vector<std::string>& topics) {
 
 int replay(const ReplayOptions& options) {
   catch_interrupts();
-  DdsBus bus({.component = "replay", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
+  DdsBus bus({.component = replay_name(options.what.topics), .domain = static_cast<std::uint32_t>(options.domain), .health = false});
   Replay replay(bus, options.what);
   std::vector<std::string> fed;
   for (const auto& [topic, count] : replay.counts()) fed.push_back(topic);
@@ -102,7 +103,7 @@ void add_record_commands(CLI::App& app, int& exit_code) {
   command = app.add_subcommand("replay", "feeds what came in from outside, as it was recorded, into a system started without sim");
   command->add_option("file", replayed->what.file, "an MCAP file of `handsel record`")->required();
   add_domain_option(*command, replayed->domain);
-  command->add_option("--from", replayed->what.from, "[s] of the recording to begin at")->check(CLI::NonNegativeNumber);
+  command->add_option("--from", replayed->what.from, "[s] of the recording to begin at")->check(kNotNegative);
   command->add_option("--topics", replayed->what.topics, "these instead of robot state and observations, e.g. human_observation")
       ->delimiter(',');
   command->add_flag("--json", replayed->json, "print what was sent as JSON");

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/errors.hpp"
+#include "common/bus/writer_pin.hpp"
 #include "common/wire/schema.hpp"
 
 namespace handsel {
@@ -14,7 +15,37 @@ std::vector<std::string> input_topics() {
   return inputs;
 }
 
+namespace {
+
+/// Reads the whole file, so that nothing is sent of one that is damaged further on.
+void require_sound(const std::filesystem::path& file) {
+  constexpr std::int64_t kMaxLength = 30ll * 24 * 3600 * 1'000'000'000;  // [ns] a month: beyond, the time of a message is wrong
+  mcap::Reader reader(file);
+  mcap::Message message;
+  std::int64_t begin = -1;
+  while (reader.next(message)) {
+    if (begin < 0) begin = message.time;
+    if (message.time - begin > kMaxLength)
+      throw ConfigError(file.string() + ": a message " + std::to_string((message.time - begin) / 1'000'000'000) +
+                        " s after the first; a recording has at most 30 days");
+  }
+}
+
+}  // namespace
+
+std::string replay_name(const std::vector<std::string>& topics) {
+  std::string name = "replay";
+  for (const std::string& topic : topics.empty() ? input_topics() : topics) {
+    const TopicRow* row = find_topic(topic);
+    if (row == nullptr || !has_one_writer(*row) || may_write(*row, name)) continue;
+    const std::string_view writers = row->writers;
+    name += " " + std::string(writers.substr(0, writers.find(' ')));
+  }
+  return name;
+}
+
 Replay::Replay(Bus& bus, const Settings& settings) : reader_(settings.file), from_(settings.from) {
+  require_sound(settings.file);
   std::vector<const TopicRow*> wanted;
   for (const std::string& name : settings.topics.empty() ? input_topics() : settings.topics) {
     const TopicRow* row = find_topic(name);
@@ -50,7 +81,8 @@ void Replay::send(Stamp began) {
   bool sent = codec_.decode(*lane.type, sample_.data, lane.wire.get());
   if (sent) {
     // A measurement stays as old at its sending as it was.
-    const Stamp age = std::max<Stamp>(0, sample_.time - lane.type->stamp(lane.wire.get()));
+    const Stamp stamp = lane.type->stamp(lane.wire.get());
+    const Stamp age = stamp >= 0 && stamp < sample_.time ? sample_.time - stamp : 0;
     lane.type->set_stamp(lane.wire.get(), began + static_cast<Stamp>(1e9 * due()) - age);
     sent = lane.type->from_wire(lane.wire.get(), lane.message.get(), why) && lane.out->publish(lane.message.get());
   }

@@ -17,6 +17,10 @@ namespace handsel {
 /// follow a new plan.
 std::vector<std::string> input_topics();
 
+/// Name of the participant that replays these topics (empty: input_topics()): "replay" and a component that may write each of those with
+/// one writer, in whose place it speaks.
+std::string replay_name(const std::vector<std::string>& topics);
+
 /// Every sample of the chosen topics, in their order and at their pace, stamped as if it were now.
 class Replay {
  public:

@@ -10,6 +10,7 @@
 #include "deploy/handsel/commands.hpp"
 #include "deploy/handsel/performer.hpp"
 #include "deploy/handsel/report.hpp"
+#include "deploy/handsel/scene_check.hpp"
 #include "deploy/handsel/system.hpp"
 #include "deploy/handsel/system_options.hpp"
 #include "deploy/handsel/terminal.hpp"
@@ -94,6 +95,7 @@ int run(RunOptions& options) {
   if (!options.condition.empty()) options.system.notes["condition"] = options.condition;
   if (!options.participant.empty()) options.system.notes["participant"] = options.participant;
   if (options.trial > 0) options.system.notes["trial"] = std::to_string(options.trial);
+  check_scene(options.system);
   System system(options.system);
   std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s, seed %llu; logs in %s\n", kProcesses.size(),
                options.system.domain, shown.c_str(), static_cast<unsigned long long>(options.system.seed), system.log_directory().c_str());

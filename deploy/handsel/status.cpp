@@ -16,7 +16,8 @@ ProcessLine line_of(const std::string& component, const Snapshot& snapshot, Time
   const auto found = snapshot.health.find(component);
   if (found == snapshot.health.end()) return line;
   const ComponentHealth& health = found->second.sample;
-  line.state = now - found->second.arrival > kSilent ? "silent" : name(health.state);
+  const bool not_running = health.state == HealthState::stopping && health.pid == 0;  // its launcher speaks for it
+  line.state = now - found->second.arrival > kSilent ? "silent" : not_running ? "restarting" : name(health.state);
   line.reason = health.reason;
   line.memory_mb = health.memory_mb;
   line.cpu = health.cpu;
@@ -26,6 +27,9 @@ ProcessLine line_of(const std::string& component, const Snapshot& snapshot, Time
     line.rate += topic.rate;
     line.deadline_misses += topic.deadline_misses;
     line.rejected += topic.rejected;
+    line.refused += topic.refused;
+    if (!topic.second_writer.empty())
+      line.second_writers += (line.second_writers.empty() ? "" : ", ") + topic.topic + ": " + topic.second_writer;
   }
   return line;
 }
@@ -53,6 +57,9 @@ SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
   }
   for (const auto& [component, seen] : snapshot.health)
     if (!listed.contains(component)) status.processes.push_back(line_of(component, snapshot, now));
+  for (const auto& [component, seen] : snapshot.health)
+    for (const NamedCount& one : seen.sample.left_out)
+      status.left_out.push_back(component + ": " + one.name + ": " + std::to_string(one.count));
   for (const ProcessLine& line : status.processes) {
     if (line.state == "ok") continue;
     status.troubles.push_back(line.component + " is " + line.state + (line.reason.empty() ? "" : ": " + line.reason));
@@ -62,6 +69,15 @@ SystemStatus make_status(const Snapshot& snapshot, TimePoint now) {
     const std::string causes = cause_names(execution.causes);
     status.troubles.push_back("mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " because of " + causes) +
                               (execution.reason.empty() ? "" : ": " + execution.reason));
+  }
+  if (snapshot.safety.ever) {
+    const SafetyState& safety = snapshot.safety.sample;
+    if (!safety.reason.empty()) status.troubles.push_back("held: " + safety.reason);
+    if (safety.override_factor < 1.0)
+      status.troubles.push_back(format("speed override %.0f %%; next: handsel speed 100", 100.0 * safety.override_factor));
+    for (const Person& person : safety.lost)
+      status.troubles.push_back(
+          person.id + format(" has been out of sight for %.0f s; next, when gone: handsel task clear-person ", person.age) + person.id);
   }
   return status;
 }
@@ -75,6 +91,8 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
                          {"rate_hz", line.rate},
                          {"deadline_misses", line.deadline_misses},
                          {"rejected", line.rejected},
+                         {"refused", line.refused},
+                         {"second_writers", line.second_writers},
                          {"memory_mb", line.memory_mb},
                          {"cpu", line.cpu},
                          {"uptime_s", line.uptime},
@@ -84,7 +102,8 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
     clocks[name(behaviour.behaviour)] = {
         {"period_s", behaviour.period}, {"released", behaviour.released}, {"speed_factor", behaviour.speed_factor}};
   }
-  nlohmann::json result{{"processes", std::move(processes)}, {"troubles", status.troubles}, {"clocks", std::move(clocks)}};
+  nlohmann::json result{
+      {"processes", std::move(processes)}, {"troubles", status.troubles}, {"left_out", status.left_out}, {"clocks", std::move(clocks)}};
   if (snapshot.task.ever) {
     const TaskStatus& task = snapshot.task.sample;
     result["task"] = {{"id", task.id},     {"kind", name(task.kind)}, {"state", name(task.state)},
@@ -100,15 +119,27 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
     result["late_cycles"] = execution.late_cycles;
     result["age_s"] = to_seconds(now - snapshot.execution.arrival);
   }
+  if (snapshot.safety.ever) {
+    const SafetyState& safety = snapshot.safety.sample;
+    nlohmann::json lost = nlohmann::json::array();
+    for (const Person& person : safety.lost) lost.push_back({{"id", person.id}, {"age_s", person.age}});
+    result["safety"] = {{"revision", safety.revision},
+                        {"paused", safety.paused},
+                        {"fault", safety.fault},
+                        {"awaits_person", safety.awaits_person},
+                        {"override_factor", safety.override_factor},
+                        {"reason", safety.reason},
+                        {"lost", std::move(lost)}};
+  }
   if (snapshot.advice.ever) result["advised_speed_factor"] = snapshot.advice.sample.speed_factor;
   return result;
 }
 
 std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePoint) {
   std::string text =
-      format("%-22s %-9s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz", "misses", "rejected", "memory", "cpu", "pid");
+      format("%-22s %-10s %8s %7s %8s %8s %6s %7s\n", "process", "state", "rate Hz", "misses", "rejected", "memory", "cpu", "pid");
   for (const ProcessLine& line : status.processes) {
-    text += format("%-22s %-9s %8.0f %7llu %8llu %5.0f MB %4.0f %% %7u", line.component.c_str(), line.state.c_str(), line.rate,
+    text += format("%-22s %-10s %8.0f %7llu %8llu %5.0f MB %4.0f %% %7u", line.component.c_str(), line.state.c_str(), line.rate,
                    static_cast<unsigned long long>(line.deadline_misses), static_cast<unsigned long long>(line.rejected), line.memory_mb,
                    100.0 * line.cpu, line.pid);
     text += line.reason.empty() ? "\n" : "  " + line.reason + "\n";
@@ -134,6 +165,7 @@ std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePo
     text +=
         format("clock       %-8s every %.3f s%s\n", name(behaviour.behaviour), behaviour.period, behaviour.released ? ", released" : "");
   }
+  for (const std::string& one : status.left_out) text += "left out    " + one + "\n";
   for (const std::string& trouble : status.troubles) text += "! " + trouble + "\n";
   return text;
 }

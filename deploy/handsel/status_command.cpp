@@ -35,7 +35,7 @@ int show(const StatusOptions& options) {
     if (options.watch) session.listen(from_seconds(0.5));
   } while (options.watch && !interrupted() && !nobody_reads());
   for (const ProcessLine& line : status.processes) {
-    if (line.state == "missing" || line.state == "silent") return 1;
+    if (line.state == "missing" || line.state == "silent" || line.state == "restarting") return 1;
   }
   return 0;
 }

@@ -1,11 +1,13 @@
 #include "deploy/handsel/story.hpp"
 
 #include <charconv>
-#include <fstream>
+#include <cmath>
 #include <map>
 #include <sstream>
 
 #include "common/base/errors.hpp"
+#include "common/config/text_check.hpp"
+#include "common/config/text_file.hpp"
 
 namespace handsel {
 namespace {
@@ -22,7 +24,7 @@ Words split(const std::string& line) {
 std::optional<double> parse_number(const std::string& word) {
   double value = 0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 
@@ -124,7 +126,10 @@ class LineParser {
  private:
   std::string word() const { return position_ < words_.size() ? words_[position_] : std::string(); }
   std::string take() { return position_ < words_.size() ? words_[position_++] : std::string(); }
-  [[noreturn]] void fail(const std::string& what) const { throw ConfigError(where_ + what); }
+  [[noreturn]] void fail(const std::string& what) const {
+    constexpr std::size_t kMaxComplaint = 700;  // [bytes] a wrong word is quoted whole
+    throw ConfigError(where_ + printable(what, kMaxComplaint));
+  }
 
   std::string take_any(const std::string& wanted) {
     if (word().empty()) fail("the line ends where " + wanted + " should follow");
@@ -205,12 +210,6 @@ Story parse_story(const std::string& text, const std::string& name) {
   return story;
 }
 
-Story read_story(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw MissingError("the story " + file.string() + " is not there");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_story(text.str(), file.string());
-}
+Story read_story(const std::filesystem::path& file) { return parse_story(read_text_file(file), file.string()); }
 
 }  // namespace handsel

@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "common/base/errors.hpp"
+#include "common/config/resources.hpp"
 #include "common/wire/interface_id.hpp"
 #include "deploy/handsel/status.hpp"
 
@@ -17,10 +18,12 @@ SystemOptions checked(SystemOptions options) {
   return options;
 }
 
-LauncherOptions launcher_options(const SystemOptions& options, const std::filesystem::path& log_directory) {
-  return {.processes = system_processes(options), .log_directory = log_directory, .on_event = [](const std::string& sentence) {
-            std::fprintf(stderr, "handsel: %s\n", sentence.c_str());
-          }};
+LauncherOptions launcher_options(const SystemOptions& options, const std::filesystem::path& log_directory,
+                                 const LauncherSettings& settings) {
+  return {.processes = system_processes(options),
+          .log_directory = log_directory,
+          .on_event = [](const std::string& sentence) { std::fprintf(stderr, "handsel: %s\n", sentence.c_str()); },
+          .backoff = settings.backoff};
 }
 
 mcap::Metadata record_notes(const SystemOptions& options) {
@@ -64,9 +67,12 @@ System::System(const SystemOptions& options)
     : options_(checked(options)),
       lock_(options_.domain),
       log_directory_(new_run_directory(options_.domain)),
+      settings_(load_launcher_settings(resource("config/launcher.txtpb"))),
       session_(options_.domain),
       recording_(session_.bus(), options_.record, record_notes(options_)),
-      launcher_(launcher_options(options_, log_directory_)) {}
+      kept_(state_folder(options_)),
+      launcher_(launcher_options(options_, log_directory_, settings_)),
+      watch_(session_.bus(), launcher_, settings_.liveness) {}
 
 void System::require_alive() const {
   const auto failure = launcher_.failure();
@@ -101,6 +107,7 @@ std::optional<Duration> System::wait_ready(Duration limit) {
     throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
                        join(lacking()) + "; logs are in " + log_directory_.string());
   }
+  launcher_.set_ready();
   return monotonic_now() - begin;
 }
 

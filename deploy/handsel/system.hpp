@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "deploy/handsel/kept_state.hpp"
 #include "deploy/handsel/launcher.hpp"
+#include "deploy/handsel/launcher_settings.hpp"
+#include "deploy/handsel/process_watch.hpp"
 #include "deploy/handsel/processes.hpp"
 #include "deploy/handsel/recorder.hpp"
 #include "deploy/handsel/session.hpp"
@@ -32,7 +35,7 @@ class System {
   std::string web_address() const;
 
   /// Listens until every component started here is ready; returns the time it took, or nullopt on Ctrl-C. Throws MissingError naming what
-  /// is missing after `limit`, ConfigError / MissingError when a process gave up.
+  /// is missing after `limit`, ConfigError / MissingError when a process gave up. Once ready, no death of a process ends the system.
   std::optional<Duration> wait_ready(Duration limit);
   /// Throws ConfigError / MissingError when a process gave up.
   void require_alive() const;
@@ -43,9 +46,12 @@ class System {
   SystemOptions options_;
   DomainLock lock_;
   std::filesystem::path log_directory_;
+  LauncherSettings settings_;
   Session session_;
   Recording recording_;  // until every process has stopped
+  KeptState kept_;       // likewise
   Launcher launcher_;
+  ProcessWatch watch_;
 };
 
 }  // namespace handsel

@@ -131,7 +131,7 @@ int perform(const TaskOptions& options) {
   return status() && status()->state == TaskState::succeeded ? 0 : 1;
 }
 
-/// A word about the running task or the system: pause, resume, cancel, acknowledge, speed.
+/// About the running task, the robot or the system: pause, resume, cancel, acknowledge, speed. Prints what holds the robot afterwards.
 int tell(const TaskOptions& options) {
   catch_interrupts();
   Session session(options.domain);
@@ -140,7 +140,7 @@ int tell(const TaskOptions& options) {
   goal.id = session.new_task_id();
   session.listen(from_seconds(0.3));  // the newest status of the running task is transient local
   const Seen<TaskStatus> before = session.snapshot().task;
-  const bool about_task = goal.kind == TaskKind::pause || goal.kind == TaskKind::resume || goal.kind == TaskKind::cancel;
+  const bool about_task = goal.kind == TaskKind::cancel;
   if (about_task && (!before.ever || is_over(before.sample.state))) {
     std::printf("no task is running\n");
     return 1;
@@ -150,20 +150,20 @@ int tell(const TaskOptions& options) {
   const auto answered = [&] {
     if (const auto own = session.snapshot().tasks.find(goal.id); own != session.snapshot().tasks.end() && is_over(own->second.state))
       return true;
-    const TaskState state = session.snapshot().task.sample.state;
-    return (goal.kind == TaskKind::pause && state == TaskState::paused) || (goal.kind == TaskKind::cancel && is_over(state)) ||
-           (goal.kind == TaskKind::resume && (state == TaskState::running || state == TaskState::accepted));
+    return goal.kind == TaskKind::cancel && is_over(session.snapshot().task.sample.state);
   };
-  const bool done = session.wait(about_task ? Duration(std::chrono::seconds(10)) : Duration(std::chrono::seconds(1)), answered);
+  const bool done = session.wait(std::chrono::seconds(goal.kind == TaskKind::speed ? 2 : 10), answered);
   const auto own = session.snapshot().tasks.find(goal.id);
   if (own != session.snapshot().tasks.end() && own->second.state == TaskState::refused) {
     std::printf("refused: %s\n", own->second.reason.c_str());
     return 1;
   }
-  if (about_task && !done) {
+  if (!done) {
     std::printf("%s: not answered\n", name(goal.kind));
     return 1;
   }
+  const std::string& held = session.snapshot().safety.sample.reason;
+  if (goal.kind != TaskKind::pause && !held.empty()) std::printf("still held: %s\n", held.c_str());
   return 0;
 }
 
@@ -247,10 +247,10 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   object(lift);
   auto go_to = goal("goto", "moves the arm to a named posture", TaskKind::go_to);
   go_to.first->add_option("place", go_to.second->goal.surface, "posture: rest")->required();
-  add(*task, exit_code, "pause", "stops softly and waits", TaskKind::pause, tell);
-  add(*task, exit_code, "resume", "goes on after pause", TaskKind::resume, tell);
+  add(*task, exit_code, "pause", "stops the robot softly until a person resumes, whatever restarts", TaskKind::pause, tell);
+  add(*task, exit_code, "resume", "ends a pause, and the wait after a stop of the robot", TaskKind::resume, tell);
   add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, tell);
-  add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault", TaskKind::acknowledge, tell);
+  add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault or stop", TaskKind::acknowledge, tell);
 
   auto clear_lost =
       add(*task, exit_code, "clear-person", "says that a person SPARK has lost sight of is gone", TaskKind::clear_person, clear_person);

@@ -3,6 +3,7 @@
 
 #include "common/base/errors.hpp"
 #include "deploy/handsel/commands.hpp"
+#include "deploy/handsel/scene_check.hpp"
 #include "deploy/handsel/system.hpp"
 #include "deploy/handsel/system_options.hpp"
 
@@ -18,6 +19,7 @@ void add_up_command(CLI::App& app, int& exit_code) {
   up->add_flag("--headless", *headless, "open no browser");
   up->callback([options, headless, &exit_code] {
     catch_interrupts();
+    check_scene(*options);
     System system(*options);
     std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s; logs in %s\n", system.launcher().processes().size(),
                  options->domain, options->scenario.c_str(), system.log_directory().c_str());

@@ -127,7 +127,7 @@ int node(const std::string& component, double seconds) {
 }
 
 int echo() {
-  DdsBus bus({.component = "echo", .domain = kDomain, .health = false});
+  DdsBus bus({.component = "echo sim", .domain = kDomain, .health = false});
   auto publisher = bus.advertise<RobotState>();
   RobotState answer = example<RobotState>();
   bool done = false;
@@ -141,7 +141,7 @@ int echo() {
 }
 
 int trip() {
-  DdsBus bus({.component = "trip", .domain = kDomain, .health = false});
+  DdsBus bus({.component = "trip trajectory_controller", .domain = kDomain, .health = false});
   auto publisher = bus.advertise<JointCommand>();
   JointCommand question = example<JointCommand>();
   std::uint64_t got = 0;

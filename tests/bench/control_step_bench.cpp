@@ -54,6 +54,8 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
   person.joints = standing_body(Vector3(1.4, 0.2, 0), M_PI, 1.75);
   people.people = {person};
   Go go;
+  go.state_revision = 1;
+  core.on(go, now);  // the first one moves nothing
   go.epoch = 1;
   go.allowed = true;
   AttentionAdvice advice;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,9 @@ class ControllerBench {
       : settings(with), robot(small_robot()), core(with, robot) {
     measured = Vector::Zero(robot->dof());
     people.covered = true;
+    Go first;  // moves nothing: the controller waits for a newer one
+    first.state_revision = 1;
+    core.on(first, now);
     go.epoch = 1;
     go.allowed = true;
   }
@@ -36,6 +40,7 @@ class ControllerBench {
       s.position = measured;
       s.velocity = s.effort = Vector::Zero(robot->dof());
       s.mode = drive;
+      s.refusal = refusal;
       s.external_torque = external_torque;
       core.on(s, now);
       robot_at_ = now;
@@ -48,6 +53,7 @@ class ControllerBench {
       core.on(seen_.front().second, human_at_);
     }
     if (go_speaks && ticks % 100 == 1) {
+      go.state_revision = go.epoch + 1;  // each new epoch here is a person's
       core.on(go, now);
       go_told_ = go.allowed;
     }
@@ -112,6 +118,7 @@ class ControllerBench {
   Vector measured;
   bool follows{true};
   DriveMode drive{DriveMode::enabled};
+  std::string refusal;     ///< why the robot side stands although its drives are enabled
   Vector external_torque;  ///< empty: not measured
   bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true}, attention_speaks{true};
   HumanState people;

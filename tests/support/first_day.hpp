@@ -43,7 +43,7 @@ class FirstDay {
         robot_(RobotModel::load(robot_description(plan.robot))),
         arm_(robot_.require_group("arm")),
         capsules_(robot_capsules(robot_)),
-        bus_({.component = "first_day", .domain = plan.domain, .realtime = true, .health = false}) {
+        bus_({.component = "first_day spark supervisor manipulation_planner", .domain = plan.domain, .realtime = true, .health = false}) {
     place_wall();
     for (const auto& file : std::filesystem::directory_iterator(resource("config"))) std::filesystem::copy(file, folder_.path());
     std::ofstream(folder_.path() / "trajectory_controller.txtpb", std::ios::app)
@@ -51,10 +51,10 @@ class FirstDay {
         << " }\n";
     port_ = drivers::UdpPort(0).port();
     const std::string common = "common { port: " + std::to_string(port_) + " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
-                               " max_setpoint_gap: 0.02 wire_jitter: 0.005 fade_share: 0.1 }\n";
+                               " max_setpoint_gap: 0.02 wire_jitter: 0.02 fade_share: 0.1 }\n";
     folder_.write("position_arm.txtpb", common + "cycle: 0.005\n");
     folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_share: 0.95 lost_cycles: 20\n" + plan.gripper);
-    go_.epoch = 1;
+    go_.epoch = go_.state_revision = 1;
     go_.allowed = true;
     people_.covered = true;
     forecast_.time_to_collision = 1e9;
@@ -103,14 +103,15 @@ class FirstDay {
           asked_ = bus_.now();
           if (trouble_.find("acknowledge") != std::string::npos)
             give_go(true);
-          else if (status_.causes == (1U << static_cast<unsigned>(Cause::no_go)))
+          else if (status_.causes == (1U << static_cast<unsigned>(Cause::no_go)) ||
+                   status_.causes == (1U << static_cast<unsigned>(Cause::awaits_person)))
             give_go(false);
           return false;
         },
         20.0);
   }
   void give_go(bool acknowledge) {
-    ++go_.epoch;
+    go_.state_revision = ++go_.epoch;  // each is a person's
     go_.acknowledge = acknowledge;
     go_out_->publish(go_);
   }

@@ -1,6 +1,7 @@
 // A supervisor in a world of facts: the rest of the system as it sees it.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ inline config::SupervisorSettings rig_settings() {
   s.add_required("spark");
   s.set_resume_delay(0.1);
   s.set_person_timeout(2.0);
+  s.set_missing_timeout(5.0);
   return s;
 }
 
@@ -98,6 +100,7 @@ class TaskRig {
   double action_time{1.0};
   std::function<std::string(const ActionGoal&)> fails;  ///< reason; empty: it does not
   Go go;
+  SafetyState safety;
   std::vector<ActionGoal> goals;
   std::vector<TaskStatus> statuses;
   std::uint64_t ids{1000};
@@ -117,10 +120,13 @@ class TaskRig {
     act();
     if (planner_alive) supervisor.on(action, now);
     Outbox out;
-    supervisor.step(now, out);
+    supervisor.step(now, 0, out);
+    if (out.store) supervisor.on_stored(out.store->safety.revision);
+    if (out.safety) safety = *out.safety;
     if (out.go) {
       go = *out.go;
-      execution.mode = go.allowed && go.epoch > execution.epoch ? Mode::normal : (go.allowed ? execution.mode : Mode::hold);
+      const bool resumes = go.allowed && go.epoch > execution.epoch && (execution.mode != Mode::fault || go.acknowledge);
+      execution.mode = resumes ? Mode::normal : go.allowed ? execution.mode : std::max(execution.mode, Mode::hold);
       execution.epoch = go.epoch;
     }
     for (const auto& goal : out.action_goals) {

@@ -101,11 +101,11 @@ std::string settings(const Folder& folder, const std::string& what, const std::s
 template <class M>
 class Publishing {
  public:
-  explicit Publishing(const std::function<M(Stamp now)>& message) {
+  explicit Publishing(const std::function<M(Stamp now)>& message, const std::string& component = "stranger") {
     child_ = fork();
     if (child_ != 0) return;
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    DdsBus bus({.component = "stranger", .domain = kDomain, .health = false});
+    DdsBus bus({.component = component, .domain = kDomain, .health = false});
     auto publisher = bus.advertise<M>();
     bus.every(from_seconds(0.05), [&](TimePoint) { publisher->publish(message(bus.stamp_now())); });
     bus.run();
@@ -295,13 +295,15 @@ TEST_F(Doctor, finds_a_calibration_that_is_wrong_stale_or_not_what_comes) {
                "sources { source: \"side\" measured: \"2020-01-01\" } robots { robot: \"jido\" T_world_base { position { x: 0.2 } } } "
                "valid_days: 180\n");
   const Publishing<HumanObservation> people([](Stamp now) { return HumanObservation{.stamp = now, .source = "top"}; });
-  const Publishing<RobotState> robot([](Stamp now) {
-    RobotState state;
-    state.stamp = now;
-    state.robot = "jido";
-    state.position = state.velocity = Vector::Zero(7);
-    return state;
-  });
+  const Publishing<RobotState> robot(
+      [](Stamp now) {
+        RobotState state;
+        state.stamp = now;
+        state.robot = "jido";
+        state.position = state.velocity = Vector::Zero(7);
+        return state;
+      },
+      "driver");
   const Diagnosis diagnosis = doctor("--perception", home);
   for (const char* words : {"source side was measured", "source top is heard, and is not in", "source side of",
                             "the base of jido is 0.200 m and 0.0 degrees from"})

@@ -79,9 +79,9 @@ class FirstDayOf : public testing::Test {
     ASSERT_TRUE(day.wait([&] {
       return stands() && day.happened(event + " off") && day.trouble().find("acknowledge") != std::string::npos;
     })) << day.where();
-    EXPECT_EQ(day.robot_state().mode, DriveMode::protective_stop);
+    EXPECT_EQ(day.robot_state().mode, DriveMode::braked);
     day.give_go(false);
-    EXPECT_TRUE(day.stays([&] { return stands() && day.robot_state().mode == DriveMode::protective_stop; }, 100)) << day.where();
+    EXPECT_TRUE(day.stays([&] { return stands() && day.robot_state().mode == DriveMode::braked; }, 100)) << day.where();
 
     day.give_go(true);
     ASSERT_TRUE(day.wait([&] { return day.robot_state().mode == DriveMode::enabled && day.status().mode == Mode::hold; })) << day.where();

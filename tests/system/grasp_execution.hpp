@@ -60,7 +60,7 @@ class Execution {
         arm_(robot.require_group("arm")),
         hand_(robot.require_group("hand")),
         grasp_(grasp),
-        world_(robot, library_, scenario(model, x, y, yaw), settings, 1) {
+        world_(robot, library_, scenario(model, x, y, yaw), unchecked(settings), 1) {
     command_.robot = robot.name();
     command_.position = opened(grasp.approach_joints);
     command_.velocity = command_.acceleration = command_.effort = Vector::Zero(robot.dof());
@@ -110,6 +110,12 @@ class Execution {
     v->set_x(to.x());
     v->set_y(to.y());
     v->set_z(to.z());
+  }
+
+  /// Returns the settings with a robot side that follows whatever it is sent: the paths here are interpolated, without accelerations.
+  static sim::SimSettings unchecked(sim::SimSettings settings) {
+    settings.robot_side.period = 0.0;
+    return settings;
   }
 
   config::Scenario scenario(const std::string& model, double x, double y, double yaw) const {

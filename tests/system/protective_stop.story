@@ -1,4 +1,4 @@
-# Somebody presses the robot's stop: the arm stands, and moves again only when the robot is enabled and a person has said so.
+# Somebody presses the robot's stop: the arm stands, also when the robot is enabled again and the supervisor dies, until a person resumes.
 start give_mug seed 25
 wait ready within 15s
 task give mug
@@ -12,7 +12,13 @@ expect cause drive_not_enabled within 500ms
 listen for 1s
 expect rest
 sim robot_enable
-acknowledge
+expect cause awaits_person within 1s
+kill -9 supervisor
+expect back supervisor within 3s
+listen for 2s
+expect rest
+expect cause awaits_person
+resume
 expect mode normal within 5s
 expect task done within 70s
 expect handover

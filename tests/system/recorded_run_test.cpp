@@ -110,7 +110,7 @@ timeout: 40
   EXPECT_LT((head - recorded.head).norm(), 0.05) << head.transpose() << " against " << recorded.head.transpose();
   const Outcome second = shell(kHandsel + " replay " + file + domain);
   EXPECT_EQ(second.exit_code, 2);
-  EXPECT_THAT(second.err, HasSubstr("replay writes handsel/"));
+  EXPECT_THAT(second.err, HasSubstr("replay sim writes handsel/"));
 }
 
 }  // namespace

@@ -49,10 +49,21 @@ set_tests_properties(clear_table PROPERTIES TIMEOUT 600)
 handsel_test(place_reached SOURCES ${CMAKE_CURRENT_LIST_DIR}/place_reached_test.cpp LINK handsel_lockstep LABEL system)
 set_tests_properties(place_reached PROPERTIES TIMEOUT 1800)
 
+# Latches over the death of processes: a few every time, HANDSEL_RUNS=5 for all.
+handsel_test(latches SOURCES ${CMAKE_CURRENT_LIST_DIR}/latches_test.cpp LINK handsel_command LABEL fault)
+target_compile_definitions(test_latches PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_latches product)
+set_tests_properties(latches PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
+
 # Long: trials of people who differ over real processes, and deaths at random.
 handsel_test(exchanges SOURCES ${CMAKE_CURRENT_LIST_DIR}/exchanges_test.cpp LINK handsel_command LABEL full)
 add_dependencies(test_exchanges product)
 set_tests_properties(exchanges PROPERTIES RUN_SERIAL TRUE TIMEOUT 14400)
+
+handsel_test(supervised_life SOURCES ${CMAKE_CURRENT_LIST_DIR}/supervised_life_test.cpp LINK handsel_command LABEL system)
+target_compile_definitions(test_supervised_life PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")
+add_dependencies(test_supervised_life product)
+set_tests_properties(supervised_life PROPERTIES RUN_SERIAL TRUE TIMEOUT 240)
 
 handsel_test(eval SOURCES ${CMAKE_CURRENT_LIST_DIR}/eval_test.cpp LINK nlohmann_json::nlohmann_json GTest::gmock LABEL system)
 target_compile_definitions(test_eval PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:handsel>")

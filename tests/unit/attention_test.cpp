@@ -484,6 +484,9 @@ TEST(AttentionSettingsFile, what_a_user_adds_is_refused_where_it_is_wrong) {
               testing::AllOf(HasSubstr("attention.txtpb:" + line + ":released_when"), HasSubstr("mind -> other -> mind")));
   EXPECT_THAT(added(begin + "name: \"mind\" released_when: \"behaviour nobody\" input: \"clearance\" " + clock + "}"),
               HasSubstr("\"nobody\", which is not described"));
+  std::string many;
+  for (int i = 0; i < 17; ++i) many += begin + "name: \"mind" + std::to_string(i) + "\" input: \"hand_distance\" " + clock + "}\n";
+  EXPECT_THAT(added(many), HasSubstr("at most 16 are allowed"));
   EXPECT_THAT(added("works {\nname: \"weather\" p_min: 1 p_max: 2 serves: \"avoid\" }"),
               HasSubstr("attention.txtpb:" + line + ":name: \"weather\" is none of people, objects, forecast, cost_map, replan"));
   EXPECT_THAT(added("works {\nname: \"people\" p_min: 3 p_max: 2 serves: \"avoid\" }"),

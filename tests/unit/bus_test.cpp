@@ -56,7 +56,7 @@ using Stages = testing::Types<LocalStage, DdsStage>;
 TYPED_TEST_SUITE(BusRules, Stages);
 
 TYPED_TEST(BusRules, CarriesAMessageWithStampAndReceipt) {
-  Bus& a = this->stage.add("a");
+  Bus& a = this->stage.add("sim");
   Bus& b = this->stage.add("b");
   auto publisher = a.advertise<RobotState>();
   RobotState got;
@@ -77,11 +77,11 @@ TYPED_TEST(BusRules, CarriesAMessageWithStampAndReceipt) {
 }
 
 TYPED_TEST(BusRules, RefusesToSendAMalformedMessageAndSaysSoInItsHealth) {
-  Bus& a = this->stage.add("a");
+  Bus& a = this->stage.add("sim");
   Bus& b = this->stage.add("b");
   std::string reason;
   b.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
-    if (m.component == "a") reason = m.reason;
+    if (m.component == "sim") reason = m.reason;
   });
   auto publisher = a.advertise<RobotState>();
   RobotState bad = robot_state(1);
@@ -91,7 +91,7 @@ TYPED_TEST(BusRules, RefusesToSendAMalformedMessageAndSaysSoInItsHealth) {
 }
 
 TYPED_TEST(BusRules, StateKeepsTheLastSampleAndCommandsTheLastEight) {
-  Bus& a = this->stage.add("a");
+  Bus& a = this->stage.add("manipulation_planner");
   Bus& b = this->stage.add("b");
   auto facts = a.advertise<Facts>();
   auto hands = a.advertise<HandCommand>();
@@ -119,7 +119,7 @@ TYPED_TEST(BusRules, StateKeepsTheLastSampleAndCommandsTheLastEight) {
 }
 
 TYPED_TEST(BusRules, LateJoinerGetsStateButNoOldCommand) {
-  Bus& a = this->stage.add("a");
+  Bus& a = this->stage.add("supervisor manipulation_planner");
   auto go = a.advertise<Go>();
   auto hands = a.advertise<HandCommand>();
   Go permission;
@@ -142,58 +142,126 @@ TYPED_TEST(BusRules, LateJoinerGetsStateButNoOldCommand) {
 TYPED_TEST(BusRules, DeathOfAWriterIsSeenAsLostWriterAndMissedDeadline) {
   this->stage.add("a");
   Bus& b = this->stage.add("b");
-  Bus& c = this->stage.add("c");
+  Bus& c = this->stage.add("sim");
   auto publisher = c.advertise<RobotState>();
   const auto& status = b.subscribe<RobotState>([](const RobotState&, const Receipt&) {});
   c.every(std::chrono::milliseconds(5), [&](TimePoint) { publisher->publish(robot_state(1)); });
   ASSERT_TRUE(this->stage.until([&] { return status.received > 20; }));
   const std::uint64_t misses = status.deadline_misses;
-  this->stage.kill("c");
+  this->stage.kill("sim");
   EXPECT_TRUE(this->stage.until([&] { return status.writers == 0 && status.writers_lost == 1; }));
   EXPECT_TRUE(this->stage.until([&] { return status.deadline_misses == misses + 1; }));
   EXPECT_GT(b.lag<RobotState>(), std::chrono::milliseconds(20));
 }
 
-TYPED_TEST(BusRules, StrongestLivingWriterOfASetpointIsHeard) {
-  this->stage.add("a");
+TYPED_TEST(BusRules, the_first_writer_of_a_topic_stays_the_only_one_and_another_follows_when_it_is_gone) {
   Bus& b = this->stage.add("b");
-  Bus& leader = this->stage.add("leader");
-  Bus& spare = this->stage.add("spare");
-  auto strong = leader.advertise<JointCommand>(10);
-  auto weak = spare.advertise<JointCommand>(1);
-  std::uint64_t from_leader = 0, from_spare = 0, since_both = 0;
-  const auto& status = b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) {
-    ++(m.sequence == 10 ? from_leader : from_spare);
-    if (from_leader > 0 && m.sequence == 1) ++since_both;
-  });
+  Bus& first = this->stage.add("trajectory_controller");
+  auto one = first.advertise<JointCommand>();
+  std::uint64_t from_first = 0, from_spare = 0;
+  const auto& status =
+      b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) { ++(m.sequence == 1 ? from_first : from_spare); });
+  ASSERT_TRUE(this->matched(one, status));
+  Bus& spare = this->stage.add("trajectory_controller spare");
+  auto two = spare.advertise<JointCommand>(10);
   ASSERT_TRUE(this->stage.until([&] { return status.writers == 2; }));
-  leader.every(std::chrono::milliseconds(4), [&](TimePoint) { strong->publish(joint_command(10)); });
-  spare.every(std::chrono::milliseconds(4), [&](TimePoint) { weak->publish(joint_command(1)); });
-  ASSERT_TRUE(this->stage.until([&] { return from_leader >= 30; }));
-  EXPECT_LE(since_both, 2u);
-  const std::uint64_t before = from_spare;
-  this->stage.kill("leader");
-  EXPECT_TRUE(this->stage.until([&] { return from_spare > before + 10; }));
+  spare.every(std::chrono::milliseconds(1), [&](TimePoint) { two->publish(joint_command(2)); });
+  ASSERT_TRUE(this->stage.until([&] { return status.refused > 30; }));
+  EXPECT_EQ(from_spare, 0u) << "the first one lives, also while it is silent";
+  first.every(std::chrono::milliseconds(4), [&](TimePoint) { one->publish(joint_command(1)); });
+  EXPECT_TRUE(this->stage.until([&] { return from_first > 30; }));
+  EXPECT_EQ(from_spare, 0u);
+  EXPECT_TRUE(this->stage.until([&] { return status.second_writer.rfind("trajectory_controller spare", 0) == 0; })) << status.second_writer;
+  this->stage.kill("trajectory_controller");
+  EXPECT_TRUE(this->stage.until([&] { return from_spare > 10; }));
+  EXPECT_TRUE(this->stage.until([&] { return status.second_writer.empty(); })) << status.second_writer;
 }
 
-TYPED_TEST(BusRules, SpareThatWaitedTakesOverFromASilentLivingOwner) {
+TYPED_TEST(BusRules, a_component_that_the_table_does_not_name_as_a_writer_is_refused_and_named) {
   Bus& b = this->stage.add("b");
-  Bus& leader = this->stage.add("leader");
-  Bus& spare = this->stage.add("spare");
-  auto strong = leader.advertise<JointCommand>(10);
-  auto weak = spare.advertise<JointCommand>(1);
-  std::vector<std::uint64_t> heard;
-  const auto& status = b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) { heard.push_back(m.sequence); });
-  ASSERT_TRUE(this->stage.until([&] { return status.writers == 2; }));
-  strong->publish(joint_command(10));
-  ASSERT_TRUE(this->stage.until([&] { return !heard.empty(); }));
-  this->stage.pass(0.1);
-  spare.every(std::chrono::milliseconds(4), [&](TimePoint) { weak->publish(joint_command(1)); });
-  EXPECT_TRUE(this->stage.until([&] { return heard.back() == 1; }));
+  Bus& stranger = this->stage.add("stranger");
+  auto theirs = stranger.advertise<JointCommand>();
+  std::uint64_t accepted = 0;
+  const auto& status = b.subscribe<JointCommand>([&](const JointCommand& m, const Receipt&) {
+    EXPECT_EQ(m.sequence, 1u);
+    ++accepted;
+  });
+  ComponentHealth health;
+  Bus& observer = this->stage.add("observer");
+  observer.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
+    if (m.component == "b") health = m;
+  });
+  stranger.every(std::chrono::milliseconds(1), [&](TimePoint) { theirs->publish(joint_command(9)); });
+  ASSERT_TRUE(this->stage.until([&] { return status.refused > 20; }));
+  EXPECT_EQ(accepted, 0u);
+  EXPECT_TRUE(this->stage.until([&] { return health.reason.rfind("second_writer: stranger", 0) == 0; }, 1.0)) << health.reason;
+  EXPECT_NE(health.reason.find("writes handsel/joint_command too"), std::string::npos) << health.reason;
+  EXPECT_EQ(health.state, HealthState::degraded);
+  ASSERT_EQ(health.topics.size(), 1u);
+  EXPECT_GT(health.topics[0].refused, 0u);
+  EXPECT_EQ(health.topics[0].second_writer.rfind("stranger", 0), 0u);
+  Bus& rightful = this->stage.add("trajectory_controller");
+  auto ours = rightful.advertise<JointCommand>();
+  rightful.every(std::chrono::milliseconds(4), [&](TimePoint) { ours->publish(joint_command(1)); });
+  EXPECT_TRUE(this->stage.until([&] { return accepted > 20; })) << "the stranger does not hide the rightful writer";
+  this->stage.kill("stranger");
+  EXPECT_TRUE(this->stage.until([&] { return health.reason.empty(); }, 1.0)) << health.reason;
+  EXPECT_EQ(health.state, HealthState::ok);
+}
+
+TYPED_TEST(BusRules, a_second_writer_does_not_push_samples_of_the_first_out_of_a_waiting_readers_queue) {
+  Bus& b = this->stage.add("b");
+  Bus& first = this->stage.add("supervisor");
+  auto ours = first.advertise<Go>();
+  std::vector<std::uint64_t> epochs;
+  const auto& status = b.subscribe<Go>([&](const Go& m, const Receipt&) { epochs.push_back(m.epoch); });
+  ASSERT_TRUE(this->matched(ours, status));
+  Bus& other = this->stage.add("supervisor twin");
+  auto theirs = other.advertise<Go>();
+  ASSERT_TRUE(this->stage.until([&] { return status.writers == 2 && !status.second_writer.empty(); }));
+  this->stage.pause("b");
+  Go go;
+  go.epoch = 1;
+  ASSERT_TRUE(ours->publish(go));
+  go.epoch = 666;
+  this->stage.pass(0.02);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(theirs->publish(go));
+  this->stage.pass(0.05);
+  this->stage.resume("b");
+  ASSERT_TRUE(this->stage.until([&] { return !epochs.empty(); }));
+  EXPECT_EQ(epochs, std::vector<std::uint64_t>{1});
+}
+
+TYPED_TEST(BusRules, the_ros2_lane_commands_a_trajectory_while_it_has_a_writer_and_is_no_second_one) {
+  Bus& b = this->stage.add("b");
+  Bus& planner = this->stage.add("manipulation_planner");
+  Bus& lane = this->stage.add("ros2_lane");
+  auto usual = planner.advertise<TrajectoryCommand>();
+  std::uint64_t planned = 0, asked = 0;
+  const auto& status = b.subscribe<TrajectoryCommand>([&](const TrajectoryCommand& m, const Receipt&) { ++(m.id == 1 ? planned : asked); });
+  ASSERT_TRUE(this->matched(usual, status));
+  const auto command = [](std::uint64_t id) {
+    TrajectoryCommand m;
+    m.robot = "jido";
+    m.id = id;
+    m.axes = {0};
+    m.trajectory.axes.resize(1);
+    return m;
+  };
+  auto lent = lane.advertise<TrajectoryCommand>();
+  ASSERT_TRUE(this->matched(lent, status, 2));
+  ASSERT_TRUE(lent->publish(command(2)));
+  EXPECT_TRUE(this->stage.until([&] { return asked == 1; }));
+  EXPECT_EQ(status.second_writer, "");
+  lent.reset();
+  ASSERT_TRUE(this->stage.until([&] { return status.writers == 1; }));
+  this->stage.pass(0.05);
+  ASSERT_TRUE(usual->publish(command(1)));
+  EXPECT_TRUE(this->stage.until([&] { return planned == 1; }));
 }
 
 TYPED_TEST(BusRules, PolledSubscriptionGetsTheNewestOncePerPeriod) {
-  Bus& a = this->stage.add("a");
+  Bus& a = this->stage.add("sim");
   Bus& b = this->stage.add("b");
   auto publisher = a.advertise<RobotState>();
   std::uint64_t sequence = 0, last = 0;
@@ -241,7 +309,7 @@ TYPED_TEST(BusRules, JobsRunInTurnAndReportBackEvenWhenCancelled) {
 
 TYPED_TEST(BusRules, HealthTellsRatesAgesAndDegradation) {
   Bus& a = this->stage.add("a");
-  Bus& b = this->stage.add("b");
+  Bus& b = this->stage.add("spark");
   ComponentHealth health;
   b.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
     if (m.component == "a") health = m;
@@ -316,7 +384,7 @@ TEST_F(Ages, FollowClocksThatDriftApart) {
 TEST(LocalNetwork, SameSeedSameHistory) {
   const auto history = [](std::uint64_t seed) {
     LocalNetwork network(seed);
-    Bus& a = network.add("a");
+    Bus& a = network.add("sim");
     Bus& b = network.add("b");
     auto publisher = a.advertise<RobotState>();
     std::vector<std::int64_t> arrivals;

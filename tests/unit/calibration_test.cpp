@@ -44,7 +44,7 @@ TEST_F(CalibrationFile, each_mistake_is_named_with_its_line) {
   EXPECT_THAT(mistake(camera + "T_world_camera { rotation: [1, 0, 0] } }"), HasSubstr("a rotation of 3 numbers; it must be nine"));
   EXPECT_THAT(mistake(camera + "T_world_camera { position { x: 2100 } } }"),
               HasSubstr("stands 2100 m from the world's origin; positions are in metres"));
-  EXPECT_THAT(mistake(camera + "T_world_camera { position { x: nan } } }"), HasSubstr("stands nan m"));
+  EXPECT_THAT(mistake(camera + "T_world_camera { position { x: nan } } }"), HasSubstr(":x: is nan, must be a number in"));
   EXPECT_THAT(mistake(camera + "}"), HasSubstr("T_world_camera"));
   EXPECT_THAT(mistake(camera + "T_world_camera {} } sources { source: \"kinect\" }"), HasSubstr("is there twice"));
   EXPECT_THAT(mistake(camera + "T_world_camera {} measured: \"2026-13-01\" }"), HasSubstr("2026-13-01, which is no date"));

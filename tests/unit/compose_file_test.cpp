@@ -81,7 +81,7 @@ TEST(ComposeFile, faults_are_seen) {
   EXPECT_THAT(broken("handsel, health, spark", "handsel, health, sim"), testing::Contains(HasSubstr("spark lacks")));
   EXPECT_THAT(broken("[handsel_costmap,", "[handsel_spark,"), testing::Contains(HasSubstr("costmap lacks")));
   EXPECT_THAT(broken("      <<: *environment\n", "      HANDSEL_DOMAIN: 7\n"),
-              testing::Contains("bridge says HANDSEL_DOMAIN for itself alone"));
+              testing::Contains("supervisor says HANDSEL_DOMAIN for itself alone"));
   EXPECT_THAT(broken("read_only: true", "read_only: false"), testing::Contains(HasSubstr("read_only")));
 }
 

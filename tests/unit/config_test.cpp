@@ -1,10 +1,29 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/config/attention.pb.h"
+#include "common/config/bridge.pb.h"
+#include "common/config/calibration.pb.h"
+#include "common/config/collision_checker.pb.h"
+#include "common/config/cost.pb.h"
+#include "common/config/costmap.pb.h"
+#include "common/config/driver.pb.h"
+#include "common/config/grasp_planner.pb.h"
+#include "common/config/located.hpp"
+#include "common/config/manipulation_planner.pb.h"
+#include "common/config/path_planner.pb.h"
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
+#include "common/config/ros2_lane.pb.h"
 #include "common/config/scenario.pb.h"
+#include "common/config/sim.pb.h"
+#include "common/config/spark.pb.h"
+#include "common/config/supervisor.pb.h"
+#include "common/config/task_domain.pb.h"
+#include "common/config/text_check.hpp"
+#include "common/config/trajectory_controller.pb.h"
+#include "common/config/trajectory_planner.pb.h"
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/task.hpp"
@@ -48,6 +67,119 @@ TEST(TextProto, AUrdfInItsPlaceIsCalledOne) {
 TEST(TextProto, AFileThatIsNotThereIsMissing) {
   config::RobotDescription out;
   EXPECT_THAT(message_of<MissingError>([&] { load_text_proto("/nowhere/x.txtpb", out); }), HasSubstr("/nowhere/x.txtpb"));
+}
+
+using google::protobuf::Descriptor;
+using google::protobuf::FieldDescriptor;
+
+/// Everything that is read from a file in Protobuf text.
+std::vector<const Descriptor*> texts() {
+  using namespace config;
+  return {AttentionSettings::descriptor(),
+          BridgeSettings::descriptor(),
+          Calibration::descriptor(),
+          CollisionCheckerSettings::descriptor(),
+          HumanCostSettings::descriptor(),
+          CostmapSettings::descriptor(),
+          PositionArmSettings::descriptor(),
+          ReflexArmSettings::descriptor(),
+          GraspPlannerSettings::descriptor(),
+          ManipulationPlannerSettings::descriptor(),
+          PathPlannerSettings::descriptor(),
+          PeopleProfiles::descriptor(),
+          RobotDescription::descriptor(),
+          HandDescription::descriptor(),
+          ObjectDescription::descriptor(),
+          Ros2LaneSettings::descriptor(),
+          Scenario::descriptor(),
+          SimSettings::descriptor(),
+          SparkSettings::descriptor(),
+          SupervisorSettings::descriptor(),
+          TaskDomain::descriptor(),
+          TrajectoryControllerSettings::descriptor(),
+          TrajectoryPlannerSettings::descriptor()};
+}
+
+struct NumericKey {
+  const Descriptor* type;
+  std::string before, key, after;  ///< of a text on two lines that gives the key a value; the key stands on the second
+};
+
+void add_numeric_keys(const Descriptor* root, const Descriptor* type, const std::string& before, const std::string& after,
+                      std::vector<NumericKey>& out) {
+  for (int i = 0; i < type->field_count(); ++i) {
+    const FieldDescriptor& field = *type->field(i);
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE)
+      add_numeric_keys(root, field.message_type(), before + field.name() + " { ", " }" + after, out);
+    else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE)
+      out.push_back({root, before, field.name(), after});
+  }
+}
+
+std::vector<NumericKey> numeric_keys() {
+  std::vector<NumericKey> out;
+  for (const Descriptor* type : texts()) add_numeric_keys(type, type, "# a comment\n", "\n", out);
+  return out;
+}
+
+TEST(TextProto, every_numeric_key_of_every_file_refuses_nan_inf_and_huge_values) {
+  auto* const factory = google::protobuf::MessageFactory::generated_factory();
+  const std::vector<NumericKey> keys = numeric_keys();
+  EXPECT_GT(keys.size(), 400u);
+  for (const NumericKey& key : keys) {
+    for (const char* value : {"nan", "-nan", "inf", "-inf", "1e400", "-1e400", "1e300", "-2e6"}) {
+      const std::string text = key.before + key.key + ": " + value + key.after;
+      const std::unique_ptr<google::protobuf::Message> out(factory->GetPrototype(key.type)->New());
+      const std::string message = message_of<ConfigError>([&] {
+        google::protobuf::TextFormat::ParseInfoTree places;
+        parse_text_proto(text, "s.txtpb", *out, places);
+      });
+      EXPECT_THAT(message, HasSubstr("s.txtpb:2:" + key.key + ": is ")) << text;
+      EXPECT_THAT(message, HasSubstr(", must be a number in ")) << text;
+    }
+  }
+}
+
+TEST(TextProto, every_range_is_of_a_field_that_exists_and_the_ranges_are_sorted) {
+  const auto ranges = number_ranges();
+  for (const NumberRange& range : ranges) {
+    const std::string name = range.field, message = name.substr(0, name.find('.')), field = name.substr(name.find('.') + 1);
+    if (message.ends_with("Entry")) continue;  // of a map
+    const Descriptor* type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName("handsel.config." + message);
+    ASSERT_NE(type, nullptr) << name;
+    EXPECT_NE(type->FindFieldByName(field), nullptr) << name;
+    EXPECT_LT(range.low, range.high) << name;
+  }
+  EXPECT_TRUE(std::is_sorted(ranges.begin(), ranges.end(),
+                             [](const NumberRange& a, const NumberRange& b) { return std::string(a.field) < b.field; }));
+}
+
+TEST(TextProto, a_number_out_of_its_range_is_refused_and_the_range_is_named) {
+  const TemporaryFolder folder;
+  config::SparkSettings spark;
+  EXPECT_THAT(
+      message_of<ConfigError>([&] { load_text_proto(folder.write("spark.txtpb", "human_period: 0.05\npublish_period: 0\n"), spark); }),
+      HasSubstr("spark.txtpb:2:publish_period: is 0, must be a number in (0, 10]"));
+  EXPECT_THAT(message_of<ConfigError>([&] { load_text_proto(folder.write("spark.txtpb", "stretched: -0.1\n"), spark); }),
+              HasSubstr("spark.txtpb:1:stretched: is -0.1, must be a number in [0, 2]"));
+  config::SupervisorSettings supervisor;
+  EXPECT_THAT(message_of<ConfigError>([&] { load_text_proto(folder.write("s.txtpb", "plan_nodes: 0\n"), supervisor); }),
+              HasSubstr("s.txtpb:1:plan_nodes: is 0, must be a number in [1, 1e+06]"));
+  EXPECT_THAT(
+      message_of<ConfigError>([&] { load_text_proto(folder.write("s.txtpb", "payload { key: \"jido\" value: nan }\n"), supervisor); }),
+      HasSubstr("s.txtpb:1:value: is nan, must be a number in [0, 1000]"));
+  load_text_proto(folder.write("spark.txtpb", "grip_force: -0\n"), spark);  // minus zero is zero
+}
+
+TEST(TextProto, names_that_are_no_text_and_keys_given_twice_are_refused) {
+  EXPECT_THAT(refusal("name: \"\\377\\376\"\n"), HasSubstr("r.txtpb:1:name: is no text in UTF-8"));
+  EXPECT_THAT(refusal("name: \"a\\000b\"\n"), HasSubstr("r.txtpb:1:name: is no text in UTF-8"));
+  EXPECT_THAT(refusal("name: \"" + std::string(5000, 'a') + "\"\n"), HasSubstr("is 5000 bytes long, must be at most 4096"));
+  EXPECT_THAT(refusal("rest { key: \"a\" value: 1 }\nrest { key: \"a\" value: 2 }\n"),
+              HasSubstr("r.txtpb:2:rest: has the key \"a\" twice"));
+  EXPECT_EQ(refusal("name: \"Zo\303\253\"\n"), "no error");
+  EXPECT_LT(refusal(std::string(1 << 20, 'x') + ": 1\n").size(), 500u);
+  EXPECT_THAT(refusal(std::string(5u << 20, ' ')), HasSubstr("r.txtpb has 5 MB; it may have 4 MB"));
 }
 
 TEST(People, ProfilesAreReadAndThoseThatCannotBeAreRefused) {

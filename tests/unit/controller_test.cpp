@@ -333,7 +333,7 @@ TEST(Controller, recoils_along_the_path_when_advised_and_goes_on_later) {
 
 TEST(Controller, a_person_standing_by_does_not_slow_and_one_in_the_way_does) {
   ControllerBench b;
-  b.people.people = {b.standing(1.9, 0.0)};
+  b.people.people = {b.standing(2.6, 0.0)};
   b.start();
   ASSERT_EQ(b.go_to(ControllerBench::arm(0.8, 0.0, 0.0), 1), "");
   b.run(1.0);

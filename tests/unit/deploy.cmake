@@ -1,4 +1,8 @@
 handsel_test(launcher SOURCES ${CMAKE_CURRENT_LIST_DIR}/launcher_test.cpp LINK handsel_command LABEL unit)
+handsel_test(kept_state SOURCES ${CMAKE_CURRENT_LIST_DIR}/kept_state_test.cpp LINK handsel_command LABEL unit)
+handsel_test(liveness SOURCES ${CMAKE_CURRENT_LIST_DIR}/liveness_test.cpp LINK handsel_command LABEL unit)
+handsel_test(process_watch SOURCES ${CMAKE_CURRENT_LIST_DIR}/process_watch_test.cpp LINK handsel_command LABEL unit)
+set_tests_properties(process_watch PROPERTIES RUN_SERIAL TRUE)
 handsel_test(story SOURCES ${CMAKE_CURRENT_LIST_DIR}/story_test.cpp LINK handsel_command LABEL unit)
 handsel_test(includes SOURCES ${CMAKE_CURRENT_LIST_DIR}/includes_test.cpp LABEL unit)
 handsel_test(docs SOURCES ${CMAKE_CURRENT_LIST_DIR}/docs_test.cpp LABEL unit)

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <random>
 
 #include "common/base/errors.hpp"
@@ -73,6 +75,54 @@ TEST(Mesh, OddInputIsNamedAndOpenOnesAreRead) {
   EXPECT_THAT(refusal("v 0 0 0\nv 1e-6 0 0\nv 0 1e-6 0\nf 1 2 3\n"), HasSubstr("give it a scale"));
   const auto millimetres = folder.write("mm.obj", "v 0 0 0\nv 1200 0 0\nv 0 800 0\nf 1 2 3\n");
   EXPECT_EQ(load_mesh(millimetres, Vector3::Constant(0.001)).triangles.size(), 1u) << "open, and in millimetres";
+}
+
+double area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (const auto& t : mesh.triangles)
+    sum += (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).norm() / 2;
+  return sum;
+}
+
+TEST(Mesh, polygons_with_reflex_corners_are_split_inside_their_outline) {
+  const TemporaryFolder folder;
+  const auto star = [](int corners, double inner, bool reversed) {
+    std::string text, face = "f";
+    for (int i = 0; i < corners; ++i) {
+      const double r = i % 2 == 0 ? 1 : inner, angle = 2 * M_PI * i / corners;
+      text += "v " + std::to_string(r * std::cos(angle)) + " 0.5 " + std::to_string(r * std::sin(angle)) + "\n";
+      face += " " + std::to_string(reversed ? corners - i : i + 1);
+    }
+    return text + face + "\n";
+  };
+  for (const bool reversed : {false, true})
+    for (const int corners : {6, 10, 40, 200}) {
+      const TriangleMesh mesh = load_mesh(folder.write("star.obj", star(corners, 0.4, reversed)));
+      EXPECT_EQ(mesh.triangles.size(), static_cast<std::size_t>(corners - 2));
+      EXPECT_NEAR(area(mesh), corners * 0.5 * 0.4 * std::sin(2 * M_PI / corners), 1e-4) << corners;
+      for (const auto& t : mesh.triangles) {
+        const double up = (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]).y();
+        EXPECT_GT(reversed ? up : -up, 0) << "each triangle faces as the polygon does";
+      }
+    }
+  const TriangleMesh arrow = load_mesh(folder.write("arrow.obj", "v 0 0 0\nv 1 1 0\nv 0 2 0\nv 0.5 1 0\nf 1 2 3 4\n"));
+  EXPECT_NEAR(area(arrow), 0.5, 1e-6);
+}
+
+TEST(Mesh, a_file_that_the_mesh_names_is_not_opened) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path() / "pipe");
+  const std::filesystem::path pipe = folder.path() / "pipe" / "m.mtl";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // opening it for reading waits for ever
+  const auto mesh = load_mesh(folder.write("t.obj", "mtllib " + pipe.string() + "\n" + kTetrahedron + "usemtl red\nf 1 2 3\n"));
+  EXPECT_EQ(mesh.triangles.size(), 5u);
+}
+
+TEST(Mesh, only_files_whose_format_is_checked_are_read) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.write("t.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")); }),
+              HasSubstr("its name must end in .obj, .stl, .ply or .dae"));
+  EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.path()); }), HasSubstr("is not a file"));
 }
 
 TEST(Mesh, RefusesMoreThanTheCap) {

@@ -4,11 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <set>
 
 #include "components/grasp_planner/grasp_book.hpp"
+#include "components/grasp_planner/grasp_fit.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace handsel::grasp_planner {
@@ -92,6 +94,25 @@ TEST(GraspStore, finds_the_longest_list_that_is_not_too_long_and_passes_over_dam
   EXPECT_FALSE(store.load("hand", "object", 5, 99).has_value());
   std::filesystem::resize_file(store.file("hand", "object", 5, 300), 1000);
   EXPECT_EQ(store.load("hand", "object", 5, 899)->frames, 100U);
+}
+
+TEST(GraspStore, a_list_that_names_joints_fingers_or_triangles_that_are_not_there_does_not_fit) {
+  const HandModel hand = HandModel::load(kDeploy / "hands/sah/sah.txtpb");
+  const ObjectModel box = ObjectModel::load(kDeploy / "objects/box/box.txtpb");
+  const auto with = [&](const auto& change) {
+    GraspList list = list_of(1);
+    for (ListedGrasp& g : list.grasps)
+      g.grasp.hand_joints = g.grasp.pregrasp_joints = g.grasp.hand_effort = Vector::Zero(hand.model().dof());
+    change(list.grasps[7]);
+    return fits(list, hand, box);
+  };
+  EXPECT_TRUE(with([](ListedGrasp&) {}));
+  EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.hand_joints.conservativeResize(3); }));
+  EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.hand_effort[2] = std::nan(""); }));
+  EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.contacts[1].finger = 4; }));
+  EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.contacts[1].triangle = 99999999; }));
+  EXPECT_FALSE(with([](ListedGrasp& g) { g.grasp.T_object_hand.translation().x() = std::numeric_limits<double>::infinity(); }));
+  EXPECT_FALSE(with([](ListedGrasp& g) { g.room = std::nan(""); }));
 }
 
 TEST(GraspBook, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_same_as_a_list_made_at_once) {

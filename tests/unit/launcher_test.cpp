@@ -107,11 +107,57 @@ TEST_F(LauncherTest, bad_input_is_a_failure_with_the_last_line_it_said) {
   EXPECT_EQ(launcher.failure()->reason, "box0: wrong: line 3");
 }
 
-TEST_F(LauncherTest, a_process_that_keeps_dying_is_given_up) {
-  Launcher launcher(shell({"exit 1"}));
-  ASSERT_TRUE(launcher.failure(kPatience).has_value());
-  EXPECT_EQ(launcher.failure()->exit_code, 3);
-  EXPECT_NE(launcher.failure()->reason.find("keeps dying"), std::string::npos) << launcher.failure()->reason;
+TEST_F(LauncherTest, a_process_that_keeps_dying_is_started_again_for_ever_after_growing_waits) {
+  LauncherOptions options = shell({reporting("echo 'out of luck' >&2; exit 1")});
+  options.backoff = {.first = from_seconds(0.02), .longest = from_seconds(0.3), .stable_after = from_seconds(30)};
+  std::vector<std::string> events;  // read only after the launcher has ended
+  options.on_event = [&](const std::string& sentence) { events.push_back(sentence); };
+  std::vector<double> waits;
+  {
+    Launcher launcher(std::move(options));
+    ASSERT_GT(reported(), 0);
+    TimePoint before = monotonic_now();
+    for (int k = 0; k < 8; ++k) {
+      ASSERT_GT(reported(), 0) << "start " << k;
+      waits.push_back(to_seconds(monotonic_now() - before));
+      before = monotonic_now();
+    }
+    EXPECT_FALSE(launcher.failure());
+    EXPECT_GE(launcher.processes()[0].restarts, 8);
+    EXPECT_EQ(launcher.processes()[0].why, "ended with exit code 1 (out of luck)");
+  }
+  EXPECT_GE(waits[3], 0.16);
+  for (const double wait : waits) EXPECT_LT(wait, 1.0);
+  ASSERT_GE(events.size(), 3u);
+  EXPECT_EQ(events[2], "box0 ended with exit code 1 (out of luck); restart 3 in 0.1 s");
+}
+
+TEST_F(LauncherTest, once_everything_was_up_no_death_is_a_failure) {
+  for (const int code : {2, 3}) {
+    const fs::path second = folder / ("second" + std::to_string(code));
+    Launcher launcher(shell({"if [ -e " + second.string() + " ]; then " + reporting("exit " + std::to_string(code)) + "; fi; touch " +
+                             second.string() + "; " + reporting("exec sleep 1000")}));
+    const pid_t first = reported();
+    ASSERT_GT(first, 0);
+    launcher.set_ready();
+    kill(first, SIGKILL);
+    for (int k = 0; k < 3; ++k) ASSERT_GT(reported(), 0) << "tried again";
+    EXPECT_FALSE(launcher.failure());
+  }
+}
+
+TEST_F(LauncherTest, a_hung_process_is_killed_and_started_again) {
+  Launcher launcher(shell({reporting("exec sleep 1000")}));
+  const pid_t first = reported();
+  ASSERT_GT(first, 0);
+  kill(first, SIGSTOP);
+  launcher.replace("box0", first + 1, "was hung");
+  launcher.replace("box0", first, "was hung");
+  const pid_t second = reported();
+  ASSERT_GT(second, 0);
+  EXPECT_NE(second, first);
+  EXPECT_TRUE(is_gone(first));
+  EXPECT_EQ(launcher.processes()[0].why, "was hung, killed");
 }
 
 TEST_F(LauncherTest, children_die_with_a_launcher_that_was_killed) {

@@ -102,6 +102,65 @@ TEST(BadUrdf, Limits) {
   EXPECT_THAT(urdf_refusal(with_limit("<limit lower=\"nan\" upper=\"1\" velocity=\"1\" effort=\"1\"/>")), HasSubstr("nan"));
 }
 
+TEST(BadUrdf, numbers_that_are_not_finite_name_their_line_and_attribute) {
+  const std::string good = urdf("");
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return urdf_refusal(text);
+  };
+  EXPECT_THAT(with("<mass value=\"1\"/>", "<mass value=\"inf\"/>"),
+              HasSubstr("r.urdf:3: value of <mass> is \"inf\", must be a finite number"));
+  EXPECT_THAT(with("ixx=\"1\"", "ixx=\"nan\""), HasSubstr("r.urdf:3: ixx of <inertia> is \"nan\""));
+  EXPECT_THAT(with("xyz=\"0 0 1\"", "xyz=\"0 0 1e400\""), HasSubstr("r.urdf:4: xyz of <axis> is \"1e400\""));
+  EXPECT_THAT(with("velocity=\"2\"", "velocity=\"-inf\""), HasSubstr("r.urdf:4: velocity of <limit> is \"-inf\""));
+  EXPECT_THAT(with("lower=\"-1\"", "lower=\"one\""), HasSubstr("r.urdf:4: lower of <limit> is \"one\""));
+  EXPECT_THAT(urdf_refusal(urdf(
+                  "<link name=\"a\"><collision><origin xyz=\"0 nan 0\"/><geometry><sphere radius=\"1\"/></geometry></collision></link>" +
+                  joint("x", "one", "a"))),
+              HasSubstr("xyz of <origin> is \"nan\""));
+}
+
+TEST(BadUrdf, more_links_or_depth_than_a_robot_can_have_are_refused) {
+  std::string chain;
+  for (int i = 0; i < 1200; ++i)
+    chain += "<link name=\"l" + std::to_string(i) + "\"/>" +
+             joint("k" + std::to_string(i), i == 0 ? "one" : "l" + std::to_string(i - 1), "l" + std::to_string(i));
+  EXPECT_THAT(urdf_refusal(urdf(chain)), HasSubstr("has 1202 links, must have at most 1000"));
+  std::string deep;
+  for (int i = 0; i < 5000; ++i) deep += "<a>";
+  EXPECT_THAT(urdf_refusal("<robot name=\"r\">" + deep), HasSubstr("nested too deep"));
+  EXPECT_THAT(urdf_refusal(urdf("<link name=\"m\"><collision><geometry><mesh filename=\"" + std::string(5000, 'm') +
+                                ".stl\"/></geometry></collision></link>" + joint("k", "one", "m"))),
+              HasSubstr("the name of a mesh has 5004 bytes"));
+}
+
+TEST(BadSrdf, groups_that_contain_themselves_are_refused) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const std::string& groups) {
+    return message_of<ConfigError>([&] {
+      RobotModel::load_urdf(folder.write("r.urdf", urdf("")), folder.write("r.srdf", "<robot name=\"r\">\n" + groups + "</robot>\n"));
+    });
+  };
+  EXPECT_THAT(refusal("<group name=\"a\"><group name=\"a\"/></group>\n"), HasSubstr("r.srdf:2: group \"a\" contains itself"));
+  std::string many;
+  for (int i = 0; i < 60; ++i) many += "<group name=\"a\"/>";
+  EXPECT_THAT(refusal("<group name=\"a\">" + many + "</group>\n"), HasSubstr("contains itself"));
+  EXPECT_THAT(refusal("<group name=\"a\"><group name=\"b\"/></group>\n<group name=\"b\"><group name=\"a\"/></group>\n"),
+              HasSubstr("r.srdf:3: group \"a\" contains itself"));
+  // Each group names the next one many times: 20^20 visits unless each is visited once.
+  std::string ladder;
+  for (int i = 0; i < 20; ++i) {
+    ladder += "<group name=\"g" + std::to_string(i) + "\">";
+    for (int k = 0; k < 20; ++k) ladder += "<group name=\"g" + std::to_string(i + 1) + "\"/>";
+    ladder += "</group>\n";
+  }
+  EXPECT_EQ(refusal(ladder + "<group name=\"g20\"><joint name=\"j\"/></group>\n"), "no error");
+  std::string rows;
+  for (int i = 0; i < 600; ++i) rows += "<group name=\"r" + std::to_string(i) + "\"/>\n";
+  EXPECT_THAT(refusal(rows), HasSubstr("has 600 groups"));
+}
+
 TEST(Urdf, MeshesAreFoundInPackagesAboveTheUrdf) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "urdf");

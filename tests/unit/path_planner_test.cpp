@@ -10,7 +10,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "components/path_planner/request_desk.hpp"
 #include "tests/support/planar_arm.hpp"
 #include "tests/support/sound_path.hpp"
 
@@ -238,23 +237,6 @@ TEST_F(Planning, beside_a_person_the_path_costs_less_than_the_shortest) {
   }
   std::sort(costs.begin(), costs.end());
   EXPECT_LT(costs[4], 0.7 * straight.cost);
-}
-
-TEST(RequestDesk, plans_once_and_lets_newer_requests_replace_older_ones) {
-  RequestDesk desk(2);
-  EXPECT_EQ(desk.admit({1, 1}), RequestDesk::Admission::fresh);
-  EXPECT_EQ(desk.admit({1, 1}), RequestDesk::Admission::under_way);
-  EXPECT_EQ(desk.admit({1, 2}), RequestDesk::Admission::fresh);
-  EXPECT_TRUE(desk.superseded({1, 1}));
-  EXPECT_FALSE(desk.superseded({1, 2}));
-  EXPECT_EQ(desk.admit({2, 1}), RequestDesk::Admission::fresh) << "another client";
-  PathReply reply;
-  reply.id = {1, 2};
-  reply.length = 4;
-  desk.close(reply);
-  EXPECT_EQ(desk.admit({1, 2}), RequestDesk::Admission::answered);
-  EXPECT_EQ(desk.answer({1, 2})->length, 4);
-  EXPECT_EQ(desk.admit({1, 0}), RequestDesk::Admission::superseded);
 }
 
 }  // namespace

@@ -348,6 +348,37 @@ TEST_F(CheckerNode, answers_queries) {
   EXPECT_EQ(verdicts.messages[0].free, (std::vector<std::uint8_t>{0, 1}));
 }
 
+TEST_F(CheckerNode, queries_beyond_the_quota_are_refused_with_the_reason_and_later_ones_answered) {
+  Bus& client = network_.add("handsel");
+  auto query_out = client.advertise<StateQuery>();
+  Heard<StateVerdict> verdicts;
+  verdicts.listen(client);
+  ComponentHealth health;
+  client.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
+    if (m.component == "collision_checker") health = m;
+  });
+  network_.run_for(milliseconds(200));
+  StateQuery query;
+  query.states.assign(100, Vector3(1.2, 0, 0));
+  for (std::uint64_t i = 1; i <= 50; ++i) {
+    query.id = {i, 1};
+    query_out->publish(query);
+  }
+  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 50; }, network_.now() + seconds(5)));
+  const auto refused = std::count_if(verdicts.messages.begin(), verdicts.messages.end(), [](const StateVerdict& verdict) {
+    return verdict.reason.find("16 queries wait already") != std::string::npos;
+  });
+  EXPECT_EQ(refused, 34);
+  query.id = {99, 1};
+  query_out->publish(query);
+  ASSERT_TRUE(network_.run_until([&] { return verdicts.messages.size() == 51; }, network_.now() + seconds(5)));
+  EXPECT_EQ(verdicts.messages.back().free.front(), 1);
+  network_.run_for(milliseconds(300));
+  ASSERT_EQ(health.left_out.size(), 1u);
+  EXPECT_EQ(health.left_out[0].name, "state queries: too many wait");
+  EXPECT_EQ(health.left_out[0].count, 34u);
+}
+
 TEST_F(CheckerNode, a_layer_from_outside_raises_the_cost_ahead) {
   active_.trajectory = 3;
   active_.speed_factor = 1;

@@ -152,7 +152,7 @@ class Replayed : public testing::Test {
 TEST_F(Replayed, the_inputs_come_again_in_their_order_at_their_pace_and_as_new) {
   record();
   LocalNetwork network(4);
-  Bus& bus = network.add("replay");
+  Bus& bus = network.add("replay sim");
   std::vector<std::pair<std::uint64_t, Stamp>> heard;
   int commands = 0;
   Bus& ear = network.add("ear");
@@ -176,16 +176,47 @@ TEST_F(Replayed, the_inputs_come_again_in_their_order_at_their_pace_and_as_new) 
   EXPECT_EQ(replay.counts().at("handsel/robot_state").sent, 25u);
 }
 
+TEST_F(Replayed, who_replays_speaks_for_a_component_that_may_write) {
+  EXPECT_EQ(replay_name({}), "replay sim");
+  EXPECT_EQ(replay_name({"human_observation"}), "replay");
+  EXPECT_EQ(replay_name({"human_state", "scene", "go"}), "replay spark supervisor");
+}
+
 TEST_F(Replayed, what_was_recorded_with_another_idl_is_refused) {
   std::vector<mcap::Channel> channels = recorded_channels();
   channels[0].schema += "\n// one field more";
   { mcap::Writer writer(file_, channels, {}); }
   LocalNetwork network(4);
-  Bus& bus = network.add("replay");
+  Bus& bus = network.add("replay sim");
   EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {"robot_state"}, .from = 0}); }),
               HasSubstr("handsel/robot_state was recorded with another IDL"));
   EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {"dance"}, .from = 0}); }),
               HasSubstr("no topic \"dance\""));
+}
+
+TEST_F(Replayed, nothing_is_sent_of_a_recording_that_is_damaged_further_on) {
+  record();
+  {
+    std::string bytes = text_of(file_);
+    const std::size_t last = bytes.rfind("jido");  // within the last sample
+    bytes[last] = 'J';
+    std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes;
+  }
+  LocalNetwork network(4);
+  Bus& bus = network.add("replay");
+  EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {}, .from = 0}); }), HasSubstr("x.mcap: at byte "));
+}
+
+TEST_F(Replayed, a_message_of_another_century_is_refused) {
+  {
+    mcap::Writer writer(file_, recorded_channels(), {});
+    writer.write({0, 1000, {1}});
+    writer.write({0, 3'155'760'000'000'000'000, {1}});
+  }
+  LocalNetwork network(4);
+  Bus& bus = network.add("replay");
+  EXPECT_THAT(message_of<ConfigError>([&] { Replay(bus, {.file = file_, .topics = {"robot_state"}, .from = 0}); }),
+              HasSubstr("a recording has at most 30 days"));
 }
 
 TEST_F(Replayed, a_sample_that_breaks_its_bounds_is_refused_and_the_rest_comes) {
@@ -209,7 +240,7 @@ TEST_F(Replayed, a_sample_that_breaks_its_bounds_is_refused_and_the_rest_comes) 
     writer.write({0, 4000, good});
   }
   LocalNetwork network(4);
-  Bus& bus = network.add("replay");
+  Bus& bus = network.add("replay sim");
   Replay replay(bus, {.file = file_, .topics = {}, .from = 0});
   while (replay.advance()) replay.send(bus.stamp_now());
   const Replay::Count& count = replay.counts().at("handsel/robot_state");

@@ -79,6 +79,16 @@ TEST(Ros2Wire, RejectsWhatIsMalformedInOneSentence) {
   EXPECT_THAT(rejected(motion), HasSubstr("points[1].positions are missing"));
 }
 
+TEST(TfTree, when_it_is_full_frames_not_sent_for_long_make_room) {
+  TfTree tree;
+  tree.set(frame("world", "mast", Vector3::Zero()), TimePoint{}, true);
+  for (int i = 1; i < 4096; ++i) ASSERT_TRUE(tree.set(frame("mast", "head_" + std::to_string(i), Vector3::Zero()), TimePoint{}, false));
+  EXPECT_FALSE(tree.set(frame("mast", "head_new", Vector3::Zero()), TimePoint(from_seconds(5)), false));
+  EXPECT_TRUE(tree.set(frame("mast", "head_new", Vector3::Zero()), TimePoint(from_seconds(11)), false));
+  EXPECT_TRUE(tree.find("head_new", "world")) << "a static frame is not forgotten";
+  EXPECT_FALSE(tree.find("head_1", "world"));
+}
+
 TEST(TfTree, FollowsTheWayToTheWorldAndKnowsHowOldItIs) {
   TfTree tree;
   const TimePoint t(from_seconds(10));
@@ -106,7 +116,7 @@ TEST(BodyFrame, IsNamedAsRos4hriDoes) {
 
 class Lane : public testing::Test {
  protected:
-  Lane() : ros(network.add("ros")), ours(network.add("ours")) {
+  Lane() : ros(network.add("ros")), ours(network.add("ours sim spark")) {
     setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
     context = load_context("jido", HANDSEL_SOURCE_DIR "/sim/scenarios/give_mug.txtpb");
     lane = std::make_shared<Node>(network.add("ros2_lane"), context);

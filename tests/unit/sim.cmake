@@ -3,3 +3,4 @@ handsel_test(sim_oracle SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim_oracle_test.cpp LI
 handsel_test(sim_person SOURCES ${CMAKE_CURRENT_LIST_DIR}/sim_person_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(sensors SOURCES ${CMAKE_CURRENT_LIST_DIR}/sensors_test.cpp LINK handsel_sim_core LABEL unit)
 handsel_test(recording SOURCES ${CMAKE_CURRENT_LIST_DIR}/recording_test.cpp LINK handsel_sim_core LABEL unit)
+handsel_test(robot_side SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/robot_side_test.cpp LINK handsel_drivers LABEL property)

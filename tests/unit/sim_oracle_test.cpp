@@ -141,6 +141,49 @@ TEST(LimitsOracleTest, TheFirstHundredAreJudgedToo) {
   EXPECT_GT(judge.oracle.violations(), 0u);
 }
 
+/// A second stream takes over in the middle of a motion: `offset` away on one axis.
+std::uint64_t violations_across(double offset, std::uint64_t writer, bool restarts_numbers, int at) {
+  Judge judge;
+  Stream stream(0.5);
+  for (int i = 0; i < at; ++i) judge.see(stream.next());
+  EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
+  for (int i = 0; i < 200; ++i) {
+    JointCommand c = stream.next();
+    c.position[1] += offset;
+    if (restarts_numbers) c.sequence = static_cast<std::uint64_t>(i) + 1;
+    judge.see(c, writer);
+  }
+  return judge.oracle.violations();
+}
+
+TEST(LimitsOracleTest, judges_the_step_from_one_writer_to_another) {
+  EXPECT_EQ(violations_across(0, 2, false, 500), 0u) << "one that continues exactly is legal";
+  EXPECT_EQ(violations_across(0, 2, true, 500), 0u);
+  EXPECT_EQ(violations_across(0.01, 2, false, 500), 1u);
+  EXPECT_EQ(violations_across(0.01, 2, true, 500), 1u);
+  EXPECT_EQ(violations_across(0.01, 2, true, 50), 1u) << "also while the period is not known";
+}
+
+TEST(LimitsOracleTest, judges_the_step_to_a_sequence_number_that_has_not_grown) {
+  EXPECT_EQ(violations_across(0, 1, true, 500), 0u);
+  EXPECT_EQ(violations_across(0.01, 1, true, 500), 1u);
+  EXPECT_EQ(violations_across(0.01, 1, true, 50), 1u);
+}
+
+TEST(LimitsOracleTest, judges_two_writers_that_alternate) {
+  Judge judge;
+  Stream stream(0.5);
+  JointCommand rest = stream.last();
+  rest.position[0] += 0.2;
+  std::uint64_t number = 0;
+  for (int i = 0; i < 400; ++i) {
+    judge.see(stream.next(), 1);
+    rest.sequence = ++number;
+    judge.see(rest, 2);
+  }
+  EXPECT_GT(judge.oracle.violations(), 790u);
+}
+
 TEST(LimitsOracleTest, ASecondWriterAndALongGapAreSeen) {
   Judge judge;
   Stream stream(0.5);

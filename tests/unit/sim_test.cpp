@@ -63,7 +63,9 @@ TEST(SimRobotSide, StopsSoftlyTwentyMillisecondsAfterTheLastSetPointAndResumesWi
     side.step(now, 0.001, false);
   }
   const double last = now - 0.001;
-  while (side.mode() == DriveMode::enabled && now < last + 1) side.step(now += 0.001, 0.001, false);
+  while (side.follows() && now < last + 1) side.step(now += 0.001, 0.001, false);
+  EXPECT_EQ(side.mode(), DriveMode::enabled) << "nobody has stopped the drives";
+  EXPECT_NE(side.refusal().find("no set-point for more than 20 ms"), std::string::npos) << side.refusal();
   EXPECT_NEAR(now - last, 0.021, 0.0015);
   const double A = jido().stop_limits().acceleration[0], J = jido().stop_limits().jerk[0];
   const double expected = measure_stop(0.5, 0, A, J).duration;
@@ -77,11 +79,56 @@ TEST(SimRobotSide, StopsSoftlyTwentyMillisecondsAfterTheLastSetPointAndResumesWi
   }
   EXPECT_NEAR(now - began, expected, 0.003);
   const Vector held = side.position();
-  EXPECT_FALSE(side.command(c, now)) << "a set-point that moves does not end a protective stop";
-  c.position = held;
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(side.command(c, now += 0.001)) << "set-points that move are not at rest";
   c.velocity.setZero();
+  c.position = held;
+  c.position[1] += 0.1;
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(side.command(c, now += 0.001)) << "the robot is elsewhere";
+  c.position = held;
   for (int i = 0; i < 10; ++i) side.command(c, now += 0.001);
-  EXPECT_EQ(side.mode(), DriveMode::enabled);
+  EXPECT_TRUE(side.follows());
+  EXPECT_EQ(side.refusal(), "");
+}
+
+TEST(SimRobotSide, FollowsSetPointsAtTheMeasuredPostureThoughTheHeldOneIsElsewhere) {
+  RobotSide side(jido(), start(), RobotSideSettings{});
+  JointCommand c;
+  c.position = start();
+  c.velocity = c.acceleration = Vector::Zero(jido().dof());
+  side.command(c, 0.0);
+  double now = 0;
+  while (!side.stopped() && now < 1) side.step(now += 0.001, 0.001, false);
+  ASSERT_TRUE(side.stopped());
+  Vector bent = side.position();
+  bent[3] += 0.05;
+  side.measured(bent);
+  c.position = bent;
+  double v = 0;
+  for (int i = 0; i < 2000 && !side.follows(); ++i) {
+    side.command(c, now);
+    side.step(now += 0.001, 0.001, false);
+    EXPECT_LE(std::abs(side.velocity()[3] - v), jido().stop_limits().acceleration[3] * 0.001 * (1 + 1e-6)) << "the reference does not jump";
+    v = side.velocity()[3];
+  }
+  EXPECT_TRUE(side.follows());
+  EXPECT_EQ(side.position()[3], bent[3]);
+}
+
+TEST(SimRobotSide, AUserStopWhileSetPointsAreAwayStillEndsOnlyByEnable) {
+  RobotSide side(jido(), start(), RobotSideSettings{});
+  JointCommand c;
+  c.position = start();
+  c.velocity = c.acceleration = Vector::Zero(jido().dof());
+  side.command(c, 0.0);
+  double now = 0;
+  while (!side.stopped() && now < 1) side.step(now += 0.001, 0.001, false);
+  side.user_stop();
+  EXPECT_EQ(side.refusal(), "") << "the mode says it";
+  while (now < 2) {
+    side.step(now += 0.001, 0.001, false);
+    EXPECT_FALSE(side.command(c, now));
+  }
+  EXPECT_EQ(side.mode(), DriveMode::user_stop);
 }
 
 TEST(SimRobotSide, UserStopEndsOnlyByEnable) {

@@ -33,6 +33,7 @@ class SparkNode : public ::testing::Test {
     people_out_ = others.advertise<HumanObservation>();
     goals_out_ = network_.add("handsel").advertise<TaskGoal>();
     Bus& reader = network_.add("supervisor");
+    safety_out_ = reader.advertise<SafetyState>();
     reader.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene, ++scenes_; });
     reader.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
     reader.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt&) {
@@ -60,6 +61,7 @@ class SparkNode : public ::testing::Test {
   std::unique_ptr<Publisher<ObjectObservation>> things_out_;
   std::unique_ptr<Publisher<HumanObservation>> people_out_;
   std::unique_ptr<Publisher<TaskGoal>> goals_out_;
+  std::unique_ptr<Publisher<SafetyState>> safety_out_;
   Scene scene_;
   HumanState people_;
   ComponentHealth health_;
@@ -85,6 +87,31 @@ TEST_F(SparkNode, an_operator_clears_a_lost_person_and_nobody_who_is_seen) {
   goals_out_->publish(clear);
   network_.run_for(milliseconds(20));
   EXPECT_TRUE(people_.people.empty());
+}
+
+TEST_F(SparkNode, nobody_is_a_fact_only_once_it_is_known_who_was_lost_before) {
+  start();
+  for (int i = 0; i < 10; ++i) {
+    HumanObservation nobody;
+    nobody.source = "camera";
+    nobody.coverage = {{-5, -5, -1}, {5, 5, 3}};
+    people_out_->publish(nobody);
+    network_.run_for(milliseconds(33));
+  }
+  EXPECT_FALSE(people_.covered) << "somebody may have been lost before this process began";
+  SafetyState safety;
+  safety.revision = 1;
+  Person anna;
+  anna.id = "anna";
+  anna.joints = standing_body({2.5, 0, 0}, 0, 1.7);
+  anna.age = 30;
+  safety.lost.push_back(anna);
+  safety_out_->publish(safety);
+  network_.run_for(milliseconds(100));
+  EXPECT_TRUE(people_.covered);
+  ASSERT_EQ(people_.people.size(), 1u);
+  EXPECT_EQ(people_.people[0].id, "anna");
+  EXPECT_GT(people_.people[0].inflation, 1.6 * 30);
 }
 
 TEST_F(SparkNode, a_camera_that_speaks_in_its_own_frame_is_brought_to_the_world) {

@@ -64,6 +64,9 @@ TEST(Story, a_mistake_is_named_with_its_line) {
   EXPECT_THAT(error_of("start a\nwait ready\n"), HasSubstr("within"));
   EXPECT_THAT(error_of("start a\nexpect ready within soon\n"), HasSubstr("needs a time"));
   EXPECT_THAT(error_of("start a\nexpect speed below much within 1s\n"), HasSubstr("needs a number"));
+  EXPECT_THAT(error_of("start a\nspeed nan\n"), HasSubstr("f:2: \"speed\" needs a number"));
+  EXPECT_THAT(error_of("start a\nexpect speed below inf within 1s\n"), HasSubstr("needs a number"));
+  EXPECT_LT(error_of("start a\n" + std::string(1 << 20, 'x') + "\n").size(), 1000u);
   EXPECT_THAT(error_of("start a\nkill\n"), HasSubstr("a process should follow"));
   EXPECT_THAT(error_of("start a\nstop now\n"), HasSubstr("\"now\" is one word too many"));
   EXPECT_THAT(error_of("start a\nnever ready\n"), HasSubstr("\"for\" should follow"));

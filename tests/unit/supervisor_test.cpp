@@ -382,6 +382,27 @@ TEST(Supervisor, AttentionMaySuspendResumeAndTurnATaskIntoAGift) {
   EXPECT_EQ(rig.line("place mug on shelf"), "dropped: anna reaches for mug");
 }
 
+TEST(Supervisor, a_component_that_stays_away_ends_the_task_with_its_name) {
+  TaskRig rig(true);
+  rig.run(0.5);
+  rig.give(1);
+  rig.run(0.1);
+  ASSERT_EQ(rig.goals.size(), 1u);
+  rig.spark_alive = false;
+  rig.run(3.0);
+  rig.end_action(ActionState::succeeded);
+  EXPECT_EQ(rig.goals.size(), 1u) << "nothing new begins without it";
+  EXPECT_EQ(rig.last().state, TaskState::running);
+  rig.run(2.5);
+  EXPECT_EQ(rig.last().state, TaskState::failed);
+  EXPECT_EQ(rig.last().reason, "spark has not been there for 5 s");
+  rig.spark_alive = true;
+  rig.run(1.0);
+  rig.give(2);
+  rig.run(0.2);
+  EXPECT_EQ(rig.last().state, TaskState::running) << "the next task goes on";
+}
+
 TEST(Permission, IsWithdrawnWhenARequiredComponentIsGoneButOnlyAfterTheTrajectoryEnded) {
   TaskRig rig(true);
   rig.run(0.5);

@@ -2,11 +2,18 @@ handsel_test(guard SOURCES ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp LINK handsel
 handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_queue_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/controller_speed_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_contact_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/controller_silence_test.cpp ${CMAKE_CURRENT_LIST_DIR}/gaze_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/hand_executor_test.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/mode_machine_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
+             ${CMAKE_CURRENT_LIST_DIR}/hand_executor_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_overload_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/mode_machine_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
+handsel_test(go_gate SOURCES ${CMAKE_CURRENT_LIST_DIR}/go_gate_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
+# Latches over supervisor and controller.
+handsel_test(latches_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/latches_property_test.cpp
+             LINK handsel_supervisor_core handsel_trajectory_controller_core LABEL property)
 handsel_test(controller_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/controller_stories_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/../support/allocation_counter.cpp LINK handsel_trajectory_controller_core LABEL property)
 handsel_test(separation_stories SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/separation_stories_test.cpp LINK handsel_trajectory_controller_core LABEL property)
+handsel_test(stop_proof SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/stop_proof_test.cpp LINK handsel_trajectory_controller_core LABEL property)
+add_test(NAME stop_proof_million COMMAND test_stop_proof)
+set_tests_properties(stop_proof_million PROPERTIES LABELS full TIMEOUT 3600 ENVIRONMENT HANDSEL_PROOF_MOTIONS=1000000)
 set_tests_properties(controller_stories separation_stories PROPERTIES TIMEOUT 300)
 add_test(NAME controller_stories_million COMMAND test_controller_stories)
 set_tests_properties(controller_stories_million PROPERTIES LABELS full TIMEOUT 900

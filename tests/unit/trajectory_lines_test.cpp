@@ -76,6 +76,17 @@ TEST(TrajectoryLines, EveryFaultHasItsOwnSentence) {
   has(error_of("sample", "{"), "not JSON");
 }
 
+TEST(TrajectoryLines, a_line_too_deep_or_too_long_is_refused_and_the_next_one_answered) {
+  const std::string good = with("p0", "[0,0]");
+  for (const std::string& bad : {std::string(200000, '['), std::string(17u << 20, ' ') + "1"}) {
+    const Answers r = run("solve", bad + "\n" + good);
+    ASSERT_EQ(r.answers.size(), 2u);
+    EXPECT_TRUE(r.answers[0].contains("error"));
+    EXPECT_TRUE(r.answers[1].contains("duration"));
+    EXPECT_EQ(r.exit_code, 2);
+  }
+}
+
 TEST(TrajectoryLines, StartsBeyondTheLimitsComeBackInside) {
   const Answers r = run("solve", with("v0", "[1.5,0]"));
   ASSERT_EQ(r.exit_code, 0);

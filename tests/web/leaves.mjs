@@ -4,7 +4,13 @@ import { createInterface } from "node:readline";
 
 const patience = 20_000; // [ms] for the whole of one wait
 // Fields of the writer's that have another name in the IDL.
-const renamed = { "RobotState.sequence": "sequence_number", "JointCommand.sequence": "sequence_number", "Facts.facts": "holding" };
+const renamed = {
+  "RobotState.sequence": "sequence_number",
+  "JointCommand.sequence": "sequence_number",
+  "SimClock.sequence": "sequence_number",
+  "ClockReached.sequence": "sequence_number",
+  "Facts.facts": "holding",
+};
 
 export function within(what, promise) {
   let timer;

@@ -94,12 +94,14 @@ export interface ActionStatus {
 
 export interface ComponentHealth {
   component: string;
+  pid: number;  // 0: it does not run, and its launcher speaks for it
   state: number;
   reason: string;
   cpu: number;
   memory_mb: number;
   uptime: number;
   topics: { rate: number; deadline_misses: bigint; rejected: bigint }[];
+  left_out: { name: string; count: bigint }[];
 }
 
 export interface Facts { holding: { kind: number; subject: string; object: string; since: number }[] }

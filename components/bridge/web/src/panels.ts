@@ -172,14 +172,16 @@ export class Panels {
     const sorted = [...this.link.health.values()].sort((a, b) => a.message.component.localeCompare(b.message.component));
     rows("health", sorted.map(({ message: h, at }) => {
       const silent = (now - at) / 1000 > kSilent;
-      const word = silent ? "silent" : this.link.word("HealthState", h.state);
+      const said = this.link.word("HealthState", h.state);
+      const word = silent ? "silent" : said === "stopping" && h.pid === 0 ? "restarting" : said;  // its launcher speaks for it
       const rate = h.topics.reduce((sum, topic) => sum + topic.rate, 0);
       const misses = h.topics.reduce((sum, topic) => sum + Number(topic.deadline_misses), 0);
       const rejected = h.topics.reduce((sum, topic) => sum + Number(topic.rejected), 0);
+      const leftOut = h.left_out.map(({ name, count }) => `left out ${count}: ${name}`);
       const number = (text: string, bad = false): Cell => ({ text, kind: bad ? "number warn" : "number" });
       return [{ text: "", kind: `dot ${word}` }, h.component.replaceAll("_", " "), { text: word, kind: word }, number(rate.toFixed(0)),
         number(String(misses), misses > 0), number(String(rejected), rejected > 0), number(`${(100 * h.cpu).toFixed(0)} %`),
-        number(`${h.memory_mb.toFixed(0)} MB`), { text: h.reason, kind: "why" }];
+        number(`${h.memory_mb.toFixed(0)} MB`), { text: [h.reason, ...leftOut].filter(Boolean).join("; "), kind: "why" }];
     }));
     const alive = sorted.filter(({ message, at }) => (now - at) / 1000 <= kSilent && this.link.word("HealthState", message.state) === "ok").length;
     put("health-count", sorted.length > 0 ? `${alive} of ${sorted.length} well` : "");

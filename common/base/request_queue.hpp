@@ -1,0 +1,108 @@
+// Requests of several clients and the answers to them: asking twice is harmless, a client may cancel, and both lists are bounded. Pure.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace handsel {
+
+/// Bounds of a RequestQueue.
+struct RequestLimits {
+  std::size_t open{64};        ///< requests that are admitted and not answered
+  std::size_t remembered{64};  ///< answers kept for a client that asks again
+  std::size_t clients{64};     ///< whose numbers are remembered; the one that has asked least recently is forgotten
+};
+
+/// What a newer request of a client means for its older ones.
+enum class Newer {
+  beside,    ///< nothing: each is answered
+  replaces,  ///< they are superseded
+};
+
+/// `Reply::id` has the fields `client` and `number`; the numbers of a client grow.
+template <class Reply>
+class RequestQueue {
+ public:
+  using Id = decltype(Reply::id);
+  explicit RequestQueue(Newer newer, const RequestLimits& limits = {}) : newer_(newer), limits_(limits) {}
+
+  enum class Admission {
+    fresh,       ///< work on it
+    under_way,   ///< asked before, the answer will come
+    answered,    ///< asked before, see answer()
+    superseded,  ///< the client has asked something newer since
+    cancelled,   ///< the client wants it no more
+    full,        ///< as many as may wait do: refuse it
+  };
+  Admission admit(const Id& id) {
+    if (answer(id) != nullptr) return Admission::answered;
+    if (std::find(open_.begin(), open_.end(), id) != open_.end()) return Admission::under_way;
+    Client& client = client_of(id);
+    if (client.any_cancelled && id.number <= client.cancelled) return Admission::cancelled;
+    if (newer_ == Newer::replaces && id.number < client.newest) return Admission::superseded;
+    if (open_.size() >= limits_.open) return Admission::full;
+    client.newest = std::max(client.newest, id.number);
+    open_.push_back(id);
+    return Admission::fresh;
+  }
+  bool superseded(const Id& id) const {
+    const auto client = find(id.client);
+    return newer_ == Newer::replaces && client != clients_.end() && client->newest > id.number;
+  }
+  /// This request and all older ones of the client are wanted no more. Returns those that are not answered yet.
+  std::vector<Id> cancel(const Id& id) {
+    Client& client = client_of(id);
+    client.cancelled = std::max(client.cancelled, id.number);
+    client.any_cancelled = true;
+    std::vector<Id> unanswered;
+    for (const Id& open : open_)
+      if (open.client == id.client && open.number <= id.number) unanswered.push_back(open);
+    return unanswered;
+  }
+  void close(const Reply& reply) {
+    std::erase(open_, reply.id);
+    answers_.push_back(reply);
+    if (answers_.size() > limits_.remembered) answers_.pop_front();
+  }
+  const Reply* answer(const Id& id) const {
+    const auto found = std::find_if(answers_.begin(), answers_.end(), [&id](const Reply& reply) { return reply.id == id; });
+    return found == answers_.end() ? nullptr : &*found;
+  }
+  /// Why a request was not admitted because the queue is full, one sentence.
+  std::string why_full() const { return std::to_string(limits_.open) + " requests wait already, which is the limit; ask again later"; }
+  std::size_t open() const { return open_.size(); }
+  std::size_t clients() const { return clients_.size(); }
+
+ private:
+  struct Client {
+    std::uint64_t id{}, newest{}, cancelled{};
+    bool any_cancelled{};
+  };
+  using Clients = std::vector<Client>;
+  typename Clients::const_iterator find(std::uint64_t id) const {
+    return std::find_if(clients_.begin(), clients_.end(), [id](const Client& client) { return client.id == id; });
+  }
+  /// The client, last in the list from now on.
+  Client& client_of(const Id& id) {
+    const auto at = clients_.begin() + (find(id.client) - clients_.cbegin());
+    if (at != clients_.end()) {
+      std::rotate(at, at + 1, clients_.end());
+    } else {
+      if (clients_.size() >= limits_.clients) clients_.erase(clients_.begin());
+      clients_.push_back({id.client, 0, 0, false});
+    }
+    return clients_.back();
+  }
+
+  Newer newer_;
+  RequestLimits limits_;
+  std::vector<Id> open_;
+  std::deque<Reply> answers_;
+  Clients clients_;  // the one that asked last at the end
+};
+
+}  // namespace handsel

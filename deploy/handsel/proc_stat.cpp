@@ -1,0 +1,48 @@
+#include "deploy/handsel/proc_stat.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace handsel {
+namespace {
+
+/// Second number of a schedstat file [ns].
+Duration run_delay(const std::string& file) {
+  std::ifstream in(file);
+  long long running = 0, waiting = 0;
+  return in >> running >> waiting ? Duration(waiting) : Duration{};
+}
+
+}  // namespace
+
+char process_state(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(in, text);
+  const std::size_t name_ends = text.rfind(')');  // the name may hold anything
+  return name_ends == std::string::npos || name_ends + 2 >= text.size() ? 'X' : text[name_ends + 2];
+}
+
+Duration main_thread_delay(pid_t pid) {
+  const std::string id = std::to_string(pid);
+  return run_delay("/proc/" + id + "/task/" + id + "/schedstat");
+}
+
+Duration ThreadDelay::update(pid_t pid) {
+  std::map<pid_t, Duration> now;
+  Duration longest{};
+  std::error_code error;  // threads end while they are listed
+  std::filesystem::directory_iterator entry("/proc/" + std::to_string(pid) + "/task", error), end;
+  for (; !error && entry != end; entry.increment(error)) {
+    const pid_t thread = std::atoi(entry->path().filename().c_str());
+    const Duration delay = now[thread] = run_delay(entry->path() / "schedstat");
+    if (const auto before = before_.find(thread); before != before_.end()) longest = std::max(longest, delay - before->second);
+  }
+  before_ = std::move(now);
+  return total_ += longest;
+}
+
+}  // namespace handsel

@@ -1,0 +1,27 @@
+// What the kernel says of a running process: /proc.
+#pragma once
+
+#include <sys/types.h>
+
+#include <map>
+
+#include "common/base/time.hpp"
+
+namespace handsel {
+
+/// The letter of /proc/PID/stat (proc(5)); 'X' when there is no such process.
+char process_state(pid_t pid);
+/// How long the main thread has waited for a processor so far; zero when the kernel does not tell.
+Duration main_thread_delay(pid_t pid);
+
+/// How long the threads of a process have waited for a processor: in each step the one that waited longest counts.
+class ThreadDelay {
+ public:
+  Duration update(pid_t pid);
+
+ private:
+  std::map<pid_t, Duration> before_;
+  Duration total_{};
+};
+
+}  // namespace handsel

@@ -1,0 +1,2 @@
+start a
+expect joy within 1s

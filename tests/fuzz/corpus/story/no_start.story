@@ -1,0 +1,1 @@
+task give mug

@@ -1,0 +1,2 @@
+start a
+speed nan

@@ -1,0 +1,2 @@
+start a
+wait ready within infs

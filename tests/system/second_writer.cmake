@@ -1,0 +1,5 @@
+handsel_test(second_writer SOURCES ${CMAKE_CURRENT_LIST_DIR}/second_writer_test.cpp LINK handsel_command LABEL system)
+add_dependencies(test_second_writer product)
+set_tests_properties(second_writer PROPERTIES RUN_SERIAL TRUE TIMEOUT 180)
+add_test(NAME second_writer_five COMMAND test_second_writer)
+set_tests_properties(second_writer_five PROPERTIES LABELS full RUN_SERIAL TRUE TIMEOUT 3600 ENVIRONMENT HANDSEL_RUNS=5)

@@ -1,0 +1,119 @@
+// Controller and robot side together, with set-points that stay away for a while: the robot side stops by itself, and both go on in order.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "sim/robot_side.hpp"
+#include "tests/support/controller_expectations.hpp"
+
+namespace handsel::trajectory_controller {
+namespace {
+
+using test::ControllerBench;
+using test::goal;
+using test::has;
+
+/// What the controller sends reaches the robot side, and what the robot side does is what the controller measures.
+struct Loop {
+  ControllerBench bench;
+  sim::RobotSide side;
+  bool wire_holds{true};
+  Vector bend;  // of the measured posture from the reference, all axes
+
+  Loop() : side(*bench.robot, Vector::Zero(bench.robot->dof()), sim::RobotSideSettings{}), bend(Vector::Zero(bench.robot->dof())) {
+    bench.follows = false;
+  }
+  void run(double seconds) {
+    for (int k = 0; k < static_cast<int>(seconds / bench.settings.period + 0.5); ++k) {
+      const bool sent = bench.tick();
+      const double now = to_seconds(bench.now.time_since_epoch());
+      if (sent && wire_holds) {
+        JointCommand c;
+        c.position = bench.core.set_point().position;
+        c.velocity = bench.core.set_point().velocity;
+        c.acceleration = bench.core.set_point().acceleration;
+        side.command(c, now);
+      }
+      side.step(now, bench.settings.period, false);
+      bench.measured = side.position() + bend;
+      side.measured(bench.measured);
+      bench.drive = side.mode();
+      bench.refusal = side.refusal();
+    }
+  }
+  std::string close_hand(std::uint64_t id) {
+    HandCommand c;
+    c.robot = "small";
+    c.id = id;
+    c.epoch = bench.go.epoch;
+    c.position = Vector::Constant(2, id % 2 ? 1.2 : 0.1);
+    return bench.core.accept(c, Duration(0), bench.now);
+  }
+};
+
+TEST(Overload, the_robot_stands_by_itself_and_goes_on_with_a_new_go) {
+  Loop l;
+  l.run(0.3);
+  ASSERT_EQ(l.bench.go_to(goal(), 1), "");
+  l.run(0.8);
+  ASSERT_FALSE(l.bench.at_rest());
+  l.wire_holds = false;
+  l.run(0.04);
+  EXPECT_FALSE(l.side.follows());
+  EXPECT_EQ(l.side.mode(), DriveMode::enabled) << "nobody has stopped the drives";
+  EXPECT_NE(l.side.refusal().find("no set-point for"), std::string::npos) << l.side.refusal();
+  EXPECT_EQ(l.bench.core.mode(), Mode::stop);
+  EXPECT_TRUE(has(l.bench, Cause::cycle_late));
+  EXPECT_FALSE(has(l.bench, Cause::drive_not_enabled)) << "what waits for a person";
+  EXPECT_NE(l.bench.core.status().reason.find("no set-point for"), std::string::npos) << l.bench.core.status().reason;
+  l.wire_holds = true;
+  l.run(3.0);
+  EXPECT_TRUE(l.side.follows());
+  EXPECT_EQ(l.bench.core.mode(), Mode::hold);
+  EXPECT_EQ(l.bench.core.status().causes, bit(Cause::no_go));
+  ++l.bench.go.epoch;
+  l.run(0.3);
+  EXPECT_EQ(l.bench.core.mode(), Mode::normal);
+  ASSERT_EQ(l.bench.go_to(goal(), 2), "");
+  l.run(6.0);
+  EXPECT_TRUE(l.side.position().head(3).isApprox(goal(), 1e-6)) << l.side.position().transpose();
+  test::expect_smooth(l.bench);
+}
+
+/// Arm, head and hand each in the middle of a motion, and a hand bent by what it holds.
+TEST(Overload, whatever_moved_when_set_points_stayed_away_the_robot_side_follows_again) {
+  std::mt19937_64 random(5);
+  const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  for (int trial = 0; trial < 60; ++trial) {
+    Loop l;
+    l.run(0.3);
+    if (trial % 2 == 0) {
+      ASSERT_EQ(l.bench.go_to(goal(), 1), "");
+    }
+    if (trial % 3 != 0) {
+      l.bench.advice.has_gaze_target = true;
+      l.bench.advice.gaze_target = Vector3(between(-1, 1), between(-1, 1), 1.0);
+    }
+    if (trial % 5 != 0) {
+      ASSERT_EQ(l.close_hand(1), "");
+    }
+    l.run(between(0.05, 0.8));
+    l.bend[3] = between(-0.05, 0.05);
+    l.wire_holds = false;
+    l.run(between(0.022, 0.3));
+    l.wire_holds = true;
+    ASSERT_FALSE(l.side.follows()) << trial;
+    l.run(3.0);
+    EXPECT_TRUE(l.side.follows()) << "trial " << trial << ": " << l.side.refusal() << "\nset-point "
+                                  << l.bench.core.set_point().position.transpose() << "\nreference " << l.side.position().transpose();
+    ++l.bench.go.epoch;
+    l.run(2.5);
+    EXPECT_NE(l.bench.core.status().hand, HandState::moving) << trial << ": whoever waits for the hand would wait for ever";
+    EXPECT_LT(l.bench.core.mode(), Mode::hold) << trial << ": " << l.bench.core.status().reason;
+    EXPECT_EQ(l.close_hand(2), "") << trial;
+    test::expect_smooth(l.bench);
+  }
+}
+
+}  // namespace
+}  // namespace handsel::trajectory_controller
