@@ -103,9 +103,8 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
   const auto n = static_cast<Eigen::Index>(robot_->dof());
   if (state.robot != robot_->name() || state.position.size() != n || !state.position.allFinite()) return;
   constexpr double kRestart = 0.5;
-  // In an exchange the person's pull is wanted; at rest a push does no harm.
   const double since = robot_seen_.ever ? std::clamp(to_seconds(sampled - robot_seen_.at), 0.0, 0.1) : 0.0;
-  touched_ = contact_.update(state.external_torque, since, arm_ == Arm::standing) && exchanging_.empty();
+  touch_ = contact_.update(state.external_torque, since, arm_ == Arm::standing, !exchanging_.empty());
   const bool restarted = robot_seen_.ever && state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart;
   state_ = state;
   gate_.hear(state.mode);
@@ -370,7 +369,8 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.wall_slow = guard_verdict_.wall && guard_verdict_.forward < 0.999;
   too_near_for_ = in.running && guard_verdict_.too_near ? too_near_for_ + settings_.period : 0.0;
   in.separation_stop = too_near_for_ > settings_.guard.stop_persistence;
-  in.contact_stop = touched_ && !in.at_rest && !yielding_;
+  in.contact_stop = touch_ != Contact::none && !in.at_rest && !yielding_;  // at rest a short push does no harm
+  in.clamped = touch_ == Contact::clamped;
   in.human_unknown = human_seen_.ever && !crowd_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.cost_slow = in.running && cost_share() < 0.999;
@@ -505,6 +505,7 @@ void Controller::step_hand(Hand& hand, TimePoint now) noexcept {
   in.may_move = verdict_.mode < Mode::hold;
   in.stop = verdict_.mode >= Mode::stop;
   in.person_distance = std::numeric_limits<double>::infinity();
+  in.clamped = touch_ == Contact::clamped && !exchanging_.empty();
   in.payload = felt_payload(index);
   if (in.new_state && hand.palm >= 0) {
     const Pose T_world_tool = state_.T_world_base * links_[static_cast<std::size_t>(hand.palm)];
@@ -559,12 +560,14 @@ void Controller::aim_away() noexcept {
   away_ *= most > kLeast ? 1.0 / most : 0.0;
 }
 
-/// At rest the arm gives way to who pushes it, axis by axis, until the push ends; and draws back from who comes too near.
+/// At rest the arm gives way to who pushes it, axis by axis, until the push ends; and draws back from who comes too near. In an exchange, and
+/// while a hand moves, it gives way to free what is clamped, only.
 void Controller::step_yield(TimePoint now) noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
-  const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && exchanging_.empty() &&
-                   follows(state_) && settings_.yield_speed > 0.0 &&
-                   std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
+  const bool hands_rest =
+      std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
+  const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && follows(state_) &&
+                   settings_.yield_speed > 0.0 && ((exchanging_.empty() && hands_rest) || touch_ == Contact::clamped);
   // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.
   if (verdict_.mode >= Mode::hold && !held_before_) yield_waits_ = true;
   held_before_ = verdict_.mode >= Mode::hold;

@@ -244,6 +244,7 @@ class Controller {
 
   // Judging.
   ContactWatch contact_;
+  Contact touch_{Contact::none};
   bool yielding_{}, yield_waits_{}, held_before_{}, retreating_{};
   double retreat_share_{};    // of its speed that the guard allows
   Vector yield_from_, away_;  // away_: motion of the axes that leads away from the nearest person, largest 1
@@ -262,7 +263,7 @@ class Controller {
   int unproven_shown_{};      // cycles for which the cause is still shown
   int rejoins_in_vain_{};     // how often, lately, the path was left again for want of a proof
   double too_near_for_{}, tracking_for_{};
-  bool limit_violation_{}, new_people_{}, touched_{};
+  bool limit_violation_{}, new_people_{};
   int late_in_a_row_{};
   std::uint64_t cycles_{}, late_cycles_{};
   std::string refusal_;

@@ -40,7 +40,7 @@ void HandExecutor::reset(const Vector& robot_position) noexcept {
     fingers_[i].mover.reset(fingers_[i].target);
   }
   phase_ = Phase::hold;
-  paused_ = false;
+  paused_ = closed_ = freeing_ = false;
   level_ = 0.0;
   release_.disarm();
 }
@@ -138,8 +138,19 @@ void HandExecutor::start(Phase phase) {
     f.direction = phase == Phase::closing && std::abs(way) >= settings_.closing_least * f.lever ? std::copysign(1.0, way) : 0.0;
     f.contact = false;
     f.pressed_for = 0.0;
+    if (phase == Phase::closing && !closed_) f.opened = f.mover.state().position;
     retarget(i, f.final);
   }
+  closed_ = phase == Phase::closing || (closed_ && phase != Phase::releasing);
+}
+
+/// Opens to where the last closing began.
+void HandExecutor::free_person() noexcept {
+  release_.disarm();
+  paused_ = false;
+  freeing_ = true;
+  for (Finger& f : fingers_) f.final = f.opened;
+  start(Phase::releasing);
 }
 
 /// What an axis gives to the world [Nm].
@@ -280,7 +291,9 @@ void HandExecutor::give_way(const RobotState& robot, double dt) noexcept {
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
   const RobotState& robot = *in.robot;
   if (in.new_state) person_near_ = in.person_distance <= settings_.person_range;
-  if (!in.may_move && !paused_) {
+  if (in.clamped && person_near_ && closed_) free_person();
+  if (phase_ != Phase::releasing) freeing_ = false;
+  if (!in.may_move && !paused_ && !freeing_) {
     paused_ = true;
     for (std::size_t i = 0; i < fingers_.size(); ++i) fingers_[i].mover.stop(limits(i, in.stop ? stop_ : comfort_, 1.0));
   } else if (in.may_move && paused_ && at_rest()) {  // from the middle of a stop the gentle limits might not end inside the bounds

@@ -44,6 +44,7 @@ struct HandInputs {
   double person_distance{};         ///< from the hand to the nearest hand of a person [m]; +inf if nobody
   bool may_move{};                  ///< mode below Hold
   bool stop{};                      ///< mode Stop or Fault: use the stop limits
+  bool clamped{};                   ///< somebody it exchanges with is: it opens, whatever the mode
 };
 
 class HandExecutor {
@@ -84,6 +85,7 @@ class HandExecutor {
     double direction{};    // of closing: -1, 0, +1
     double effort{};       // of the squeeze [Nm]
     double held{};         // set-point that holds the object
+    double opened{};       // set-point where the last closing began
     double grip{};         // direction it presses in while the object is held
     double share{1.0};     // of the longest way of all axes: speed goes with it, so that a finger keeps its way, (0, 1]
     double pressed_for{};  // [s]
@@ -92,6 +94,7 @@ class HandExecutor {
   };
   AxisLimits limits(std::size_t i, const KinematicLimits& of, double share) const;
   void start(Phase phase);
+  void free_person() noexcept;
   void retarget(std::size_t i, double target);
   double pressed(const RobotState& robot, std::size_t i) const noexcept;
   void watch_contacts(const RobotState& robot, double dt) noexcept;
@@ -112,6 +115,8 @@ class HandExecutor {
   Phase phase_{Phase::hold};
   HandState state_{HandState::idle};
   bool paused_{}, payload_felt_{}, person_near_{};
+  bool closed_{};   // since it was reset or opened last
+  bool freeing_{};  // it opens for a person who is clamped
   double settled_for_{}, lost_for_{};
   double level_{}, most_effort_{};  // share of the squeeze in force; its largest effort
   Vector release_to_;

@@ -18,6 +18,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(stop, Cause::cycle_late, in.set_points_late);
   set(stop, Cause::separation, in.separation_stop);
   set(stop, Cause::contact, in.contact_stop);
+  set(stop, Cause::clamped, in.clamped);
 
   const double forecast_age = in.forecast_age < 0 ? in.running_for : std::min(in.forecast_age, in.running_for);
   set(hold, Cause::forecast_silent, in.running && forecast_age > timeouts_.forecast);
@@ -70,6 +71,7 @@ Cause gravest(std::uint32_t causes) {
                               Cause::tracking_error,
                               Cause::drive_not_enabled,
                               Cause::robot_state_silent,
+                              Cause::clamped,
                               Cause::contact,
                               Cause::stop_unproven,
                               Cause::human_state_silent,

@@ -27,7 +27,7 @@ struct ModeInputs {
   bool set_points_late{};  ///< the robot side stands with its drives enabled because set-points stayed away
   bool tracking_error{}, limit_violation{}, cycle_late{};
   bool forecast_collision_hold{}, forecast_collision_slow{};
-  bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{};
+  bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{}, clamped{};
   bool attention_slow{}, cost_slow{}, override_slow{}, stop_unproven{};
   std::uint64_t go_epoch{};
   bool go_allowed{}, go_acknowledge{};

@@ -112,6 +112,10 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.contact.torque = read(c.torque(), "torque", kTiny, 1000);
   s.contact.time = read(c.time(), "time", 0, 10);
   s.contact.usual_time = read(c.usual_time(), "usual_time", kTiny, 100);
+  s.contact.follow_torque = read(c.follow_torque(), "follow_torque", kTiny, 1000);
+  s.contact.max_usual = read(c.max_usual(), "max_usual", 0, 1000);
+  s.contact.exchange_torque = read(c.exchange_torque(), "exchange_torque", kTiny, 1000);
+  s.contact.clamp_time = read(c.clamp_time(), "clamp_time", kTiny, 100);
   s.contact.yield_torque = read(c.yield_torque(), "yield_torque", kTiny, 1000);
   s.contact.yield_time = read(c.yield_time(), "yield_time", 0, 100);
 

@@ -43,7 +43,8 @@ ExecutionStatus Controller::status() const {
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
     if (latched_cause_ == Cause::cycle_late && !state_.refusal.empty()) s.reason += ": " + state_.refusal;
-    if (latched_cause_ == Cause::contact) s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
+    if (latched_cause_ == Cause::contact || latched_cause_ == Cause::clamped)
+      s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
     if ((verdict_.causes & bit(Cause::awaits_person)) != 0 && !why_no_go().empty()) s.reason += ": " + why_no_go();
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
     s.reason = name(cause);

@@ -62,9 +62,11 @@ TEST(Controller, a_push_at_rest_moves_the_arm_along_and_its_end_stops_it) {
   expect_smooth(b);
   b.external_torque[0] = 0.0;
   b.run(5.0);
+  ++b.go.epoch;  // for the contact became a clamp
+  b.run(0.2);
   ASSERT_EQ(b.go_to(goal(), 1), "");
   b.run(6);
-  EXPECT_EQ(b.core.status().motion, MotionState::finished);
+  EXPECT_EQ(b.core.status().motion, MotionState::finished) << b.core.status().reason;
 }
 
 TEST(Controller, after_a_contact_the_arm_gives_way_to_who_is_pressed) {
@@ -86,6 +88,88 @@ TEST(Controller, after_a_contact_the_arm_gives_way_to_who_is_pressed) {
   b.run(1.0);
   EXPECT_EQ(b.core.set_point().position[0], left) << "nor does it come after them";
   expect_smooth(b);
+}
+
+TEST(Controller, a_clamp_stays_a_stop_until_it_is_freed_and_the_arm_gives_way_as_far_as_it_may) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0, 0), 1), "");
+  b.run(1.5);
+  b.external_torque[0] = -40.0;
+  b.run(2.5);
+  EXPECT_EQ(b.core.mode(), Mode::stop);
+  EXPECT_TRUE(has(b, Cause::clamped));
+  EXPECT_THAT(b.core.status().reason, HasSubstr("clamped: felt by"));
+  b.run(20.0);
+  EXPECT_TRUE(has(b, Cause::clamped)) << "a steady push never becomes usual";
+  EXPECT_EQ(b.core.mode(), Mode::stop);
+  EXPECT_TRUE(b.at_rest());
+  b.external_torque[0] = 0.0;
+  b.run(1.0);
+  EXPECT_EQ(b.core.mode(), Mode::hold);
+  ++b.go.epoch;
+  b.run(0.5);
+  EXPECT_EQ(b.core.mode(), Mode::normal);
+  expect_smooth(b);
+}
+
+/// The hand has closed on something; anna, whose hand is at it, is being exchanged with.
+void close_for_an_exchange(ControllerBench& b) {
+  b.external_torque = Vector::Zero(7);
+  b.people.people.push_back(b.standing(0.9, 0.0));
+  b.start();
+  ActionStatus action;
+  action.exchange_engaged = true;
+  action.human = "anna";
+  b.core.on(action, b.now);
+  HandCommand c;
+  c.robot = "small";
+  c.id = 1;
+  c.epoch = 1;
+  c.action = HandAction::grasp;
+  c.position = Vector::Constant(2, 0.6);
+  b.external_torque.segment(3, 2).setConstant(-0.5);  // something is between the fingers
+  ASSERT_EQ(b.core.accept(c, Duration(0), b.now), "");
+  for (int k = 0; k < 5000 && (k == 0 || b.core.status().hand == HandState::moving); ++k) b.tick();
+  ASSERT_EQ(b.core.status().hand, HandState::grasped);
+  b.run(0.1);
+}
+
+TEST(Controller, a_pull_in_an_exchange_is_wanted_and_a_clamp_opens_the_hand) {
+  ControllerBench b;
+  close_for_an_exchange(b);
+  b.external_torque[0] = 40.0;
+  b.run(3.0);
+  EXPECT_FALSE(has(b, Cause::clamped));
+  EXPECT_EQ(b.core.status().hand, HandState::grasped);
+  b.external_torque[0] = 60.0;
+  b.run(0.8);
+  EXPECT_EQ(b.core.status().hand, HandState::grasped);
+  b.run(2.0);
+  EXPECT_TRUE(has(b, Cause::clamped));
+  EXPECT_EQ(b.core.mode(), Mode::stop);
+  EXPECT_EQ(b.core.status().hand, HandState::released);
+  EXPECT_NEAR(b.core.set_point().position[3], 0.0, 1e-3) << "open as before it closed";
+  expect_smooth(b);
+}
+
+TEST(Controller, in_an_exchange_too_a_contact_beyond_its_budget_stops_the_moving_arm) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.people.people.push_back(b.standing(3.0, 0.0));
+  b.start();
+  ActionStatus action;
+  action.exchange_engaged = true;
+  action.human = "anna";
+  b.core.on(action, b.now);
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.2, 0.0, 0.0), 2), "");
+  b.run(0.8);
+  ASSERT_FALSE(b.at_rest());
+  b.external_torque[0] = 60.0;
+  b.run(0.05);
+  EXPECT_TRUE(has(b, Cause::contact));
+  EXPECT_EQ(b.core.mode(), Mode::stop);
 }
 
 }  // namespace
