@@ -18,6 +18,11 @@ Vector bounds(const RobotModel& model, double Axis::*bound) {
   return out;
 }
 
+bool slides(const RobotModel& model, int axis) {
+  const auto joint = static_cast<std::size_t>(model.axes()[static_cast<std::size_t>(axis)].joint);
+  return model.joints()[joint].kind == JointKind::prismatic;
+}
+
 SetpointGateSettings gate_settings(const RobotSideSettings& s) {
   return {.period = s.period, .max_ahead = s.max_ahead, .max_missing = s.max_missing};
 }
@@ -37,6 +42,8 @@ RobotSide::RobotSide(const RobotModel& model, const Vector& start, const RobotSi
   joins_.resize(start.size());
   for (const Manipulator& hand : hands_of(model))
     if (hand.fingers != nullptr) hand_axes_.insert(hand_axes_.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
+  tolerance_ = Vector::Constant(start.size(), settings.resume_tolerance);
+  for (const int axis : hand_axes_) tolerance_[axis] = settings.resume_hand * (slides(model, axis) ? settings.hand_lever : 1.0);
 }
 
 bool RobotSide::command(const JointCommand& command, double now, double arrival) {
@@ -95,7 +102,7 @@ bool RobotSide::continues(const JointCommand& command) const {
   if (!command.position.allFinite() || !command.velocity.allFinite()) return false;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
     const double off = std::min(std::abs(command.position[i] - position_[i]), std::abs(command.position[i] - measured_[i]));
-    if (off >= settings_.resume_tolerance || std::abs(command.velocity[i]) >= settings_.resume_tolerance) return false;
+    if (off >= tolerance_[i] || std::abs(command.velocity[i]) >= settings_.resume_tolerance) return false;
   }
   return true;
 }

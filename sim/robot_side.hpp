@@ -17,6 +17,8 @@ struct RobotSideSettings {
   double period{0.0};             ///< of the controller's set-points [s]; 0: set-points are not checked (tests of the physics alone)
   double max_gap{0.020};          ///< without set-points for this long while enabled: soft stop [s]
   double resume_tolerance{0.02};  ///< set-points this near the held or measured posture, at rest, are followed again after a stop [rad]
+  double resume_hand{0.3};        ///< instead, of the fingers, which what they hold bends and a person may move [rad; at `hand_lever` m]
+  double hand_lever{0.05};        ///< of a finger that slides [m]
   double max_ahead{0.020};        ///< a set-point may come this much earlier than its time [s]
   int resume_count{10};           ///< that many of them in a row
   double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
@@ -76,6 +78,7 @@ class RobotSide {
   KinematicLimits limits_;
   SetpointGate gate_;
   std::vector<int> hand_axes_;
+  Vector tolerance_;  // of each axis, within which set-points are followed again [rad, m]
   DriveMode mode_{DriveMode::enabled};
   Reference reference_{Reference::follows};
   std::string refusal_;

@@ -615,7 +615,9 @@ void Controller::resync(TimePoint now) noexcept {
   // it came to rest in, they must not follow what a bent finger or a sagging arm makes of that motion.
   constexpr double kRests = 0.05, kBent = 0.06;  // [rad/s], [rad]
   const bool joins = state_.mode == DriveMode::enabled && !follows(state_);
-  const bool rests = state_.velocity.size() == 0 || state_.velocity.cwiseAbs().maxCoeff() < kRests;
+  const bool rests = std::all_of(arm_axes_.begin(), arm_axes_.end(), [&](int axis) {
+    return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests;
+  });
   const double dead_band = joins && rests && adopted_ ? kBent : 0.002;
   adopted_ = joins && rests;
   const auto go_there = [&](int axis) {
@@ -626,7 +628,8 @@ void Controller::resync(TimePoint now) noexcept {
   };
   for (int axis : arm_axes_) go_there(axis);
   for (int axis : head_axes_) go_there(axis);
-  for (Hand& hand : hands_) hand.executor.follow(state_.position, dead_band);
+  // The fingers stay where they came to rest: what they hold bends them, and a person who holds it too moves them all the time.
+  for (Hand& hand : hands_) hand.executor.follow(state_.position, joins ? settings_.hand_rejoin : dead_band);
 }
 
 void Controller::check_last() noexcept {

@@ -82,6 +82,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.head_dead_band = read(in.head_dead_band(), "head_dead_band", 0, 1);
   s.look_ahead = read(in.look_ahead(), "look_ahead", 0, 2);
   s.look_far_ahead = read(in.look_far_ahead(), "look_far_ahead", s.look_ahead, 2);
+  s.hand_rejoin = read(in.hand_rejoin(), "hand_rejoin", 0, 10);
   s.late_limit = static_cast<int>(read(in.late_limit(), "late_limit", 1, 1000));
 
   const auto& t = in.timeouts();

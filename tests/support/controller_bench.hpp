@@ -20,7 +20,7 @@ class ControllerBench {
  public:
   explicit ControllerBench(const trajectory_controller::ControllerSettings& with = {})
       : settings(with), robot(small_robot()), core(with, robot) {
-    measured = Vector::Zero(robot->dof());
+    measured = measured_velocity = Vector::Zero(robot->dof());
     people.covered = true;
     Go first;  // moves nothing: the controller waits for a newer one
     first.state_revision = 1;
@@ -38,7 +38,8 @@ class ControllerBench {
       s.robot = "small";
       s.sequence = static_cast<std::uint64_t>(ticks);
       s.position = measured;
-      s.velocity = s.effort = Vector::Zero(robot->dof());
+      s.velocity = measured_velocity;
+      s.effort = Vector::Zero(robot->dof());
       s.mode = drive;
       s.refusal = refusal;
       s.external_torque = external_torque;
@@ -115,7 +116,7 @@ class ControllerBench {
   TimePoint now{from_seconds(50.0)};
   long ticks{};
   bool ready{}, late{};
-  Vector measured;
+  Vector measured, measured_velocity;
   bool follows{true};
   DriveMode drive{DriveMode::enabled};
   std::string refusal;     ///< why the robot side stands although its drives are enabled

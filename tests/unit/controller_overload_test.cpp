@@ -18,24 +18,34 @@ struct Loop {
   ControllerBench bench;
   sim::RobotSide side;
   bool wire_holds{true};
-  Vector bend;  // of the measured posture from the reference, all axes
+  Vector bend;      // of the measured posture from the reference, all axes
+  double shaken{};  // of the fingers, by somebody who holds what is between them [rad]
+  std::uint64_t sent{};
 
-  Loop() : side(*bench.robot, Vector::Zero(bench.robot->dof()), sim::RobotSideSettings{}), bend(Vector::Zero(bench.robot->dof())) {
+  explicit Loop(const sim::RobotSideSettings& settings = {})
+      : side(*bench.robot, Vector::Zero(bench.robot->dof()), settings), bend(Vector::Zero(bench.robot->dof())) {
     bench.follows = false;
   }
   void run(double seconds) {
     for (int k = 0; k < static_cast<int>(seconds / bench.settings.period + 0.5); ++k) {
-      const bool sent = bench.tick();
+      const bool ready = bench.tick();
       const double now = to_seconds(bench.now.time_since_epoch());
-      if (sent && wire_holds) {
+      sent += ready ? 1 : 0;
+      if (ready && wire_holds) {
         JointCommand c;
+        c.sequence = sent;
         c.position = bench.core.set_point().position;
         c.velocity = bench.core.set_point().velocity;
         c.acceleration = bench.core.set_point().acceleration;
         side.command(c, now);
       }
       side.step(now, bench.settings.period, false);
+      constexpr double kRate = 2 * M_PI * 2.0;  // [rad/s]
       bench.measured = side.position() + bend;
+      for (int axis = 3; axis < 5; ++axis) {
+        bench.measured[axis] += shaken * std::sin(kRate * now);
+        bench.measured_velocity[axis] = shaken * kRate * std::cos(kRate * now);
+      }
       side.measured(bench.measured);
       bench.drive = side.mode();
       bench.refusal = side.refusal();
@@ -111,6 +121,33 @@ TEST(Overload, whatever_moved_when_set_points_stayed_away_the_robot_side_follows
     EXPECT_NE(l.bench.core.status().hand, HandState::moving) << trial << ": whoever waits for the hand would wait for ever";
     EXPECT_LT(l.bench.core.mode(), Mode::hold) << trial << ": " << l.bench.core.status().reason;
     EXPECT_EQ(l.close_hand(2), "") << trial;
+    test::expect_smooth(l.bench);
+  }
+}
+
+/// A person who holds what is in the hand moves the fingers all the time, in any phase of a grasp or release.
+TEST(Overload, a_closed_hand_that_a_person_shakes_follows_again) {
+  std::mt19937_64 random(7);
+  const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  for (int trial = 0; trial < 40; ++trial) {
+    Loop l(sim::RobotSideSettings{.period = 0.001});
+    l.run(0.3);
+    ASSERT_EQ(l.close_hand(1), "");
+    l.run(between(0.05, 2.0));
+    l.bend[3] = between(-0.05, 0.05);
+    l.bend[4] = between(-0.05, 0.05);
+    l.shaken = 0.04;
+    l.wire_holds = false;
+    l.run(between(0.022, 0.3));
+    l.wire_holds = true;
+    ASSERT_FALSE(l.side.follows()) << trial;
+    l.run(2.0);
+    EXPECT_TRUE(l.side.follows()) << "trial " << trial << ": " << l.side.refusal() << "\nset-point "
+                                  << l.bench.core.set_point().position.transpose() << "\nreference " << l.side.position().transpose();
+    ++l.bench.go.epoch;
+    l.run(2.5);
+    EXPECT_LT(l.bench.core.mode(), Mode::hold) << trial << ": " << l.bench.core.status().reason;
+    EXPECT_EQ(l.side.refused(), 0u) << l.side.refusal();
     test::expect_smooth(l.bench);
   }
 }
