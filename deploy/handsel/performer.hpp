@@ -12,6 +12,7 @@ namespace handsel {
 
 /// Without a word about a task for so long its goal is sent again: the supervisor tells it more often, one goal twice is one task.
 inline constexpr Duration kTaskSilence = std::chrono::seconds(2);
+inline constexpr Duration kAnswerPatience = std::chrono::seconds(4);  // the supervisor gives a thing that is named two seconds to be seen
 
 /// "give mug to anna"
 std::string describe(const TaskGoal& goal);

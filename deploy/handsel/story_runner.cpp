@@ -165,6 +165,16 @@ void StoryRunner::send_control(const StoryStep& step) {
   TaskGoal goal{.id = system_->session().new_task_id(), .kind = kinds.at(step.words[0])};
   if (step.words.size() > 1) goal.value = std::atof(step.words[1].c_str()) / 100.0;
   if (!system_->session().send(goal)) throw Unfulfilled{"the supervisor does not listen"};
+  if (goal.kind == TaskKind::cancel) return;  // the task that ends is the answer
+  // What a person asks for counts from its answer on: only then would it survive the death of the supervisor.
+  const auto& tasks = system_->session().snapshot().tasks;
+  const auto answered = [&] {
+    wake_due();
+    remind();
+    const auto own = tasks.find(goal.id);
+    return own != tasks.end() && is_over(own->second.state);
+  };
+  if (!system_->wait(kAnswerPatience, answered)) throw Unfulfilled{"the supervisor does not answer"};
 }
 
 void StoryRunner::send_sim(const StoryStep& step) {

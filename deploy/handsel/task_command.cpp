@@ -17,8 +17,6 @@
 namespace handsel {
 namespace {
 
-constexpr Duration kAnswerPatience = std::chrono::seconds(4);  // the supervisor gives a thing that is named two seconds to be seen
-
 /// The plan as a tree, one line a task or an action.
 std::string tree_text(const std::vector<PlanStep>& tree) {
   constexpr std::array kMarks = {"[ ] ", "[>] ", "[x] ", "[!] ", "[-] "};
