@@ -669,13 +669,10 @@ double Controller::held_payload() const noexcept {
   return mass;
 }
 
-/// No set-point leaves without a checked stop behind it: otherwise the next one of the stop checked before is sent. The motion of the
-/// fingers in the hand alone is no reason.
+/// No set-point leaves without a checked stop behind it: otherwise the next one of the stop checked before is sent.
 void Controller::prove_stop(TimePoint now) noexcept {
   if (unproven_shown_ > 0) --unproven_shown_;
   if (proof_.check(next_, crowd_, state_.T_world_base, std::max(0.0, human_seen_.age(now)), held_payload())) return;
-  // Fingers that open or close on something are light and their efforts are bounded: stopping them halfway would drop what they hold.
-  if (proof_.refutation().fingers) return;
   ++unproven_;
   rejoins_in_vain_ = unproven_shown_ > 0 ? rejoins_in_vain_ + (arm_ == Arm::running ? 1 : 0) : 0;
   unproven_shown_ = static_cast<int>(kUnprovenShown / settings_.period);

@@ -260,7 +260,6 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
     jerk_[i] = limits_.jerk[axis.axis];
   }
   std::size_t last = paired_.size();
-  bool fingers = false;
   double bend = 0.0, inner_bend = 0.0, inner_travel = 0.0;  // inner: of the fingers, whose sphere is that of the start
   for (const Pair& pair : pairs_) {
     const ChainCapsule& link = chain_.capsules()[pair.capsule];
@@ -297,13 +296,11 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
       Vector3 on_robot, on_person;
       const double distance = std::sqrt(nearest_points(at.a, at.b, part.a, part.b, on_robot, on_person)) - link.radius - part.radius;
       if (distance > needed) continue;
-      refutation_ = {
-          link.link, slot * interval, contact, max_contact_speed_[region], distance, needed, carried <= max_contact_speed_[region]};
-      if (!refutation_.fingers) return false;
-      fingers = true;  // whether the arm by itself would do harm is still to be found out
+      refutation_ = {link.link, slot * interval, contact, max_contact_speed_[region], distance, needed};
+      return false;
     }
   }
-  return !fingers;
+  return true;
 }
 
 bool StopProof::check(const MotionState3& state, const Crowd& people, const Pose& T_world_base, double age, double payload) noexcept {
@@ -333,9 +330,8 @@ bool StopProof::check(const MotionState3& state, const Crowd& people, const Pose
   room_duration_ = duration;
   if (!find_pairs(people, T_world_base, duration)) return false;
   if (pairs_.empty()) return true;
-  const bool at_once = check_stop(at_once_, state.position, people, T_world_base, age);
-  if (!at_once && !refutation_.fingers) return false;
-  return check_stop(robot_side_, state.position, people, T_world_base, age) && at_once;
+  return check_stop(at_once_, state.position, people, T_world_base, age) &&
+         check_stop(robot_side_, state.position, people, T_world_base, age);
 }
 
 }  // namespace handsel::trajectory_controller

@@ -53,7 +53,6 @@ struct StopRefutation {
   double max_speed{};  ///< allowed at a contact with the part [m/s]
   double distance{};   ///< from the link to where the part was measured [m]
   double needed{};     ///< so that the part cannot be there by then [m]
-  bool fingers{};      ///< without the motion of the fingers in the hand both stops would be harmless
 };
 
 class StopProof {
