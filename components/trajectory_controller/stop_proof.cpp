@@ -68,6 +68,7 @@ StopProof::StopProof(const StopProofSettings& settings, const RobotModel& robot,
   room_.resize(paired_.size());
   room_position_ = position_;
   for (auto& of_time : samples_) of_time.resize(chain_.capsules().size());
+  for (auto& of_time : speeds_) of_time.resize(static_cast<std::size_t>(robot.dof()));
 }
 
 double StopProof::max_speed_at(BodyRegion region, double payload) const noexcept {
@@ -91,6 +92,28 @@ AxisState StopProof::AxisStop::at(double t) const noexcept {
     t -= segment.duration;
   }
   return {s.position, 0.0, 0.0};
+}
+
+/// Within a segment of constant jerk the speed is largest at an end, or where the acceleration changes its sign.
+double StopProof::AxisStop::max_speed_between(double from, double to) const noexcept {
+  double most = 0.0, begin = 0.0;
+  AxisState s = start;
+  const auto look = [&](double length, double jerk) {
+    const double first = std::clamp(from - begin, 0.0, length), last = std::clamp(to - begin, 0.0, length);
+    if (first < last) {
+      most = std::max({most, std::abs(advanced(s, first, jerk).velocity), std::abs(advanced(s, last, jerk).velocity)});
+      const double turn = jerk == 0.0 ? -1.0 : -s.acceleration / jerk;
+      if (turn > first && turn < last) most = std::max(most, std::abs(advanced(s, turn, jerk).velocity));
+    }
+    s = advanced(s, length, jerk);
+    begin += length;
+  };
+  if (delay > 0.0) look(delay, 0.0);
+  for (int k = 0; k < profile.count; ++k) {
+    const Segment& segment = profile.segments[static_cast<std::size_t>(k)];
+    look(segment.duration, segment.jerk);
+  }
+  return most;
 }
 
 /// Every axis goes on with its acceleration for `delay`, then stops by itself.
@@ -162,6 +185,20 @@ void StopProof::sample(const Stop& stop, double time, const Pose& T_world_base, 
       out[c] = placed(chain_.capsules()[c], T_world_base);
       set_speeds(chain_.capsules()[c], out[c]);
     }
+}
+
+/// Returns the largest speed of every axis from the sample before to the one after.
+const std::vector<double>& StopProof::speeds_around(const Stop& stop, int slot) noexcept {
+  const auto k = static_cast<std::size_t>(slot);
+  if (speeds_known_[k]) return speeds_[k];
+  speeds_known_[k] = true;
+  std::fill(speeds_[k].begin(), speeds_[k].end(), 0.0);
+  const double interval = stop.duration / kIntervals;
+  for (int i = 0; i < stop.count; ++i) {
+    const AxisStop& axis = stop.axes[static_cast<std::size_t>(i)];
+    speeds_[k][static_cast<std::size_t>(axis.axis)] = axis.max_speed_between((slot - 1) * interval, (slot + 1) * interval);
+  }
+  return speeds_[k];
 }
 
 /// Marks a frame and those that carry it.
@@ -242,7 +279,8 @@ bool StopProof::find_pairs(const Crowd& people, const Pose& T_world_base, double
   return true;
 }
 
-/// Between two samples a link moves no faster than the faster of them, but for how much speeds and levers may bend within the interval.
+/// Between two samples a link moves no faster than the faster of them, but for how much speeds and levers may bend within the interval; nor
+/// faster than the largest speeds of its axes there at their levers, which says more where axes come to rest.
 bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd& people, const Pose& T_world_base, double age) noexcept {
   if (stop.count == 0) return true;
   const double interval = stop.duration / kIntervals;
@@ -260,6 +298,7 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
     jerk_[i] = limits_.jerk[axis.axis];
   }
   std::size_t last = paired_.size();
+  speeds_known_.fill(false);
   double bend = 0.0, inner_bend = 0.0, inner_travel = 0.0;  // inner: of the fingers, whose sphere is that of the start
   for (const Pair& pair : pairs_) {
     const ChainCapsule& link = chain_.capsules()[pair.capsule];
@@ -285,6 +324,10 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
       }
       carried += bend;
       if (inner > 0.0) inner += inner_bend;
+      if (contact_speed(carried, inner, region) <= max_contact_speed_[region]) continue;
+      const std::vector<double>& speeds = speeds_around(stop, slot);
+      carried = std::min(carried, link.carried_bound(speeds));
+      inner = std::min(inner, link.inner_bound(speeds));
       const double contact = contact_speed(carried, inner, region);
       if (contact <= max_contact_speed_[region]) continue;
       const double speed = carried + inner;

@@ -82,6 +82,7 @@ class StopProof {
     double travel{};     ///< of all its motion, there and back [rad, m]
     double max_speed{};  ///< [rad/s, m/s]
     AxisState at(double t) const noexcept;
+    double max_speed_between(double from, double to) const noexcept;
   };
   /// All axes that move.
   struct Stop {
@@ -111,6 +112,7 @@ class StopProof {
   double contact_speed(double carried, double inner, std::size_t region) const noexcept;
   bool check_stop(const Stop& stop, const Vector& position, const Crowd& people, const Pose& T_world_base, double age) noexcept;
   void sample(const Stop& stop, double time, const Pose& T_world_base, int slot) noexcept;
+  const std::vector<double>& speeds_around(const Stop& stop, int slot) noexcept;
   Sample placed(const ChainCapsule& capsule, const Pose& T_world_base) const noexcept;
 
   StopProofSettings settings_;
@@ -126,6 +128,8 @@ class StopProof {
   std::vector<char> paired_;                                 // capsules that are in a pair
   std::vector<char> all_frames_, needed_frames_;             // marks for the chain: all; those that carry a paired capsule
   std::array<std::vector<Sample>, kIntervals + 1> samples_;  // of every capsule
+  std::array<std::vector<double>, kIntervals + 1> speeds_;   // largest of each axis around a sample
+  std::array<bool, kIntervals + 1> speeds_known_{};
   Vector position_, velocity_;
   std::vector<FrameMotion> motions_;  // of each frame
   // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the sample.
