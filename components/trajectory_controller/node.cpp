@@ -11,7 +11,8 @@ constexpr Duration kReportPeriod = std::chrono::milliseconds(20);
 }
 
 Node::Node(Bus& bus, const NodeContext& context)
-    : settings_(load_settings(context.settings / "trajectory_controller.txtpb")),
+    : bus_(bus),
+      settings_(load_settings(context.settings / "trajectory_controller.txtpb")),
       core_(settings_, context.robot),
       command_out_(bus.advertise<JointCommand>()),
       active_out_(bus.advertise<ActiveTrajectory>()),
@@ -55,6 +56,10 @@ void Node::tick(TimePoint now) {
     ExecutionStatus status = core_.status();
     if (has_second_writer()) status.causes |= bit(Cause::second_writer);
     status_out_->publish(status);
+    if (const bool blind = (status.causes & bit(Cause::blind)) != 0; blind || blind_) {
+      bus_.set_degraded(blind ? status.reason : "");
+      blind_ = blind;
+    }
     told_ = key;
     next_status_ = now + kReportPeriod - from_seconds(0.5 * settings_.period);
   }

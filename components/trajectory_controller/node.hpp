@@ -24,6 +24,7 @@ class Node {
   /// Whether a topic this node reads has a second writer.
   bool has_second_writer() const;
 
+  Bus& bus_;
   ControllerSettings settings_;
   Controller core_;
   std::unique_ptr<Publisher<JointCommand>> command_out_;
@@ -35,6 +36,7 @@ class Node {
   JointCommand command_;
   StatusKey told_;
   TimePoint next_active_{}, next_status_{};
+  bool blind_{};  // the health of this process says so
 };
 
 }  // namespace handsel::trajectory_controller
