@@ -35,7 +35,7 @@ class Node {
   std::uint64_t late_before_{};
   JointCommand command_;
   StatusKey told_;
-  TimePoint next_active_{}, next_status_{};
+  TimePoint next_active_{}, next_status_{}, next_reason_{};
   bool blind_{};  // the health of this process says so
 };
 

@@ -40,6 +40,7 @@ ExecutionStatus Controller::status() const {
   for (std::size_t i = 1; i < hands_.size(); ++i) s.other_hands.push_back({hands_[i].group, told_hand(hands_[i])});
   if (!refusal_.empty()) {
     s.reason = refusal_;
+    if ((verdict_.causes & bit(Cause::blind)) != 0) s.reason = std::string(name(Cause::blind)) + ": " + why_blind() + "; " + s.reason;
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
     if (latched_cause_ == Cause::cycle_late && !state_.refusal.empty()) s.reason += ": " + state_.refusal;

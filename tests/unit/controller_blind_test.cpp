@@ -154,6 +154,17 @@ TEST(BlindController, at_rest_where_nobody_looks_it_holds) {
   EXPECT_EQ(b.core.mode(), Mode::hold);
 }
 
+TEST(BlindController, says_that_it_is_blind_though_a_command_was_refused) {
+  BlindBench b;
+  b.start();
+  b.people.views.clear();
+  b.run(0.1);
+  TrajectoryCommand old = b.command(kFar, 1);
+  old.epoch = b.go.epoch + 9;
+  ASSERT_NE(b.send(old), "");
+  EXPECT_THAT(b.core.status().reason, HasSubstr("blind: no source of people has been seen; trajectory 1:"));
+}
+
 TEST(BlindController, moves_without_a_view_only_where_none_is_required) {
   ControllerSettings settings;
   settings.view.require_view = false;
