@@ -303,7 +303,9 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
   const double forward = reach_limit_.factor(query, crowd_, false);
   verdict.separation = verdict.separation || forward < verdict.forward;
   verdict.forward = std::min(verdict.forward, forward);
-  verdict.view = arm_ == Arm::running ? stop_space_.factor(posture_, full_velocity_, state_.T_world_base, age) : 1.0;
+  // Where the path is now is in the stop of the set-point itself.
+  const bool leads_on = arm_ == Arm::running && ahead > 0.0;
+  verdict.view = leads_on ? stop_space_.factor(posture_, full_velocity_, state_.T_world_base, age) : 1.0;
   if (advice_.speed_factor < 0.0 || speed_factor() < 0.0)
     verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, crowd_, true));
 }
