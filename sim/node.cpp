@@ -45,6 +45,7 @@ void Node::restart() {
   world_ = std::make_unique<SimWorld>(*context_.robot, context_.objects, scenario_, settings_, context_.seed);
   steps_ = 0;
   started_ = false;
+  stamped_.clear();
 }
 
 void Node::on_control(const SimControl& control) {
@@ -100,7 +101,9 @@ void Node::publish() {
   human_due_.clear();
   world_->human_observations(human_due_);
   for (auto& delivery : human_due_) {
-    delivery.message.stamp = stamp_of(delivery.seen);
+    Stamped& last = stamped_[delivery.message.source];
+    if (last.stamp == 0 || last.seen != delivery.seen) last = {delivery.seen, stamp_of(delivery.seen)};
+    delivery.message.stamp = last.stamp;
     human_out_->publish(delivery.message);
   }
   object_due_.clear();

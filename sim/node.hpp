@@ -1,7 +1,9 @@
 // Binds the emulated world to a bus. It speaks the hardware's messages: no component knows that it is simulated.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
@@ -37,6 +39,12 @@ class Node {
   bool paused_{false}, started_{false};
   TimePoint start_{}, measured_from_{};
   double measured_sim_{0}, factor_{1};
+  /// A picture's stamp is the system clock of its capture; the same picture, published again, keeps it.
+  struct Stamped {
+    double seen{};  ///< [s of simulated time]
+    Stamp stamp{};
+  };
+  std::map<std::string, Stamped> stamped_;  // by source: the newest picture
 };
 
 }  // namespace handsel::sim

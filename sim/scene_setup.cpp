@@ -4,14 +4,11 @@
 #include <set>
 
 #include "common/base/errors.hpp"
+#include "common/messages/names.hpp"
 
 namespace handsel::sim {
 
 namespace {
-
-constexpr const char* kActions[] = {
-    "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
-    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore"};
 
 Vector3 vec(const config::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -288,9 +285,9 @@ Pose pose_of(const config::PoseRpy& p) {
 
 SimAction sim_action(const std::string& name) {
   std::string all;
-  for (std::size_t i = 0; i < std::size(kActions); ++i) {
-    if (name == kActions[i]) return static_cast<SimAction>(i);
-    all += std::string(i > 0 ? ", " : "") + kActions[i];
+  for (std::size_t i = 0; i < std::size(kSimActionNames); ++i) {
+    if (name == kSimActionNames[i]) return static_cast<SimAction>(i);
+    all += std::string(i > 0 ? ", " : "") + kSimActionNames[i];
   }
   throw ConfigError("disturbance " + name + " is unknown; there are " + all);
 }

@@ -85,12 +85,20 @@ void SampleStream<M>::send(double now, M message) {
   if (settings_.jitter > 0) sample.due += settings_.jitter * (2 * uniform() - 1);
   if (const SensorFault* late = fault(now, SensorFaultKind::late)) sample.due += late->delay;
   sample.due = last_due_ = std::max({sample.due, now, last_due_});
-  if (last_ && fault(now, SensorFaultKind::repeated) != nullptr) {
+  if (fault(now, SensorFaultKind::repeated_empty) == nullptr) {
+    empty_.reset();
+  } else if (!empty_) {
+    empty_ = sample;
+  }
+  if (empty_) {
+    sample.seen = empty_->seen;
+    sample.message = empty_->message;
+  } else if (last_ && fault(now, SensorFaultKind::repeated) != nullptr) {
     sample.seen = last_->seen;
     sample.message = last_->message;
   } else if (last_ && fault(now, SensorFaultKind::frozen) != nullptr) {
     sample.message = last_->message;
-  } else if (!settings_.faults.empty()) {
+  } else if (!settings_.faults.empty() || !disturbances_.empty()) {
     last_ = sample;
   }
   pending_.push_back(std::move(sample));
@@ -106,9 +114,22 @@ void SampleStream<M>::collect(double now, std::vector<Delivery<M>>& out) {
 
 template <class M>
 const SensorFault* SampleStream<M>::fault(double now, SensorFaultKind kind) const {
-  for (const SensorFault& f : settings_.faults)
-    if (f.kind == kind && now + 1e-9 >= f.at && now + 1e-9 < f.at + f.length) return &f;
+  for (const std::vector<SensorFault>* faults : {&settings_.faults, &disturbances_})
+    for (const SensorFault& f : *faults)
+      if (f.kind == kind && now + 1e-9 >= f.at && now + 1e-9 < f.at + f.length) return &f;
   return nullptr;
+}
+
+template <class M>
+void SampleStream<M>::disturb(const SensorFault& fault) {
+  std::erase_if(disturbances_, [&](const SensorFault& f) { return f.kind == fault.kind || f.at + f.length <= fault.at; });
+  disturbances_.push_back(fault);
+}
+
+template <class M>
+void SampleStream<M>::restore() {
+  disturbances_.clear();
+  if (settings_.faults.empty()) last_.reset();
 }
 
 template class SampleStream<HumanObservation>;
@@ -150,9 +171,16 @@ void HumanSensor::observe(double now, const Sight& sight) {
   HumanObservation seen;
   seen.source = settings_.source;
   if (settings_.gaze != GazeOutput::only) seen.coverage = settings_.coverage;
+  const SensorFault* elsewhere = stream_.fault(now, SensorFaultKind::elsewhere);
+  if (elsewhere != nullptr) {
+    seen.coverage.low += elsewhere->shift;
+    seen.coverage.high += elsewhere->shift;
+  }
+  const bool sees_nobody = elsewhere != nullptr || stream_.fault(now, SensorFaultKind::blind) != nullptr ||
+                           stream_.fault(now, SensorFaultKind::repeated_empty) != nullptr;
   const SensorFault* teleport = stream_.fault(now, SensorFaultKind::teleport);
   const Vector3 shift = teleport != nullptr ? teleport->shift : Vector3(Vector3::Zero());
-  for (std::size_t p = 0; p < sight.people.size() && stream_.fault(now, SensorFaultKind::blind) == nullptr; ++p) {
+  for (std::size_t p = 0; p < sight.people.size() && !sees_nobody; ++p) {
     const Person& person = *sight.people[p];
     ObservedPerson observed;
     observed.body = shown_id(person.id);

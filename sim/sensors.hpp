@@ -16,12 +16,14 @@
 
 namespace handsel::sim {
 
-enum class SensorFaultKind { gap, frozen, repeated, teleport, swap, late, blind };
+/// repeated_empty: the same picture, with nobody in it, again and again; elsewhere: it looks at another place, `shift` away, where nobody
+/// is.
+enum class SensorFaultKind { gap, frozen, repeated, teleport, swap, late, blind, repeated_empty, elsewhere };
 
 struct SensorFault {
   SensorFaultKind kind{};
   double at{}, length{};           ///< [s]
-  Vector3 shift{Vector3::Zero()};  ///< teleport, world [m]
+  Vector3 shift{Vector3::Zero()};  ///< teleport, elsewhere: world [m]
   double delay{};                  ///< late [s]
 };
 
@@ -97,6 +99,10 @@ class SampleStream {
   void send(double now, M message);
   void collect(double now, std::vector<Delivery<M>>& out);
   const SensorFault* fault(double now, SensorFaultKind kind) const;
+  /// In addition to the faults of its settings.
+  void disturb(const SensorFault& fault);
+  /// Ends all disturbances.
+  void restore();
   /// True with this probability; draws only when it is above 0.
   bool happens(double probability) { return probability > 0 && uniform_(chance_) < probability; }
   double uniform() { return uniform_(chance_); }
@@ -106,8 +112,9 @@ class SampleStream {
   std::mt19937_64 chance_;
   std::uniform_real_distribution<double> uniform_{0, 1};
   double next_{0}, burst_until_{-1}, last_due_{0};
-  std::optional<Delivery<M>> last_;
+  std::optional<Delivery<M>> last_, empty_;  // sent last; the picture of repeated_empty
   std::deque<Delivery<M>> pending_;
+  std::vector<SensorFault> disturbances_;
 };
 
 class HumanSensor {
@@ -116,6 +123,10 @@ class HumanSensor {
   bool due(double now) { return stream_.due(now); }
   /// Where it is now, for one that the robot carries.
   void carry_to(const Pose& T_world_sensor) { carried_to(settings_, T_world_sensor); }
+  /// A disturbance, in addition to the faults of its settings.
+  void disturb(const SensorFault& fault) { stream_.disturb(fault); }
+  /// Ends all disturbances.
+  void restore() { stream_.restore(); }
   /// To be called when due.
   void observe(double now, const Sight&);
   /// Moves what is due by `now` to `out`.

@@ -28,6 +28,9 @@ constexpr double kMostHelped = 1.0;      // [kg] the constraint helps to hold no
 constexpr double kPush = 0.2;            // so long after the last touch a push still moves the arm [s]
 constexpr double kFloorHeight = 0.02;    // an object's origin lower than this lies on the floor [m]
 
+/// Where a source looks that looks elsewhere, from where it looked [m].
+const Vector3 kElsewhere(100.0, 100.0, 0.0);
+
 struct Hash {
   std::uint64_t value{0xcbf29ce484222325ULL};
   void add(double x) {
@@ -369,6 +372,17 @@ struct SimWorld::Impl {
     return "";
   }
 
+  /// Of the source, or of all sources of people.
+  std::string disturb(const std::string& source, const SensorFault& fault) {
+    bool any = false;
+    for (HumanSensor& sensor : human_sensors) {
+      if (!source.empty() && sensor.settings().source != source) continue;
+      sensor.disturb(fault);
+      any = true;
+    }
+    return any ? "" : "there is no source of people " + source;
+  }
+
   std::string control(const SimControl& c) {
     const auto everyone = [&](auto&& act) -> std::string {
       bool any = false;
@@ -407,8 +421,17 @@ struct SimWorld::Impl {
       case SimAction::silence_robot_state:
         state_silent_until = until;
         return "";
+      case SimAction::human_frozen:
+        return disturb(c.subject, {SensorFaultKind::frozen, now(), until - now()});
+      case SimAction::human_empty:
+        return disturb(c.subject, {SensorFaultKind::repeated_empty, now(), until - now()});
+      case SimAction::human_late:
+        return disturb(c.subject, {SensorFaultKind::late, now(), std::numeric_limits<double>::infinity(), Vector3::Zero(), c.value});
+      case SimAction::human_elsewhere:
+        return disturb(c.subject, {SensorFaultKind::elsewhere, now(), until - now(), kElsewhere});
       case SimAction::restore:
         human_silent_until = state_silent_until = 0;
+        for (HumanSensor& sensor : human_sensors) sensor.restore();
         return "";
       default:
         return "";

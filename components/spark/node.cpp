@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
+#include "components/spark/capture_age.hpp"
 
 namespace handsel::spark {
 namespace {
@@ -17,6 +19,12 @@ config::SparkSettings load_settings(const NodeContext& context) {
     throw ConfigError("spark.txtpb: publish_period and human_period must be > 0");
   if (!(settings.news_period() > 0) || settings.longest_period() < std::max(settings.human_period(), settings.publish_period()))
     throw ConfigError("spark.txtpb: news_period must be > 0 and longest_period not below human_period and publish_period");
+  if (!(settings.max_view_age() > 0)) throw ConfigError("spark.txtpb: max_view_age must be > 0");
+  std::set<std::string> clocks;
+  for (const config::SourceClock& clock : settings.clocks())
+    if (clock.source().empty() || !clocks.insert(clock.source()).second)
+      throw ConfigError(locate(context.settings / "spark.txtpb", "clocks") + ": each of clocks needs a source of its own, not \"" +
+                        clock.source() + "\"");
   check_quotas(settings, context.settings / "spark.txtpb");
   *settings.mutable_people() = load_people(context.settings).people();
   return settings;
@@ -113,11 +121,19 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
 }
 
 void Node::observe(const HumanObservation& observation, const Receipt& receipt) {
-  const TimePoint seen = receipt.arrival - receipt.age - from_seconds(settings_.least_latency());
   HumanObservation there = observation;
   calibration_.to_world(there);
+  const Stamp arrival = bus_.stamp_now() - (bus_.now() - receipt.arrival).count();
+  const CaptureAge captured =
+      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.least_latency(), clock_of(settings_, observation.source));
+  const TimePoint seen = receipt.arrival - from_seconds(captured.age);
+  if (!captured.unknown.empty()) {
+    tracker_.refuse(there, captured.unknown, receipt.arrival);
+    publish_people(bus_.now());
+    return;
+  }
   const Coverage reach = scene_.reach();
-  const std::uint32_t bodies = tracker_.observe(there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles(), &reach);
+  const std::uint32_t bodies = tracker_.observe(there, seen, eyes_.empty() ? Obstacles{} : scene_.obstacles(), &reach, captured.age);
   bodies_left_out_.add(bodies, receipt.arrival);
   bus_.count_left_out("bodies of an observation: farther than the nearest " + std::to_string(quotas_.bodies), bodies);
   const LeftOut tracks = tracker_.keep_nearest(bus_.now(), reach);

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <tuple>
+#include <utility>
 
 #include "common/cost/human_cost.hpp"
 
@@ -251,7 +251,7 @@ bool PeopleTracker::seen_empty(const Track& track, TimePoint now, const Obstacle
   const auto shows = [&](const Vector3& shift) {
     return std::any_of(sources_.begin(), sources_.end(), [&](const auto& entry) {
       const Source& source = entry.second;
-      return recent(source, now) && source.seen > track.seen && !source.repeats &&
+      return live(source, now) && source.seen > track.seen && !source.repeats &&
              (looks_at(source, obstacles, position(track.person, kHead) + shift) ||
               looks_at(source, obstacles, position(track.person, kTorso) + shift));
     });
@@ -342,18 +342,33 @@ void PeopleTracker::forget(TimePoint now, const Obstacles& obstacles) {
   }
 }
 
-std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles,
-                                     const Coverage* reach) {
-  const bool first = !sources_.contains(observation.source);
-  if (first && !room_for_source(seen)) return 0;
-  Source& source = sources_[observation.source];
-  if (first) {
-    if (const auto eye = eyes_.find(observation.source); eye != eyes_.end()) source.eye = eye->second;
-  } else if (seen < source.seen) {
-    return 0;
-  }
-  source.repeats = !first && !observation.people.empty() && same(observation.people, source.people);
+/// The source of the observation, known from now on; nullptr: there is no room for it.
+Source* PeopleTracker::find_source(const HumanObservation& observation, TimePoint seen) {
+  if (!sources_.contains(observation.source) && !room_for_source(seen)) return nullptr;
+  const auto [entry, first] = sources_.try_emplace(observation.source);
+  if (!first) return &entry->second;
+  entry->second.coverage = observation.coverage;
+  if (const auto eye = eyes_.find(observation.source); eye != eyes_.end()) entry->second.eye = eye->second;
+  return &entry->second;
+}
+
+void PeopleTracker::refuse(const HumanObservation& observation, const std::string& why, TimePoint now) {
+  if (Source* source = find_source(observation, now)) source->unknown_age = why;
+}
+
+std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles, const Coverage* reach,
+                                     double latency) {
+  Source* const found = find_source(observation, seen);
+  if (found == nullptr) return 0;
+  Source& source = *found;
+  const bool first = !std::exchange(source.ever, true);
+  source.unknown_age.clear();
+  const bool same_stamp = observation.stamp != 0 && observation.stamp == source.stamp;
+  if (!same_stamp && !first && seen < source.seen) return 0;
+  source.repeats = !first && (same_stamp || (!observation.people.empty() && same(observation.people, source.people)));
   if (source.repeats) return 0;
+  source.stamp = observation.stamp;
+  source.latency = latency;
   const bool moved = source.coverage.low != observation.coverage.low || source.coverage.high != observation.coverage.high;
   if (first || moved || to_seconds(seen - source.seen) > settings_.coverage_memory()) source.unbroken = seen;
   source.coverage = observation.coverage;
@@ -429,7 +444,8 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
   }
   std::vector<Coverage> looked_at;
   for (const auto& [name, source] : sources_)
-    if (recent(source, now)) looked_at.push_back(source.coverage);
+    if (live(source, now)) looked_at.push_back(source.coverage);
+  out.views = views(now);
   out.covered = covers(looked_at, reach);
   const LeftOut left_out = spark::keep_nearest(out.people, quotas_of(settings_).people, reach);
   out.left_out = left_out.count;
@@ -438,13 +454,21 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
   return out;
 }
 
+std::vector<SourceView> PeopleTracker::views(TimePoint now) const {
+  constexpr double kMaxAge = 1e9;  // HumanState has room for [s]
+  std::vector<SourceView> out;
+  for (const auto& [name, source] : sources_) {
+    const std::string why = why_not_live(source, now, settings_.max_view_age());
+    out.push_back({name, source.coverage.low, source.coverage.high, std::clamp(source.age(now), 0.0, kMaxAge), why.empty(), why});
+  }
+  return out;
+}
+
 std::string PeopleTracker::trouble(TimePoint now) const {
   std::string out;
   for (const auto& [name, source] : sources_) {
-    if (recent(source, now)) continue;
-    char since[64];
-    std::snprintf(since, sizeof since, " for %.1f s", to_seconds(now - source.seen));
-    out += (out.empty() ? "" : "; ") + std::string("source ") + name + (source.repeats ? " repeats itself" : " is silent") + since;
+    const std::string why = why_not_live(source, now, settings_.max_view_age());
+    if (!why.empty()) out += (out.empty() ? "source " : "; source ") + name + " " + why;
   }
   return out;
 }

@@ -37,24 +37,28 @@ class PeopleTracker {
   explicit PeopleTracker(const config::SparkSettings& settings, std::map<std::string, Vector3> eyes = {})
       : settings_(settings), eyes_(std::move(eyes)) {}
 
-  /// `seen`: when the observation was true (arrival less its age).
+  /// `seen`: when the observation was captured (arrival less its age). `latency`: its age at arrival [s]. One whose stamp has not advanced,
+  /// or that shows people exactly as before, is no news, and does not make its source live.
   /// Where `reach` is given, only the nearest bodies, by the quota, become new people; whoever is known already is followed all the same.
   /// Returns how many bodies became nobody.
   std::uint32_t observe(const HumanObservation& observation, TimePoint seen, const Obstacles& obstacles = {},
-                        const Coverage* reach = nullptr);
+                        const Coverage* reach = nullptr, double latency = 0);
+  /// An observation whose age is not known shows nothing; `why`: one sentence, told of its source.
+  void refuse(const HumanObservation& observation, const std::string& why, TimePoint now);
   /// An operator says that a lost person is gone: `id`, or everybody lost when it is empty. Who is seen stays. How many went.
   std::size_t clear(const std::string& id, TimePoint now);
   /// Adopts people whom a SPARK before this one had lost: last seen before `started`, `age` counted from `now`. Each is adopted once. A
   /// person who is seen where the lost one may be, under the same id or at the same place, is that person.
   void adopt(const std::vector<Person>& lost, TimePoint now, TimePoint started);
-  /// Everybody as of now, ages and inflation filled in. `covered`: sources looked at the whole of `reach` lately.
+  /// Everybody as of now, ages and inflation filled in, and what every source observes. `covered`: live sources observe the whole of
+  /// `reach`.
   /// `left_out`, if not null: what the quota of people has left out.
   HumanState state(TimePoint now, const Coverage& reach, LeftOut* left_out = nullptr) const;
   /// Forgets the people farthest from the arm beyond the quota of tracks: nobody forgotten is nearer than anybody kept.
   LeftOut keep_nearest(TimePoint now, const Coverage& reach);
   /// Observations of sources beyond the quota, which were not taken.
   std::uint64_t refused_observations() const { return refused_observations_; }
-  /// Which source is silent or repeats itself; empty: none.
+  /// Which source is not live and why; empty: none.
   std::string trouble(TimePoint now) const;
 
  private:
@@ -82,6 +86,9 @@ class PeopleTracker {
   double distance(const Track& track, const ObservedPerson& body) const;
   double inflation(const Track& track, TimePoint now) const;
   bool room_for_source(TimePoint seen);
+  Source* find_source(const HumanObservation& observation, TimePoint seen);
+  std::vector<SourceView> views(TimePoint now) const;
+  bool live(const Source& source, TimePoint now) const { return source.age(now) <= settings_.max_view_age(); }
   double age(const Track& track, TimePoint now) const { return to_seconds(now - track.seen); }
   bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;

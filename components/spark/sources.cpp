@@ -2,12 +2,25 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 namespace handsel::spark {
 
 bool contains(const Coverage& box, const Vector3& p, double margin) {
   const Eigen::Array3d m(margin, margin, 0);
   return (p.array() >= box.low.array() + m).all() && (p.array() <= box.high.array() - m).all();
+}
+
+std::string why_not_live(const Source& source, TimePoint now, double max_age) {
+  const double age = source.age(now);
+  if (age <= max_age) return "";
+  if (!source.unknown_age.empty()) return source.unknown_age;
+  char text[80];
+  if (!source.repeats && source.latency > max_age)
+    std::snprintf(text, sizeof text, "is late: its pictures are %.2f s old", source.latency);
+  else
+    std::snprintf(text, sizeof text, "%s for %.1f s", source.repeats ? "repeats itself" : "is silent", age);
+  return text;
 }
 
 bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/base/time.hpp"
@@ -18,12 +19,22 @@ struct Obstacles {
 
 struct Source {
   Coverage coverage;
-  TimePoint seen{};                    ///< when its newest observation was true
+  bool ever{};                         ///< an observation of known age has come
+  TimePoint seen{};                    ///< when its newest new observation was captured
   TimePoint unbroken{};                ///< since when it has looked without a gap longer than coverage_memory
   std::optional<Vector3> eye;          ///< where it looks from, world [m]; none: it sees all of its coverage
   std::vector<ObservedPerson> people;  ///< as last told
   bool repeats{};                      ///< its last observation told the same once more
+  Stamp stamp{};                       ///< of its newest observation
+  double latency{};                    ///< from the capture of its newest observation to the arrival [s]
+  std::string unknown_age;             ///< why the age of its last observation is not known; empty: it is
+
+  /// Since the capture of its newest new picture [s]; 1e9: there was none.
+  double age(TimePoint now) const { return ever ? to_seconds(now - seen) : 1e9; }
 };
+
+/// Returns why the source is not live now, one sentence without its name; empty: it is. `max_age`: of its newest new picture [s].
+std::string why_not_live(const Source& source, TimePoint now, double max_age);
 
 /// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the floor: the margin is horizontal.
 bool contains(const Coverage&, const Vector3& point, double margin);

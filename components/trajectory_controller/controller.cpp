@@ -70,7 +70,8 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       contact_(settings.contact, trajectory_axes(*robot_)),
       modes_(settings.timeouts),
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
-      reach_limit_(proof_) {
+      reach_limit_(proof_),
+      stop_space_(settings.view, proof_, *robot_) {
   require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
   require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
   require(settings.forecast_slow > settings.forecast_hold, "forecast_slow must be above forecast_hold");
@@ -132,6 +133,7 @@ void Controller::on(const HumanState& people, TimePoint sampled) {
   people_ = people;
   new_people_ = true;
   human_seen_.mark(sampled);
+  stop_space_.set(people);
   points_.clear();
   for (const Person& p : people.people)
     if (p.joints.size() == kBodyJoints.size()) points_.push_back({p.id, p.joints[2].position, p.joints[7].position, p.joints[11].position});
@@ -271,6 +273,7 @@ void Controller::merge_verdicts() noexcept {
     guard_verdict_.backward = std::max(guard_verdict_.backward, ahead->backward);
     guard_verdict_.separation = guard_verdict_.separation || ahead->separation;
     guard_verdict_.wall = guard_verdict_.wall || ahead->wall;
+    guard_verdict_.view = std::min(guard_verdict_.view, ahead->view);
   }
 }
 
@@ -299,6 +302,9 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
   const double forward = reach_limit_.factor(query, crowd_, false);
   verdict.separation = verdict.separation || forward < verdict.forward;
   verdict.forward = std::min(verdict.forward, forward);
+  // Where the path is now is in the stop of the set-point itself.
+  const bool leads_on = arm_ == Arm::running && ahead > 0.0;
+  verdict.view = leads_on ? stop_space_.factor(posture_, full_velocity_, state_.T_world_base, age) : 1.0;
   if (advice_.speed_factor < 0.0 || speed_factor() < 0.0)
     verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, crowd_, true));
 }
@@ -322,7 +328,7 @@ double Controller::wanted_factor(TimePoint now) const noexcept {
   if (verdict_.mode >= Mode::hold || cancelled_) return 0.0;
   const bool silent = attention_silent(now);
   double wanted = std::min({go_.override_factor, guard_verdict_.forward, silent ? settings_.attention_lost_factor : advice_.speed_factor});
-  wanted = std::min(wanted, cost_share());
+  wanted = std::min({wanted, cost_share(), guard_verdict_.view});
   if (forecast_.collides && forecast_.trajectory == piece().id) {
     const double share = (forecast_.time_to_collision - settings_.forecast_hold) / (settings_.forecast_slow - settings_.forecast_hold);
     wanted = std::min(wanted, std::clamp(share, 0.0, 1.0));
@@ -375,6 +381,8 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.cost_slow = in.running && cost_share() < 0.999;
   in.stop_unproven = unproven_shown_ > 0;
+  in.blind = blind_ && human_seen_.ever;
+  in.blind_ahead = in.running && guard_verdict_.view < 0.999;
   in.override_slow = go_.override_factor < 0.999;
   in.go_epoch = go_.epoch;
   in.go_allowed = gate_.allowed();
@@ -730,7 +738,9 @@ bool Controller::step(TimePoint now, bool late) noexcept {
   step_hands(now);
   step_head();
   check_last();
+  const std::uint64_t unproven = unproven_;
   prove_stop(now);
+  if (unproven == unproven_) keep_observed(now);  // else the stop that is sent was observed with the set-point before
   measure(set_point_, next_, robot_->guard_limits(), settings_.period, shares_);
   set_point_ = next_;
   return true;

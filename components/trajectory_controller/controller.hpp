@@ -23,6 +23,7 @@
 #include "components/trajectory_controller/reach_limit.hpp"
 #include "components/trajectory_controller/setpoint_check.hpp"
 #include "components/trajectory_controller/stop_proof.hpp"
+#include "components/trajectory_controller/stop_space.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -52,6 +53,7 @@ struct ControllerSettings {
   TimeoutSettings timeouts;
   GuardSettings guard;
   StopProofSettings proof;
+  ViewSettings view;
   HandSettings hand;
   ContactSettings contact;
 };
@@ -180,6 +182,8 @@ class Controller {
   bool attention_silent(TimePoint now) const noexcept;
   void check_last() noexcept;
   void prove_stop(TimePoint now) noexcept;
+  void keep_observed(TimePoint now) noexcept;
+  std::string why_blind() const;
   void follow_checked_stop(bool arm, bool hand, bool head) noexcept;
   double held_payload() const noexcept;
   AxisState sent(int axis) const noexcept;
@@ -260,6 +264,8 @@ class Controller {
 
   StopProof proof_;
   ReachLimit reach_limit_;
+  StopSpace stop_space_;
+  bool blind_{};              // where the arm can be within the stop of the last set-point no live source looks
   std::uint64_t unproven_{};  // set-points replaced by those of a checked stop so far
   int unproven_shown_{};      // cycles for which the cause is still shown
   int rejoins_in_vain_{};     // how often, lately, the path was left again for want of a proof

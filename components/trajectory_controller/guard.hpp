@@ -40,6 +40,7 @@ struct GuardVerdict {
   double needed{};                                                ///< distance the rule asks for there at the present factor [m]
   int link{-1};                                                   ///< of the robot, that is nearest; -1: nobody
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< on the axes of the two nearest capsules, world [m]
+  double view{1.0};                                               ///< largest factor at which a stop stays where a live source looks
   bool separation{};                                              ///< the separation rule made it less than 1
   bool wall{};                                                    ///< a wall made it less than 1
   bool uncovered{};                                               ///< nobody seen, but nobody is not a fact

@@ -94,6 +94,7 @@ std::string HandExecutor::accept(const HandCommand& command) {
     return {};
   }
   release_.disarm();
+  release_.forget_load();
   for (std::size_t i = 0; i < fingers_.size(); ++i)
     fingers_[i].final = std::clamp(command.position[static_cast<Eigen::Index>(i)], lower_[i], upper_[i]);
   const bool holds = state_ == HandState::grasped;
@@ -291,6 +292,9 @@ void HandExecutor::give_way(const RobotState& robot, double dt) noexcept {
 void HandExecutor::step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept {
   const RobotState& robot = *in.robot;
   if (in.new_state) person_near_ = in.person_distance <= settings_.person_range;
+  // In Hold and above nothing is sure about where people are.
+  const bool alone = in.may_move && !person_near_ && !release_.armed();
+  if (in.new_state && alone && state_ == HandState::grasped) release_.bear(in.force, now);
   if (in.clamped && person_near_ && closed_) free_person();
   if (phase_ != Phase::releasing) freeing_ = false;
   if (!in.may_move && !paused_ && !freeing_) {

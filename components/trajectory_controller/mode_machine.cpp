@@ -24,6 +24,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(hold, Cause::forecast_silent, in.running && forecast_age > timeouts_.forecast);
   set(hold, Cause::forecast_collision, in.forecast_collision_hold);
   set(hold, Cause::cycle_late, in.cycle_late);
+  set(hold, Cause::blind, in.blind);
   set(hold, in.awaits_person ? Cause::awaits_person : Cause::no_go, in.go_age >= 0 && !in.go_allowed);
   const bool supervisor_silent = in.go_age > timeouts_.supervisor;
   set(supervisor_silent && !in.running ? hold : slow, Cause::supervisor_silent, supervisor_silent);
@@ -42,6 +43,7 @@ ModeVerdict ModeMachine::update(const ModeInputs& in) noexcept {
   set(slow, Cause::cost_ahead, in.cost_slow);
   set(slow, Cause::override_slow, in.override_slow);
   set(slow, Cause::stop_unproven, in.stop_unproven);
+  set(slow, Cause::blind, in.blind_ahead);
 
   if (fault | stop | hold) {
     latched_ = std::max(latched_, fault ? Mode::fault : stop ? Mode::stop : Mode::hold);
@@ -75,6 +77,7 @@ Cause gravest(std::uint32_t causes) {
                               Cause::contact,
                               Cause::stop_unproven,
                               Cause::human_state_silent,
+                              Cause::blind,
                               Cause::forecast_collision,
                               Cause::separation,
                               Cause::human_unknown,

@@ -29,6 +29,7 @@ struct ModeInputs {
   bool forecast_collision_hold{}, forecast_collision_slow{};
   bool separation_slow{}, separation_stop{}, human_unknown{}, wall_slow{}, contact_stop{}, clamped{};
   bool attention_slow{}, cost_slow{}, override_slow{}, stop_unproven{};
+  bool blind{}, blind_ahead{};  ///< no live source looks where the arm can be within its stop; nor where its path leads
   std::uint64_t go_epoch{};
   bool go_allowed{}, go_acknowledge{};
   std::uint64_t first_go_epoch{};  ///< of the Go heard first since the start, which permits no motion

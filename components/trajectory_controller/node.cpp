@@ -8,10 +8,12 @@ namespace handsel::trajectory_controller {
 
 namespace {
 constexpr Duration kReportPeriod = std::chrono::milliseconds(20);
-}
+constexpr Duration kReasonPeriod = std::chrono::seconds(1);  // of the reason in this process' health: how long a source is silent changes
+}  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
-    : settings_(load_settings(context.settings / "trajectory_controller.txtpb")),
+    : bus_(bus),
+      settings_(load_settings(context.settings / "trajectory_controller.txtpb")),
       core_(settings_, context.robot),
       command_out_(bus.advertise<JointCommand>()),
       active_out_(bus.advertise<ActiveTrajectory>()),
@@ -55,6 +57,11 @@ void Node::tick(TimePoint now) {
     ExecutionStatus status = core_.status();
     if (has_second_writer()) status.causes |= bit(Cause::second_writer);
     status_out_->publish(status);
+    if (const bool blind = (status.causes & bit(Cause::blind)) != 0; blind != blind_ || (blind && now >= next_reason_)) {
+      bus_.set_degraded(blind ? status.reason : "");
+      blind_ = blind;
+      next_reason_ = now + kReasonPeriod;
+    }
     told_ = key;
     next_status_ = now + kReportPeriod - from_seconds(0.5 * settings_.period);
   }

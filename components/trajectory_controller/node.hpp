@@ -24,6 +24,7 @@ class Node {
   /// Whether a topic this node reads has a second writer.
   bool has_second_writer() const;
 
+  Bus& bus_;
   ControllerSettings settings_;
   Controller core_;
   std::unique_ptr<Publisher<JointCommand>> command_out_;
@@ -34,7 +35,8 @@ class Node {
   std::uint64_t late_before_{};
   JointCommand command_;
   StatusKey told_;
-  TimePoint next_active_{}, next_status_{};
+  TimePoint next_active_{}, next_status_{}, next_reason_{};
+  bool blind_{};  // the health of this process says so
 };
 
 }  // namespace handsel::trajectory_controller

@@ -11,13 +11,21 @@ constexpr double kLeastLoad = 0.4;   // [N] below this the load's share says not
 
 void ReleaseWatch::arm(double threshold) noexcept {
   armed_ = true;
-  started_ = above_ = false;
+  started_ = above_ = baseline_checked_ = false;
   grip_ = Grip::hold;
   threshold_ = threshold;
   pull_ = slack_for_ = lost_for_ = loose_for_ = 0.0;
   share_ = 1.0;
   baseline_samples_ = 0;
   baseline_ = filtered_ = quick_ = mean_ = Vector3::Zero();
+}
+
+void ReleaseWatch::bear(const Vector3& force, TimePoint now) noexcept {
+  if (!force.allFinite()) return;
+  const double dt = std::max(0.0, to_seconds(now - load_felt_));
+  load_ = load_known_ ? Vector3(load_ + (force - load_) * (dt / (settings_.baseline_time + dt))) : force;
+  load_known_ = true;
+  load_felt_ = now;
 }
 
 void ReleaseWatch::filter(const Vector3& force, double dt) noexcept {
@@ -65,6 +73,10 @@ Grip ReleaseWatch::update(const Felt& felt, TimePoint now) noexcept {
   if (to_seconds(now - first_) < settings_.baseline_time || baseline_samples_ == 0) {
     baseline_ += (felt.force - baseline_) / ++baseline_samples_;
     return grip_;
+  }
+  if (!baseline_checked_) {
+    baseline_checked_ = true;
+    if (load_known_ && felt.person_near && (baseline_ - load_).norm() >= threshold_) baseline_ = load_;
   }
   filter(felt.force, dt);
   const bool pulled = strong(felt.toward, now);

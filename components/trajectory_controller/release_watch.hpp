@@ -43,6 +43,11 @@ class ReleaseWatch {
   /// Starts over: the load's own force is measured from the samples that follow. threshold: least pull that counts [N].
   void arm(double threshold) noexcept;
   void disarm() noexcept { armed_ = false; }
+  /// One sample of the load's own force while no person's hand is near, before arming. Somebody who has hold of the load already when the
+  /// watch is armed is told apart from the load by it.
+  void bear(const Vector3& force, TimePoint now) noexcept;
+  /// The hand takes hold of something else.
+  void forget_load() noexcept { load_known_ = false; }
   bool armed() const { return armed_; }
 
   Grip update(const Felt& felt, TimePoint now) noexcept;
@@ -59,12 +64,13 @@ class ReleaseWatch {
   void close_again() noexcept;
 
   PullSettings settings_;
-  bool armed_{}, started_{}, above_{};
+  bool armed_{}, started_{}, above_{}, load_known_{}, baseline_checked_{};
   Grip grip_{Grip::hold};
   double threshold_{}, pull_{}, share_{1.0}, impulse_{}, slack_for_{}, lost_for_{}, loose_for_{};
   int baseline_samples_{};
   std::uint64_t regrips_{};
-  TimePoint first_{}, last_{}, above_since_{};
+  TimePoint first_{}, last_{}, above_since_{}, load_felt_{};
+  Vector3 load_{Vector3::Zero()};  // averaged while no person's hand was near
   Vector3 baseline_{Vector3::Zero()}, filtered_{Vector3::Zero()}, quick_{Vector3::Zero()}, mean_{Vector3::Zero()};
 };
 

@@ -109,6 +109,15 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
 
   s.proof = read_stop_proof(in.stop_proof(), read, file);
 
+  const auto& v = in.view();
+  if (!v.has_require_view()) throw ConfigError(locate(file, "view") + ": view.require_view must be given, true or false");
+  s.view.require_view = v.require_view();
+  s.view.max_view_age = read(v.max_view_age(), "max_view_age", kTiny, 10);
+  s.view.margin = read(v.margin(), "margin", 0, 1);
+  s.view.ahead_margin = read(v.ahead_margin(), "ahead_margin", 0, 1);
+  s.view.edge_factor = read(v.edge_factor(), "edge_factor", kTiny, 1);
+  s.view.floor = read(v.floor(), "floor", -100, 100);
+
   const auto& c = in.contact();
   s.contact.torque = read(c.torque(), "torque", kTiny, 1000);
   s.contact.time = read(c.time(), "time", 0, 10);

@@ -116,6 +116,14 @@ double StopProof::AxisStop::max_speed_between(double from, double to) const noex
   return most;
 }
 
+void StopProof::position_at(bool robot_side, double time, Vector& position) const noexcept {
+  const Stop& stop = robot_side ? robot_side_ : at_once_;
+  for (int k = 0; k < stop.count; ++k) {
+    const AxisStop& axis = stop.axes[static_cast<std::size_t>(k)];
+    position[axis.axis] = axis.at(time).position;
+  }
+}
+
 /// Every axis goes on with its acceleration for `delay`, then stops by itself.
 void StopProof::plan(const MotionState3& state, double delay, Stop& stop) const noexcept {
   stop.count = 0;
@@ -347,11 +355,12 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
 }
 
 bool StopProof::check(const MotionState3& state, const Crowd& people, const Pose& T_world_base, double age, double payload) noexcept {
-  if (!settings_.enabled) return true;
   plan(state, 0.0, at_once_);
   if (at_once_.count == 0) return true;
   plan(state, settings_.robot_side_delay, robot_side_);
+  bound_motion();
   refutation_ = {};
+  if (!settings_.enabled) return true;
   if (!at_once_.inside) return false;
   if (people.capsules.empty()) return true;
   for (std::size_t r = 0; r < kBodyRegions; ++r) {
@@ -360,7 +369,6 @@ bool StopProof::check(const MotionState3& state, const Crowd& people, const Pose
     finger_ratio_[r] = reduced_mass(limit, finger_mass_) / reduced_mass(limit, std::max(settings_.min_robot_mass, moving_mass_));
   }
   min_contact_speed_ = *std::min_element(max_contact_speed_.begin(), max_contact_speed_.end());
-  bound_motion();
   const double duration = std::max(at_once_.duration, robot_side_.duration) + settings_.latency + age;
   const bool rooms_hold = room_of_ == people.revision && (T_world_base.matrix() - room_base_.matrix()).isZero(0.0);
   if (rooms_hold && far_from_everybody(state, duration)) return true;

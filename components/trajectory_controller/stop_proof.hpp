@@ -63,6 +63,17 @@ class StopProof {
   bool check(const MotionState3& state, const Crowd& people, const Pose& T_world_base, double age, double payload) noexcept;
   const StopRefutation& refutation() const noexcept { return refutation_; }  ///< of the last check that failed
   const MovingChain& chain() const noexcept { return chain_; }
+
+  // Of the set-point checked last.
+  /// Whether any axis moves; if not, there is no stop.
+  bool moving() const noexcept { return at_once_.count > 0; }
+  /// Bounds for a capsule of chain(): how far it travels [m] and how fast it is [m/s] in either stop.
+  double max_travel(std::size_t capsule) const noexcept { return moving() ? max_travel_[capsule] : 0.0; }
+  double max_speed(std::size_t capsule) const noexcept { return moving() ? max_carried_[capsule] + max_inner_[capsule] : 0.0; }
+  /// How long the stop takes, the robot side's or the controller's own [s].
+  double duration(bool robot_side) const noexcept { return (robot_side ? robot_side_ : at_once_).duration; }
+  /// Where the axes are `time` after the set-point [s]; of axes that stand, `position` keeps what it has.
+  void position_at(bool robot_side, double time, Vector& position) const noexcept;
   /// Returns the largest contact speed of a region for the robot holding `payload` [m/s].
   double max_speed_at(BodyRegion region, double payload) const noexcept;
   const StopProofSettings& settings() const noexcept { return settings_; }

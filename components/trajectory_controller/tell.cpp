@@ -40,14 +40,17 @@ ExecutionStatus Controller::status() const {
   for (std::size_t i = 1; i < hands_.size(); ++i) s.other_hands.push_back({hands_[i].group, told_hand(hands_[i])});
   if (!refusal_.empty()) {
     s.reason = refusal_;
+    if ((verdict_.causes & bit(Cause::blind)) != 0) s.reason = std::string(name(Cause::blind)) + ": " + why_blind() + "; " + s.reason;
   } else if (verdict_.mode >= Mode::hold) {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
     if (latched_cause_ == Cause::cycle_late && !state_.refusal.empty()) s.reason += ": " + state_.refusal;
     if (latched_cause_ == Cause::contact || latched_cause_ == Cause::clamped)
       s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
+    if (latched_cause_ == Cause::blind && (verdict_.causes & bit(Cause::blind)) != 0) s.reason += ": " + why_blind();
     if ((verdict_.causes & bit(Cause::awaits_person)) != 0 && !why_no_go().empty()) s.reason += ": " + why_no_go();
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {
     s.reason = name(cause);
+    if (cause == Cause::blind) s.reason += ": " + why_blind();
     if (cause == Cause::attention_slow) s.reason += ": " + advice_.reason;
     if (cause == Cause::forecast_collision) s.reason += ": " + forecast_.reason;
   } else if (settings_.dry_run) {

@@ -12,6 +12,7 @@
 #include "common/trajectory/solve.hpp"
 #include "components/collision_checker/forecaster.hpp"
 #include "components/trajectory_controller/controller.hpp"
+#include "tests/support/live_view.hpp"
 
 namespace {
 
@@ -49,6 +50,7 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
   state.mode = DriveMode::enabled;
   HumanState people;
   people.covered = true;
+  people.views = {test::live_view()};
   Person person;
   person.id = "anna";
   person.joints = standing_body(Vector3(1.4, 0.2, 0), M_PI, 1.75);

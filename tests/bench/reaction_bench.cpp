@@ -29,6 +29,7 @@
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/solve.hpp"
+#include "tests/support/live_view.hpp"
 
 namespace handsel {
 namespace {
@@ -116,13 +117,15 @@ class Probe {
  public:
   Probe(std::uint32_t domain, int wanted)
       : robot_(RobotModel::load(robot_description("jido"))),
-        bus_({.component = "reaction_probe sim spark supervisor manipulation_planner", .domain = domain, .realtime = true, .health = false}),
+        bus_(
+            {.component = "reaction_probe sim spark supervisor manipulation_planner", .domain = domain, .realtime = true, .health = false}),
         wanted_(wanted) {
     state_.robot = robot_.name();
     state_.position = robot_.rest_posture();
     state_.velocity = state_.effort = Vector::Zero(robot_.dof());
     state_.mode = DriveMode::enabled;
     people_.covered = true;
+    people_.views = {test::live_view()};
     go_.epoch = go_.state_revision = 1;
     go_.allowed = true;
     forecast_.time_to_collision = 1e9;

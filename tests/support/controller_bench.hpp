@@ -12,6 +12,7 @@
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "components/trajectory_controller/controller.hpp"
+#include "tests/support/live_view.hpp"
 #include "tests/support/small_robot.hpp"
 
 namespace handsel::test {
@@ -22,6 +23,7 @@ class ControllerBench {
       : settings(with), robot(small_robot()), core(with, robot) {
     measured = measured_velocity = Vector::Zero(robot->dof());
     people.covered = true;
+    people.views = {live_view()};
     Go first;  // moves nothing: the controller waits for a newer one
     first.state_revision = 1;
     core.on(first, now);

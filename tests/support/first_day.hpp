@@ -20,6 +20,7 @@
 #include "common/trajectory/solve.hpp"
 #include "deploy/drivers/maker_udp.hpp"
 #include "tests/support/background.hpp"
+#include "tests/support/live_view.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace handsel::test {
@@ -57,6 +58,7 @@ class FirstDay {
     go_.epoch = go_.state_revision = 1;
     go_.allowed = true;
     people_.covered = true;
+    people_.views = {live_view()};
     forecast_.time_to_collision = 1e9;
     speak();
     driver_ = start("handsel_" + plan.arm);

@@ -12,17 +12,16 @@
 #include <random>
 #include <sstream>
 
-#include "common/config/resources.hpp"
-#include "common/model/robot_model.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/system.hpp"
-#include "deploy/handsel/system_options.hpp"
 #include "tests/support/background.hpp"
+#include "tests/support/busy_system.hpp"
 #include "tests/support/shell.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace handsel {
 namespace {
+
+using test::BusySystem;
+using test::environment;
 
 constexpr int kDomain = 40;
 constexpr double kRest = 5e-4;  // [rad] the arm stands: 0.000
@@ -41,11 +40,6 @@ struct Death {
   std::uint64_t seed{};
 };
 
-std::string environment(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value == nullptr ? "" : value;
-}
-
 bool named(const std::string& list, const std::string& name) {
   if (list.empty()) return true;
   std::istringstream in(list);
@@ -54,109 +48,12 @@ bool named(const std::string& list, const std::string& name) {
   return false;
 }
 
-/// A running system with something to do at all times: a mug is picked up and put down again.
-class BusySystem {
- public:
-  BusySystem() : system_({.domain = kDomain, .scenario = "give_mug", .seed = 11, .web_port = 0}) {
-    const RobotModel robot = RobotModel::load(robot_description(robot_of(system_.options())));
-    arm_ = robot.require_group("arm").axes;
-    Bus& bus = system_.session().bus();
-    sim_ = bus.advertise<SimControl>();
-    bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { watch(state); });
-  }
-
-  bool ready() { return system_.wait_ready(kReadyPatience).has_value(); }
-  const Snapshot& now() { return system_.session().snapshot(); }
-  const SafetyState& safety() { return now().safety.sample; }
-  std::uint64_t incarnation(const std::string& process) {
-    const auto found = now().health.find(process);
-    return found == now().health.end() ? 0 : found->second.sample.incarnation;
-  }
-  bool is_ok(const std::string& process) {
-    const auto found = now().health.find(process);
-    return found != now().health.end() && found->second.sample.state == HealthState::ok;
-  }
-  bool moves() { return now().truth.ever && now().truth.sample.robot_moving; }
-  void kill(const std::string& process) {
-    const pid_t pid = system_.launcher().pid(process);
-    ASSERT_GT(pid, 0) << process;
-    ::kill(pid, SIGKILL);
-  }
-  void say(TaskKind kind, double value = 0.0) {
-    TaskGoal goal{.id = system_.session().new_task_id(), .kind = kind};
-    goal.value = value;
-    said_ = goal.id;
-    system_.session().send(goal);
-  }
-  void stop_robot(const std::string& how) {
-    system_.session().wait(from_seconds(1.0), [&] { return sim_->readers() > 0; });
-    sim_->publish({.action = SimAction::robot_stop, .subject = how});
-  }
-  bool answered() {
-    const auto found = now().tasks.find(said_);
-    return found != now().tasks.end() && is_over(found->second.state);
-  }
-
-  /// Waits until `done`, giving tasks all the while.
-  bool wait(Duration limit, const std::function<bool()>& done) {
-    return system_.wait(limit, [&] {
-      keep_busy();
-      return done();
-    });
-  }
-  void listen(Duration time) {
-    wait(time, [] { return false; });
-  }
-  /// From now on the largest deviation of an axis of the arm counts.
-  void mark() {
-    marked_.resize(0);
-    deviation_ = 0.0;
-    fastest_ = 0.0;
-  }
-  double deviation() const { return deviation_; }
-  /// Largest speed factor in force since mark().
-  double fastest() const { return fastest_; }
-
- private:
-  void watch(const RobotState& state) {
-    if (marked_.size() == 0) marked_ = state.position;
-    for (const int axis : arm_) deviation_ = std::max(deviation_, std::abs(state.position[axis] - marked_[axis]));
-    if (now().active.ever) fastest_ = std::max(fastest_, std::abs(now().active.sample.speed_factor));
-  }
-  /// Gives the next task when the last one is over; a supervisor that was started anew is asked again.
-  void keep_busy() {
-    Session& session = system_.session();
-    const TimePoint time = session.bus().now();
-    if (time - sent_ < kTaskSilence) return;
-    const auto status = now().tasks.find(goal_.id);
-    const bool over = status != now().tasks.end() && is_over(status->second.state);
-    const bool silent = time - now().task.arrival >= kTaskSilence;
-    if (goal_.id != 0 && !over && !silent && status != now().tasks.end()) return;
-    if (goal_.id == 0 || over) {
-      const bool holds = now().truth.sample.carrier == "robot";
-      goal_ = {.id = session.new_task_id(), .kind = holds ? TaskKind::place : TaskKind::pick, .object = "mug"};
-      if (holds) goal_.surface = "table";
-    }
-    session.publish(goal_);
-    sent_ = time;
-  }
-
-  System system_;
-  std::vector<int> arm_;
-  std::unique_ptr<Publisher<SimControl>> sim_;
-  TaskGoal goal_;
-  TimePoint sent_{};
-  std::uint64_t said_{};
-  Vector marked_;
-  double deviation_{}, fastest_{};
-};
-
 class LatchesOverDds : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     // Latches of this test stay in this test, whatever becomes of it.
     setenv("HANDSEL_STATE", folder().path().c_str(), 1);
-    busy_ = std::make_unique<BusySystem>();
+    busy_ = std::make_unique<BusySystem>(kDomain);
     ASSERT_TRUE(busy_->ready());
   }
   static void TearDownTestSuite() { busy_.reset(); }

@@ -55,6 +55,13 @@ target_compile_definitions(test_latches PRIVATE HANDSEL_COMMAND="$<TARGET_FILE:h
 add_dependencies(test_latches product)
 set_tests_properties(latches PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
 
+# Sources of people that fall silent, freeze, repeat nobody, are late or look elsewhere: each once every time, eight times for all.
+handsel_test(blind SOURCES ${CMAKE_CURRENT_LIST_DIR}/blind_test.cpp LINK handsel_command LABEL fault)
+add_dependencies(test_blind product)
+set_tests_properties(blind PROPERTIES RUN_SERIAL TRUE TIMEOUT 300)
+add_test(NAME blind_forty COMMAND test_blind)
+set_tests_properties(blind_forty PROPERTIES LABELS full RUN_SERIAL TRUE TIMEOUT 1800 ENVIRONMENT HANDSEL_RUNS=8)
+
 # Long: trials of people who differ over real processes, and deaths at random.
 handsel_test(exchanges SOURCES ${CMAKE_CURRENT_LIST_DIR}/exchanges_test.cpp LINK handsel_command LABEL full)
 add_dependencies(test_exchanges product)

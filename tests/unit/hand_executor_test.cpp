@@ -332,5 +332,21 @@ TEST_F(HandTest, refuses_what_it_cannot_do) {
   EXPECT_NE(hand_.accept(c), "");
 }
 
+/// How the grip ends when somebody has hold of the load, 3 N, with 4 N from before the watch is armed until its end.
+Grip pulled_before_the_offer(bool load_felt_before) {
+  ReleaseWatch watch{PullSettings{}};
+  const Vector3 load(0, 0, -3), toward(1, 0, 0);
+  TimePoint now{from_seconds(10)};
+  for (int k = 0; k < 500 && load_felt_before; ++k) watch.bear(load, now += from_seconds(0.002));
+  watch.arm(1.5);
+  for (int k = 0; k < 1000; ++k) watch.update({load + 4.0 * toward, toward, true, true}, now += from_seconds(0.002));
+  return watch.grip();
+}
+
+TEST(ReleaseWatch, a_pull_from_before_the_offer_counts_where_the_load_was_felt_alone) {
+  EXPECT_EQ(pulled_before_the_offer(true), Grip::open);
+  EXPECT_EQ(pulled_before_the_offer(false), Grip::hold) << "nothing tells it from the load";
+}
+
 }  // namespace
 }  // namespace handsel::trajectory_controller

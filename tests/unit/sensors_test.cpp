@@ -336,6 +336,63 @@ TEST(Sensors, FaultsInTimeDoWhatTheySay) {
   for (const auto& d : with(SensorFaultKind::blind)) EXPECT_EQ(d.message.people.empty(), during(d));
 }
 
+TEST(Sensors, a_disturbance_comes_and_goes_while_it_runs) {
+  const Person anna = person_at("anna", 1.4, 0);
+  Sight sight;
+  sight.people = {&anna};
+  SensorSettings s = plain();
+  s.noise = 0.01;
+  HumanSensor sensor(s, 3);
+  double now = 0;
+  const auto watch_for = [&](double seconds) {
+    Stream out;
+    for (const double end = now + seconds; now < end; now += 0.001) {
+      if (sensor.due(now)) sensor.observe(now, sight);
+      sensor.collect(now, out);
+    }
+    return out;
+  };
+  const auto healthy = [&] {
+    for (const auto& d : watch_for(1.0))
+      if (d.seen > now - 0.4) {
+        EXPECT_EQ(d.message.people.size(), 1u);
+        EXPECT_EQ(d.message.coverage.high, s.coverage.high);
+        EXPECT_NEAR(d.due - d.seen, s.latency, 1e-9);
+      }
+  };
+  const auto disturbed = [&](const SensorFault& fault) {
+    sensor.disturb(fault);
+    watch_for(0.6);
+    const Stream out = watch_for(0.5);
+    sensor.restore();
+    return out;
+  };
+  healthy();
+  const Stream empty = disturbed({SensorFaultKind::repeated_empty, now, 9});
+  ASSERT_GT(empty.size(), 10u);
+  for (const auto& d : empty) {
+    EXPECT_TRUE(d.message.people.empty());
+    EXPECT_EQ(d.message.coverage.high, s.coverage.high) << "it claims to see nobody";
+    EXPECT_EQ(d.seen, empty.front().seen) << "and says so of the same instant";
+  }
+  healthy();
+  for (const auto& d : disturbed({SensorFaultKind::elsewhere, now, 9, {100, 0, 0}})) {
+    EXPECT_TRUE(d.message.people.empty());
+    EXPECT_EQ(d.message.coverage.low.x(), s.coverage.low.x() + 100);
+  }
+  healthy();
+  for (const auto& d : disturbed({SensorFaultKind::late, now, 9, Vector3::Zero(), 0.5})) EXPECT_NEAR(d.due - d.seen, 0.5 + s.latency, 1e-9);
+  healthy();
+  for (int again = 0; again < 2; ++again) {
+    const Stream frozen = disturbed({SensorFaultKind::frozen, now, 9});
+    ASSERT_GT(frozen.size(), 10u);
+    EXPECT_NE(frozen.front().seen, frozen.back().seen) << "with new stamps";
+    EXPECT_EQ(frozen.front().message.people.at(0).joints.at(0).position, frozen.back().message.people.at(0).joints.at(0).position);
+    EXPECT_GT(frozen.front().seen, now - 0.6) << "not a picture of an earlier disturbance";
+    healthy();
+  }
+}
+
 TEST(Sensors, TheSameSeedGivesTheSameStream) {
   SensorSettings s = plain();
   s.noise = 0.01;

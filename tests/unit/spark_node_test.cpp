@@ -114,6 +114,30 @@ TEST_F(SparkNode, nobody_is_a_fact_only_once_it_is_known_who_was_lost_before) {
   EXPECT_GT(people_.people[0].inflation, 1.6 * 30);
 }
 
+TEST_F(SparkNode, a_source_that_is_always_late_is_not_live_and_its_people_are_as_old) {
+  start();
+  const Bus& clock = network_.add("clock");
+  for (int i = 0; i < 15; ++i) {
+    HumanObservation late;
+    late.source = "camera";
+    late.coverage = {{-5, -5, -1}, {5, 5, 3}};
+    late.stamp = clock.stamp_now() - std::chrono::nanoseconds(milliseconds(500)).count();
+    late.people.push_back({"anna", {}, false});
+    for (const BodyJoint& joint : standing_body(Vector3(2.5, 0, 1e-4 * (i % 2)), 0, 1.7))
+      late.people[0].joints.push_back({joint.name, joint.position, 1});
+    people_out_->publish(late);
+    network_.run_for(milliseconds(33));
+  }
+  ASSERT_EQ(people_.views.size(), 1u);
+  EXPECT_FALSE(people_.views[0].live);
+  EXPECT_THAT(people_.views[0].reason, HasSubstr("is late: its pictures are 0.50 s old"));
+  ASSERT_EQ(people_.people.size(), 1u);
+  EXPECT_GE(people_.people[0].age, 0.5);
+  network_.run_for(milliseconds(300));
+  EXPECT_EQ(health_.state, HealthState::degraded);
+  EXPECT_THAT(health_.reason, HasSubstr("source camera is"));
+}
+
 TEST_F(SparkNode, a_camera_that_speaks_in_its_own_frame_is_brought_to_the_world) {
   folder_.write("calibration.txtpb", R"(sources { source: "side" speaks_in: CAMERA T_world_camera { position { x: 1 y: 2 z: 0.1 } } })");
   start();

@@ -18,6 +18,7 @@ config::SparkSettings settings() {
   s.set_lost_speed(1.6);
   s.set_lost_after(0.2);
   s.set_coverage_memory(0.5);
+  s.set_max_view_age(0.25);
   s.set_association_distance(0.35);
   s.set_joint_noise(0.01);
   s.set_gaze_memory(0.5);

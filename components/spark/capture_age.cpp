@@ -1,0 +1,33 @@
+#include "components/spark/capture_age.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace handsel::spark {
+
+SourceClock clock_of(const config::SparkSettings& settings, const std::string& source) {
+  SourceClock clock{settings.clock_error(), std::nullopt};
+  for (const config::SourceClock& one : settings.clocks()) {
+    if (one.source() != source) continue;
+    if (one.has_clock_error()) clock.error = one.clock_error();
+    if (one.has_assumed_latency()) clock.assumed_latency = one.assumed_latency();
+  }
+  return clock;
+}
+
+CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double least_latency, const SourceClock& clock) {
+  const double at_least = std::max(0.0, relative) + least_latency;
+  if (stamp == 0) {
+    if (!clock.assumed_latency) return {at_least, "gives no capture stamps, and no assumed_latency is set for it in spark.txtpb"};
+    return {std::max(at_least, *clock.assumed_latency), ""};
+  }
+  const double since = to_seconds(Duration(arrival - stamp));
+  if (since < -clock.error) {
+    char text[96];
+    std::snprintf(text, sizeof text, "stamps its pictures %.3f s in the future; its clock may be off by %.3f s", -since, clock.error);
+    return {at_least, text};
+  }
+  return {std::max(at_least, since + clock.error), ""};
+}
+
+}  // namespace handsel::spark

@@ -1,0 +1,29 @@
+// How old a picture is: its capture stamp against the system clock. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/base/time.hpp"
+#include "common/config/spark.pb.h"
+
+namespace handsel::spark {
+
+/// The clock that stamps a source's pictures.
+struct SourceClock {
+  double error{};                         ///< bound of its offset from the system clock here [s]
+  std::optional<double> assumed_latency;  ///< of pictures without a stamp [s]; none: their age is unknown
+};
+SourceClock clock_of(const config::SparkSettings& settings, const std::string& source);
+
+struct CaptureAge {
+  double age{};         ///< since the capture, at arrival: never less than it is [s]
+  std::string unknown;  ///< why the age is not known, one sentence; empty: it is
+};
+
+/// Returns the age of a picture at its arrival. `stamp`: of its capture, 0: none. `arrival`: the system clock then. `relative`: by how much
+/// it took longer than the fastest one of its source [s]: of a delay that is always there this shows nothing, of a system clock that was
+/// set nothing either. `least_latency`: no tracker is faster [s].
+CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double least_latency, const SourceClock& clock);
+
+}  // namespace handsel::spark
