@@ -13,11 +13,6 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kStopSlack = 0.05;     // [s] after detection and the fastest stop the robot rests
-constexpr double kLeastLook = 0.6;      // speed factor looked ahead with at least: who goes on must also be able to stop
-constexpr double kBackward = 0.02;      // it runs back
-constexpr int kYieldEvery = 10;         // cycles
-constexpr int kMaxRejoins = 4;          // of a path, one soon after the other, that end in a set-point without a checked stop
-constexpr double kUnprovenShown = 0.5;  // [s] that the cause is shown after a set-point without a checked stop
 constexpr double kGuardSlack = 0.02;    // [s] likewise when the guard asks for less speed: the rest is the person's
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot, const Group* fingers) {
@@ -49,9 +44,6 @@ std::vector<int> trajectory_axes(const RobotModel& robot) {
     if (!other[static_cast<std::size_t>(i)]) axes.push_back(i);
   return axes;
 }
-
-/// Does the robot side follow set-points? It may stand although its drives are enabled.
-bool follows(const RobotState& state) { return state.mode == DriveMode::enabled && state.refusal.empty(); }
 
 void require(bool good, const char* sentence) {
   if (!good) throw ConfigError(std::string("trajectory_controller: ") + sentence);
@@ -114,7 +106,7 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
   constexpr Duration kFresh = std::chrono::milliseconds(50);  // older ones waited while this process slept
   if (asleep_ && age < kFresh) {
     asleep_ = false;
-    ready_ = follows(state);
+    ready_ = follows();
   }
   if (ready_ && !restarted) return;
   // The posture of a robot side that has just come up is the first set-point.
@@ -224,101 +216,6 @@ void Controller::stop_arm() noexcept {
   arm_ = Arm::stopping;
 }
 
-void Controller::run_guard(TimePoint now) noexcept {
-  if (arm_ != Arm::running || runner_.finished()) {
-    verdict_now_ = verdict_near_ = verdict_far_ = {};
-    verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
-    // At rest only the distance and the end of an exchange are of interest, and whether it may draw back.
-    if (cycles_ % (retreating_ ? kYieldEvery : 50) != 0) {
-      guard_verdict_ = verdict_now_;
-      if (retreating_) guard_verdict_.forward = retreat_share_;
-      return;
-    }
-    full_velocity_.setZero();
-    full_acceleration_.setZero();
-    if (retreating_) full_velocity_ = settings_.yield_speed * away_;
-  }
-  // In turn where the path is and where it will be a little later, the one or the other; where it is as soon as people have just been seen.
-  turn_ = new_people_ || arm_ != Arm::running ? 0 : (turn_ + 1) % 4;
-  const bool here = turn_ % 2 == 0;
-  if (here)
-    judge_path(0.0, verdict_now_, now);
-  else if (turn_ == 1)
-    judge_path(settings_.look_ahead, verdict_near_, now);
-  else
-    judge_path(settings_.look_far_ahead, verdict_far_, now);
-  if (here) nearest_ = verdict_now_;
-  new_people_ = false;
-  merge_verdicts();
-  retreat_share_ = guard_verdict_.forward;
-  if (here && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
-    exchanging_.clear();
-    for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
-  }
-}
-
-/// A path is judged before its first step; from rest it begins with no more than may be.
-void Controller::judge_new_path(TimePoint now) noexcept {
-  judge_path(0.0, verdict_now_, now);
-  judge_path(settings_.look_ahead, verdict_near_, now);
-  judge_path(settings_.look_far_ahead, verdict_far_, now);
-  merge_verdicts();
-  runner_.begin_with(std::max(0.0, wanted_factor(now)));
-}
-
-void Controller::merge_verdicts() noexcept {
-  guard_verdict_ = verdict_now_;
-  for (const GuardVerdict* ahead : {&verdict_near_, &verdict_far_}) {
-    guard_verdict_.forward = std::min(guard_verdict_.forward, ahead->forward);
-    guard_verdict_.backward = std::max(guard_verdict_.backward, ahead->backward);
-    guard_verdict_.separation = guard_verdict_.separation || ahead->separation;
-    guard_verdict_.wall = guard_verdict_.wall || ahead->wall;
-    guard_verdict_.view = std::min(guard_verdict_.view, ahead->view);
-  }
-}
-
-void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) noexcept {
-  posture_ = set_point_.position;
-  if (arm_ == Arm::running) {
-    full_velocity_.setZero();
-    full_acceleration_.setZero();
-    const double factor = runner_.factor(), pace = std::max(std::abs(factor), kLeastLook);
-    runner_.look(runner_.time() + ahead * (factor < -kBackward ? -pace : pace), path_);
-    for (std::size_t i = 0; i < axes_.size(); ++i) {
-      const auto axis = static_cast<Eigen::Index>(axes_[i]);
-      const auto k = static_cast<Eigen::Index>(i);
-      posture_[axis] = path_.position[k];
-      full_velocity_[axis] = path_.velocity[k];
-      full_acceleration_[axis] = path_.acceleration[k];
-    }
-  }
-  robot_->forward(posture_, links_);
-  link_twists(*robot_, full_velocity_, links_, twists_);
-  const PathMotion motion{&full_velocity_, &full_acceleration_, &links_, &twists_};
-  const StopTable stop = stop_table(motion, robot_->stop_limits());
-  const double age = std::max(0.0, human_seen_.age(now));
-  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, stop, crowd_, settings_.walls, age, speed_factor());
-  const ReachQuery query{posture_, full_velocity_, set_point_.acceleration, stop, state_.T_world_base, onward_ease(), age, held_payload()};
-  const double forward = reach_limit_.factor(query, crowd_, false);
-  verdict.separation = verdict.separation || forward < verdict.forward;
-  verdict.forward = std::min(verdict.forward, forward);
-  // Where the path is now is in the stop of the set-point itself.
-  const bool leads_on = arm_ == Arm::running && ahead > 0.0;
-  verdict.view = leads_on ? stop_space_.factor(posture_, full_velocity_, state_.T_world_base, age) : 1.0;
-  if (advice_.speed_factor < 0.0 || speed_factor() < 0.0)
-    verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, crowd_, true));
-}
-
-/// In which the stop limits take away the acceleration that still makes the arm faster [s].
-double Controller::onward_ease() const noexcept {
-  double longest = 0.0;
-  for (int axis : arm_axes_) {
-    const double onward = std::copysign(1.0, set_point_.velocity[axis]) * set_point_.acceleration[axis];
-    longest = std::max(longest, onward / robot_->stop_limits().jerk[axis]);
-  }
-  return longest;
-}
-
 bool Controller::attention_silent(TimePoint now) const noexcept {
   const double age = advice_seen_.age(now);
   return age < 0 || age > settings_.timeouts.attention;
@@ -354,11 +251,11 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.running_for = in.running ? to_seconds(now - started_) : 0.0;
   in.at_rest = at_rest();
   in.drive_enabled = state_.mode == DriveMode::enabled;
-  in.set_points_late = in.drive_enabled && !follows(state_);
+  in.set_points_late = in.drive_enabled && !follows();
 
   double off = 0.0;
   for (int axis : arm_axes_) off = std::max(off, std::abs(state_.position[axis] - set_point_.position[axis]));
-  tracking_for_ = follows(state_) && !settings_.dry_run && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
+  tracking_for_ = follows() && !settings_.dry_run && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
   in.tracking_error = tracking_for_ > settings_.tracking_time;
   in.limit_violation = limit_violation_;
   limit_violation_ = false;
@@ -400,16 +297,6 @@ double Controller::fastest_stop() const noexcept {
     longest = std::max(longest,
                        measure_stop(set_point_.velocity[axis], set_point_.acceleration[axis], l.acceleration[axis], l.jerk[axis]).duration);
   return longest;
-}
-
-/// Returns whether the arm is faster than the guard allows here and shortly ahead, by more than what the time law lags behind a verdict that
-/// changes slowly. What is allowed farther ahead lowers the speed along the path in time; leaving the path for it would begin anew for ever.
-bool Controller::too_fast() const noexcept {
-  constexpr double kLag = 1.1, kLeast = 0.02;
-  const double factor = speed_factor();
-  const double allowed = factor < 0.0 ? -std::max(verdict_now_.backward, verdict_near_.backward)
-                                      : std::min(verdict_now_.forward, verdict_near_.forward);
-  return std::abs(factor) > kLag * allowed + kLeast;
 }
 
 /// A stop along the path may take longer than the axes need: then it is ended beside it, in the time that is promised.
@@ -551,81 +438,14 @@ void Controller::step_head() noexcept {
   head_paused_ = !may_move;
 }
 
-/// How the axes move the point nearest to a person straight away from them.
-void Controller::aim_away() noexcept {
-  constexpr double kLeast = 0.05;  // [m] of lever
-  away_.setZero();
-  const Vector3 way = nearest_.on_robot - nearest_.on_person;
-  if (nearest_.link < 0 || !(way.norm() > 1e-6)) return;
-  const auto link = static_cast<std::size_t>(nearest_.link);
-  const Vector3 toward = state_.T_world_base.linear().transpose() * way.normalized();
-  robot_->forward(set_point_.position, links_);
-  const Vector3 lever = state_.T_world_base.inverse() * nearest_.on_robot - links_[link].translation();
-  for (int axis : arm_axes_) {
-    full_velocity_.setZero();
-    full_velocity_[axis] = 1.0;
-    link_twists(*robot_, full_velocity_, links_, twists_);
-    away_[axis] = (twists_[link].linear + twists_[link].angular.cross(lever)).dot(toward);
-  }
-  const double most = away_.cwiseAbs().maxCoeff();
-  away_ *= most > kLeast ? 1.0 / most : 0.0;
-}
-
-/// At rest the arm gives way to who pushes it, axis by axis, until the push ends; and draws back from who comes too near. In an exchange, and
-/// while a hand moves, it gives way to free what is clamped, only.
-void Controller::step_yield(TimePoint now) noexcept {
-  constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
-  const bool hands_rest =
-      std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
-  const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && follows(state_) &&
-                   settings_.yield_speed > 0.0 && ((exchanging_.empty() && hands_rest) || touch_ == Contact::clamped);
-  // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.
-  if (verdict_.mode >= Mode::hold && !held_before_) yield_waits_ = true;
-  held_before_ = verdict_.mode >= Mode::hold;
-  if (at_rest()) yield_waits_ = false;
-  const bool pushed = may && !yield_waits_ && contact_.pushed() && (verdict_.causes & (bit(Cause::robot_state_silent))) == 0;
-  constexpr double kLeastShare = 0.1;  // that the guard must allow
-  retreating_ = may && !pushed && verdict_.mode < Mode::hold && settings_.retreat_reach > 0.0 && !attention_silent(now) &&
-                advice_.speed_factor < 0.0 && nearest_.link >= 0;
-  if (retreating_ && cycles_ % kYieldEvery == 0) aim_away();
-  const double share = retreating_ && retreat_share_ >= kLeastShare ? retreat_share_ : 0.0;
-  const bool wanted = pushed || share > 0.0;
-  if (wanted && !yielding_ && at_rest()) {
-    yield_from_ = set_point_.position;
-    yielding_ = true;
-  }
-  if (!yielding_) return;
-  bool resting = true;
-  for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
-    const int axis = arm_axes_[i];
-    AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    const double push = pushed ? contact_.push(i) : 0.0, beyond = std::abs(push) / settings_.contact.yield_torque - 1.0;
-    const double wish = pushed ? std::copysign(std::clamp(beyond, 0.0, 1.0), push) : share * away_[axis];
-    if (arm_ == Arm::standing && wish == 0.0) {
-      if (!mover.at_rest()) mover.stop(limits_of(robot_->stop_limits(), axis));
-    } else if (arm_ == Arm::standing && cycles_ % kYieldEvery == 0) {
-      const double reach = pushed ? settings_.yield_reach : settings_.retreat_reach;
-      AxisLimits limits = limits_of(robot_->comfort_limits(), axis);
-      limits.velocity = std::clamp(settings_.yield_speed * std::abs(wish), 1e-3, limits.velocity);
-      const Axis& bounds = robot_->axes()[static_cast<std::size_t>(axis)];
-      double target = std::clamp(mover.state().position + std::copysign(kAhead * limits.velocity, wish), yield_from_[axis] - reach,
-                                 yield_from_[axis] + reach);
-      if (bounds.lower < bounds.upper) target = std::clamp(target, bounds.lower, bounds.upper);
-      mover.go_to(target, limits, limits_of(robot_->stop_limits(), axis));
-    }
-    resting = resting && mover.at_rest();
-  }
-  if (!wanted && resting) yielding_ = false;
-}
-
 void Controller::resync(TimePoint now) noexcept {
-  const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || !follows(state_);
+  const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || !follows();
   if (!wanted) adopted_ = false;
   if (!wanted || arm_ != Arm::standing || !at_rest() || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
   // A robot side that stands with its drives enabled moves its reference to set-points that rest: once these have been taken to the posture
   // it came to rest in, they must not follow what a bent finger or a sagging arm makes of that motion.
   constexpr double kRests = 0.05, kBent = 0.06;  // [rad/s], [rad]
-  const bool joins = state_.mode == DriveMode::enabled && !follows(state_);
+  const bool joins = state_.mode == DriveMode::enabled && !follows();
   const bool rests = std::all_of(arm_axes_.begin(), arm_axes_.end(), [&](int axis) {
     return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests;
   });
@@ -641,61 +461,6 @@ void Controller::resync(TimePoint now) noexcept {
   for (int axis : head_axes_) go_there(axis);
   // The fingers stay where they came to rest: what they hold bends them, and a person who holds it too moves them all the time.
   for (Hand& hand : hands_) hand.executor.follow(state_.position, joins ? settings_.hand_rejoin : dead_band);
-}
-
-void Controller::check_last() noexcept {
-  bool arm = false, hand = false, head = false;
-  for (Eigen::Index i = 0; i < next_.position.size(); ++i) {
-    if (acceptable(set_point_, next_, i, robot_->guard_limits(), settings_.period)) continue;
-    const Part part = part_[static_cast<std::size_t>(i)];
-    (part == Part::arm ? arm : part == Part::hand ? hand : head) = true;
-  }
-  if (!arm && !hand && !head) return;
-  limit_violation_ = true;
-  if (arm && (arm_ == Arm::running || rejoin_)) give_up_path();
-  follow_checked_stop(arm, hand, head);
-}
-
-/// The parts named come to rest, each axis by itself, from what was sent last.
-void Controller::follow_checked_stop(bool arm, bool hand, bool head) noexcept {
-  if (arm) {
-    stop_arm();
-    for (int axis : arm_axes_) write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
-  }
-  if (hand)
-    for (Hand& each : hands_) {
-      each.executor.stop_from(set_point_);
-      each.executor.advance(settings_.period, next_);
-    }
-  if (head)
-    for (int axis : head_axes_) {
-      movers_[static_cast<std::size_t>(axis)].take_over(sent(axis), limits_of(robot_->stop_limits(), axis));
-      write(axis, movers_[static_cast<std::size_t>(axis)].step(settings_.period));
-    }
-}
-
-double Controller::held_payload() const noexcept {
-  double mass = 0.0;
-  for (const Hand& hand : hands_) mass += hand.payload;
-  return mass;
-}
-
-/// No set-point leaves without a checked stop behind it: otherwise the next one of the stop checked before is sent.
-void Controller::prove_stop(TimePoint now) noexcept {
-  if (unproven_shown_ > 0) --unproven_shown_;
-  if (proof_.check(next_, crowd_, state_.T_world_base, std::max(0.0, human_seen_.age(now)), held_payload())) return;
-  ++unproven_;
-  rejoins_in_vain_ = unproven_shown_ > 0 ? rejoins_in_vain_ + (arm_ == Arm::running ? 1 : 0) : 0;
-  unproven_shown_ = static_cast<int>(kUnprovenShown / settings_.period);
-  if (arm_ == Arm::running && rejoins_in_vain_ > kMaxRejoins)
-    give_up_path();  // the planner finds another
-  else if (arm_ == Arm::running)
-    rejoin_ = !cancelled_;
-  const auto moves = [&](int axis) { return next_.velocity[axis] != 0.0 || next_.acceleration[axis] != 0.0; };
-  const bool hand = std::any_of(hands_.begin(), hands_.end(),
-                                [&](const Hand& h) { return std::any_of(h.executor.axes().begin(), h.executor.axes().end(), moves); });
-  follow_checked_stop(std::any_of(arm_axes_.begin(), arm_axes_.end(), moves), hand,
-                      std::any_of(head_axes_.begin(), head_axes_.end(), moves));
 }
 
 AxisState Controller::sent(int axis) const noexcept {

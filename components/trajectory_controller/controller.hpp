@@ -108,6 +108,7 @@ class Controller {
   ActiveTrajectory active() const;  ///< stamp left to the publisher
 
  private:
+  static constexpr int kYieldEvery = 10;  // cycles between looks at how to give way
   enum class Part : char { arm, hand, head };
   enum class Arm { standing, running, stopping };
   struct Seen {
@@ -180,6 +181,8 @@ class Controller {
   void aim_away() noexcept;
   Vector where_path_ends();
   bool attention_silent(TimePoint now) const noexcept;
+  /// Whether the robot side follows set-points: it may stand although its drives are enabled.
+  bool follows() const noexcept { return state_.mode == DriveMode::enabled && state_.refusal.empty(); }
   void check_last() noexcept;
   void prove_stop(TimePoint now) noexcept;
   void keep_observed(TimePoint now) noexcept;
