@@ -36,7 +36,8 @@ struct SimSettings {
 /// The environment's HANDSEL_DATA, else ../shared/data beside the project, else empty.
 std::filesystem::path data_root();
 
-/// Reads <folder>/sim.txtpb, and the period of the set-points from <folder>/trajectory_controller.txtpb; data_root as above. Throws ConfigError naming file and field.
+/// Reads <folder>/sim.txtpb, and the period of the set-points from <folder>/trajectory_controller.txtpb; data_root as above. Throws
+/// ConfigError naming file and field.
 SimSettings load_settings(const std::filesystem::path& folder);
 
 }  // namespace handsel::sim

@@ -11,7 +11,7 @@ namespace handsel::ros2_lane {
 namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(10);
-constexpr double kShown = 10;        // [s] a refusal is shown in the health
+constexpr double kShown = 10;  // [s] a refusal is shown in the health
 
 config::Ros2LaneSettings load(const NodeContext& context) {
   config::Ros2LaneSettings s;

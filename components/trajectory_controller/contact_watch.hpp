@@ -1,5 +1,5 @@
-// Contact of the arm with something unforeseen, from the torques its model does not explain. A steady push never becomes usual: a clamp stays
-// a contact until it is freed. Own method. Pure, no heap after construction.
+// Contact of the arm with something unforeseen, from the torques its model does not explain. A steady push never becomes usual: a clamp
+// stays a contact until it is freed. Own method. Pure, no heap after construction.
 #pragma once
 
 #include <vector>
@@ -28,8 +28,9 @@ class ContactWatch {
   ContactWatch(const ContactSettings& settings, std::vector<int> axes);
   /// Starts over from the next sample, unless there is a contact: its cause would become usual.
   void reset() noexcept { seen_ = contact_ != Contact::none; }
-  /// Takes one sample of the external torques of all axes [Nm], `dt` [s] after the one before, and returns whether there is contact. A robot
-  /// that does not measure them (empty vector) has none. `resting`: the arm does not move by itself; `exchanging`: an object is exchanged.
+  /// Takes one sample of the external torques of all axes [Nm], `dt` [s] after the one before, and returns whether there is contact. A
+  /// robot that does not measure them (empty vector) has none. `resting`: the arm does not move by itself; `exchanging`: an object is
+  /// exchanged.
   Contact update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool exchanging) noexcept;
   /// Returns the push on the i-th watched axis, for giving way: beyond the usual before it began, 0 within yield_torque [Nm].
   double push(std::size_t i) const noexcept { return pushes_[i]; }

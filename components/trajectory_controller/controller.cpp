@@ -12,8 +12,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kStopSlack = 0.05;     // [s] after detection and the fastest stop the robot rests
-constexpr double kGuardSlack = 0.02;    // [s] likewise when the guard asks for less speed: the rest is the person's
+constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
+constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot, const Group* fingers) {
   std::vector<int> axes;
@@ -446,9 +446,8 @@ void Controller::resync(TimePoint now) noexcept {
   // it came to rest in, they must not follow what a bent finger or a sagging arm makes of that motion.
   constexpr double kRests = 0.05, kBent = 0.06;  // [rad/s], [rad]
   const bool joins = state_.mode == DriveMode::enabled && !follows();
-  const bool rests = std::all_of(arm_axes_.begin(), arm_axes_.end(), [&](int axis) {
-    return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests;
-  });
+  const bool rests = std::all_of(arm_axes_.begin(), arm_axes_.end(),
+                                 [&](int axis) { return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests; });
   const double dead_band = joins && rests && adopted_ ? kBent : 0.002;
   adopted_ = joins && rests;
   const auto go_there = [&](int axis) {

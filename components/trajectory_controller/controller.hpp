@@ -38,7 +38,7 @@ struct ControllerSettings {
   double yield_reach{0.3};            ///< farthest, each axis [rad]
   double retreat_reach{0.15};         ///< likewise, drawing back from a person at rest, when attention asks for recoil; 0: never [rad]
   bool dry_run{};                     ///< everything but the output: the robot does not follow, and need not
-  double hand_rejoin{0.25};           ///< a robot side that stands moves its fingers to set-points this near [rad; of a sliding one at its lever]
+  double hand_rejoin{0.25};  ///< a robot side that stands moves its fingers to set-points this near [rad; of a sliding one at its lever]
   double tracking_tolerance{0.3};     ///< measured beyond this from the set-point (hand left out): Fault [rad]
   double tracking_time{0.1};          ///< for this long [s]
   double forecast_hold{0.6};          ///< collision forecast within this time: Hold [s]

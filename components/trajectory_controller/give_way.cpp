@@ -26,12 +26,11 @@ void Controller::aim_away() noexcept {
   away_ *= most > kLeast ? 1.0 / most : 0.0;
 }
 
-/// At rest the arm gives way to who pushes it, axis by axis, until the push ends; and draws back from who comes too near. In an exchange, and
-/// while a hand moves, it gives way to free what is clamped, only.
+/// At rest the arm gives way to who pushes it, axis by axis, until the push ends; and draws back from who comes too near. In an exchange,
+/// and while a hand moves, it gives way to free what is clamped, only.
 void Controller::step_yield(TimePoint now) noexcept {
   constexpr double kAhead = 0.5;  // [s] of motion a target lies ahead
-  const bool hands_rest =
-      std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
+  const bool hands_rest = std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
   const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && follows() &&
                    settings_.yield_speed > 0.0 && ((exchanging_.empty() && hands_rest) || touch_ == Contact::clamped);
   // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.

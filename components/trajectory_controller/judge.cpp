@@ -108,13 +108,14 @@ double Controller::onward_ease() const noexcept {
   return longest;
 }
 
-/// Returns whether the arm is faster than the guard allows here and shortly ahead, by more than what the time law lags behind a verdict that
-/// changes slowly. What is allowed farther ahead lowers the speed along the path in time; leaving the path for it would begin anew for ever.
+/// Returns whether the arm is faster than the guard allows here and shortly ahead, by more than what the time law lags behind a verdict
+/// that changes slowly. What is allowed farther ahead lowers the speed along the path in time; leaving the path for it would begin anew for
+/// ever.
 bool Controller::too_fast() const noexcept {
   constexpr double kLag = 1.1, kLeast = 0.02;
   const double factor = speed_factor();
-  const double allowed = factor < 0.0 ? -std::max(verdict_now_.backward, verdict_near_.backward)
-                                      : std::min(verdict_now_.forward, verdict_near_.forward);
+  const double allowed =
+      factor < 0.0 ? -std::max(verdict_now_.backward, verdict_near_.backward) : std::min(verdict_now_.forward, verdict_near_.forward);
   return std::abs(factor) > kLag * allowed + kLeast;
 }
 

@@ -30,10 +30,10 @@ struct StopProofSettings {
   double robot_error{0.01};        ///< a link is this near where its set-point is, beyond the latency [m]
   double limit_ratio{0.9};         ///< reach_limit aims at this fraction of a contact speed, so that the proof seldom has to intervene
   double limit_margin{0.02};       ///< and at this much more distance [m]
-  int max_rejoins{4};              ///< of a path, one soon after the other, that end in a set-point without a checked stop; then it is given up
-  double shown_time{0.5};          ///< the cause is shown for so long after a set-point without a checked stop [s]
-  double min_robot_mass{2.0};      ///< effective mass of a link at a contact, at least [kg]
-  double min_finger_mass{0.1};     ///< of a finger that moves in the hand, at least [kg]
+  int max_rejoins{4};          ///< of a path, one soon after the other, that end in a set-point without a checked stop; then it is given up
+  double shown_time{0.5};      ///< the cause is shown for so long after a set-point without a checked stop [s]
+  double min_robot_mass{2.0};  ///< effective mass of a link at a contact, at least [kg]
+  double min_finger_mass{0.1};  ///< of a finger that moves in the hand, at least [kg]
   /// Largest speed and acceleration of people, by region: 2 m/s and 50 m/s^2 for arms and hands, ISO 13855's walking speed for the rest.
   RegionMotions people{{{1.6, 10.0}, {1.6, 10.0}, {2.0, 50.0}, {2.0, 50.0}, {2.0, 50.0}, {1.6, 20.0}, {1.6, 20.0}}};
   /// Transient limits of ISO/TS 15066:2016 table A.2 and A.3, the lowest of each region; for the head, where no transient contact is

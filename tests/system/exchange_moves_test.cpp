@@ -109,8 +109,8 @@ TEST(ExchangeMoves, the_running_path_leads_to_another_exchange_point_without_a_s
   for (int k = 0; k < runs; ++k) {
     const auto seed = static_cast<std::uint64_t>(k + 1);
     const Carried run = carry(seed, 0.5, 0.0, folder.path().string());
-    std::printf("seed %d: offered %d %s, led %.2f m on, switches %d, stood for %.2f s, offered %.2f m aside, reached %d\n",
-                k + 1, run.offered, run.ended.c_str(), run.moved, run.switches, run.standing, run.aside, run.reached);
+    std::printf("seed %d: offered %d %s, led %.2f m on, switches %d, stood for %.2f s, offered %.2f m aside, reached %d\n", k + 1,
+                run.offered, run.ended.c_str(), run.moved, run.switches, run.standing, run.aside, run.reached);
     EXPECT_TRUE(run.offered) << run.ended;
     reached += run.reached;
     led_over += run.moved > 0.15 && run.switches > 0 && run.standing < 0.05;

@@ -134,7 +134,9 @@ std::string printed(const MessageType& type, const void* message) {
 int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "usage: samples DOMAIN SEED\n"), 2;
   try {
-    DdsBus bus({.component = "samples sim spark supervisor manipulation_planner trajectory_controller", .domain = static_cast<std::uint32_t>(std::stoul(argv[1])), .health = false});
+    DdsBus bus({.component = "samples sim spark supervisor manipulation_planner trajectory_controller",
+                .domain = static_cast<std::uint32_t>(std::stoul(argv[1])),
+                .health = false});
     Dice dice(std::stoull(argv[2]));
     std::vector<std::unique_ptr<AnyPublisher>> publishers;
     std::vector<std::shared_ptr<void>> messages;
