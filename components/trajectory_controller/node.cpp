@@ -25,7 +25,10 @@ Node::Node(Bus& bus, const NodeContext& context)
     else
       bus.count_left_out("robot_state: of another robot", 1);
   });
-  read<HumanState>(bus, [this](const HumanState& m, const Receipt& r) { core_.on(m, r.arrival - r.age); });
+  read<HumanState>(bus, [this](const HumanState& m, const Receipt& r) {
+    watched_ = watched_ || !m.views.empty();
+    core_.on(m, r.arrival - r.age);
+  });
   read<Go>(bus, [this](const Go& m, const Receipt& r) { core_.on(m, r.arrival); });
   read<SafetyState>(bus, [this](const SafetyState& m, const Receipt&) { core_.on(m); });
   bus.subscribe<TrajectoryForecast>([this](const TrajectoryForecast& m, const Receipt& r) { core_.on(m, r.arrival); });
@@ -57,7 +60,7 @@ void Node::tick(TimePoint now) {
     ExecutionStatus status = core_.status();
     if (has_second_writer()) status.causes |= bit(Cause::second_writer);
     status_out_->publish(status);
-    if (const bool blind = (status.causes & bit(Cause::blind)) != 0; blind != blind_ || (blind && now >= next_reason_)) {
+    if (const bool blind = watched_ && (status.causes & bit(Cause::blind)) != 0; blind != blind_ || (blind && now >= next_reason_)) {
       bus_.set_degraded(blind ? status.reason : "");
       blind_ = blind;
       next_reason_ = now + kReasonPeriod;
