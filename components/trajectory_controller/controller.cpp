@@ -254,9 +254,15 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.set_points_late = in.drive_enabled && !follows();
 
   double off = 0.0;
-  for (int axis : arm_axes_) off = std::max(off, std::abs(state_.position[axis] - set_point_.position[axis]));
+  int farthest = -1;
+  for (int axis : arm_axes_) {
+    const double of_axis = std::abs(state_.position[axis] - set_point_.position[axis]);
+    if (of_axis > off) farthest = axis;
+    off = std::max(off, of_axis);
+  }
   tracking_for_ = follows() && !settings_.dry_run && off > settings_.tracking_tolerance ? tracking_for_ + settings_.period : 0.0;
   in.tracking_error = tracking_for_ > settings_.tracking_time;
+  if (in.tracking_error) off_axis_ = farthest, off_by_ = off;
   in.limit_violation = limit_violation_;
   limit_violation_ = false;
   late_in_a_row_ = late ? late_in_a_row_ + 1 : 0;

@@ -273,6 +273,8 @@ class Controller {
   int unproven_shown_{};      // cycles for which the cause is still shown
   int rejoins_in_vain_{};     // how often, lately, the path was left again for want of a proof
   double too_near_for_{}, tracking_for_{};
+  int off_axis_{-1};  // of the last tracking error: the axis farthest from its set-point
+  double off_by_{};   // by how much [rad, m]
   bool limit_violation_{}, new_people_{};
   int late_in_a_row_{};
   std::uint64_t cycles_{}, late_cycles_{};
