@@ -45,7 +45,7 @@ const Trajectory& PathRunner::path() const {
 }
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
-  constexpr double kWithin = 1.0;
+  constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way: farther on, the way there cuts corners
   if (finished_) return false;
   SwitchSettings settings;
   settings.first = std::max(0.0, law_.time());
