@@ -21,9 +21,9 @@ const TopicRow* find_topic(std::string_view wanted) {
 }
 
 bool has_one_writer(const TopicRow& row) {
-  constexpr std::string_view kSafety[] = {"handsel/joint_command", "handsel/go",          "handsel/safety_state", "handsel/trajectory",
-                                          "handsel/hand_command",  "handsel/human_state", "handsel/robot_state",  "handsel/scene",
-                                          "handsel/action_status"};
+  constexpr std::string_view kSafety[] = {"handsel/joint_command", "handsel/go",           "handsel/safety_state",
+                                          "handsel/trajectory",    "handsel/hand_command", "handsel/human_state",
+                                          "handsel/robot_state",   "handsel/scene",        "handsel/action_status"};
   return std::find(std::begin(kSafety), std::end(kSafety), row.topic) != std::end(kSafety);
 }
 

@@ -45,7 +45,8 @@ ExecutionStatus Controller::status() const {
     s.reason = std::string(name(verdict_.mode)) + ": " + name(latched_cause_);
     if (latched_cause_ == Cause::cycle_late && !state_.refusal.empty()) s.reason += ": " + state_.refusal;
     if (latched_cause_ == Cause::tracking_error && off_axis_ >= 0)
-      s.reason += ": " + robot_->axes()[static_cast<std::size_t>(off_axis_)].name + " was " + std::to_string(off_by_) + " from its set-point";
+      s.reason +=
+          ": " + robot_->axes()[static_cast<std::size_t>(off_axis_)].name + " was " + std::to_string(off_by_) + " from its set-point";
     if (latched_cause_ == Cause::contact || latched_cause_ == Cause::clamped)
       s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
     if (latched_cause_ == Cause::blind && (verdict_.causes & bit(Cause::blind)) != 0) s.reason += ": " + why_blind();
