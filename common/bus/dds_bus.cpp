@@ -108,8 +108,12 @@ struct DdsBus::Impl {
   LeftOutCounts left_out;
   ComponentHealth health_message;
   std::unique_ptr<Publisher<ComponentHealth>> health;
+  std::unique_ptr<Publisher<ClockReached>> reached;
+  ClockReached reached_message;
 
   void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str()); }
+  /// The system clock, standing still while this component's time does.
+  Stamp stamp_now() { return system_now() - (monotonic_now() - executor.now()).count(); }
   dds_entity_t new_topic(const MessageType& type) const {
     const Qos qos = topic_qos(type.row());
     return need(
@@ -133,7 +137,8 @@ struct DdsBus::Impl {
   void look_at_matching(Reader& reader);
   void discover_writers();
   void follow_writers(Reader& reader);
-  void publish_health(TimePoint now);
+  void publish_health(TimePoint wall);
+  void follow_pace(const SimClock& clock);
   void enter_realtime();
 };
 
@@ -163,7 +168,7 @@ class DdsPublisher final : public AnyPublisher {
 
   bool publish(const void* message) override {
     std::string why;
-    if (!type_.to_wire(message, system_now(), sample_.get(), why)) return refuse(why);
+    if (!type_.to_wire(message, bus_.stamp_now(), sample_.get(), why)) return refuse(why);
     if (!queue_.empty()) return enqueue();
     const dds_return_t result = dds_write(writer_, sample_.get());
     if (result == DDS_RETCODE_OK) return true;
@@ -247,9 +252,9 @@ void DdsBus::Impl::discover_writers() {
     for (const auto& reader : readers) {
       if (&reader->intake.type().row() != &row) continue;
       if (found != nullptr)
-        reader->intake.writer_appeared(writer, found->identity, monotonic_now());
+        reader->intake.writer_appeared(writer, found->identity, executor.now());
       else
-        reader->intake.writer_left(writer, monotonic_now());
+        reader->intake.writer_left(writer, executor.now());
       reader->gate.open_for(reader->intake.pinned());
     }
   });
@@ -266,7 +271,7 @@ void DdsBus::Impl::follow_writers(Reader& reader) {
   }
   discover_writers();
   for (const auto& [writer, found] : discovery->writers())
-    if (found.row == &reader.intake.type().row()) reader.intake.writer_appeared(writer, found.identity, monotonic_now());
+    if (found.row == &reader.intake.type().row()) reader.intake.writer_appeared(writer, found.identity, executor.now());
   reader.gate.open_for(reader.intake.pinned());
 }
 
@@ -279,7 +284,7 @@ void DdsBus::Impl::drain() {
   for (Reader* reader : draining) {
     reader->pending.store(false, std::memory_order_release);
     if (reader->matching_changed.exchange(false, std::memory_order_acq_rel)) look_at_matching(*reader);
-    reader->gate.hear(reader->intake, monotonic_now());
+    reader->gate.hear(reader->intake, executor.now());
     take(*reader);
   }
   draining.clear();
@@ -293,7 +298,7 @@ void DdsBus::Impl::take(Reader& reader) {
     if (n <= 0) return;
     if (!info.valid_data) continue;
     const std::int64_t arrival = reader.arrival.load(std::memory_order_relaxed);
-    const TimePoint at = arrival > 0 ? TimePoint(Duration(arrival)) : monotonic_now();
+    const TimePoint at = arrival > 0 ? executor.past(TimePoint(Duration(arrival))) : executor.now();
     if (!reader.intake.knows(info.publication_handle)) discover_writers();
     reader.intake.deliver(reader.sample.get(), info.publication_handle, at);
   }
@@ -312,18 +317,29 @@ void DdsBus::Impl::look_at_matching(Reader& reader) {
   status.writers = alive;
 }
 
-void DdsBus::Impl::publish_health(TimePoint now) {
+/// Answers every grant, so that the simulator knows this component has had its turn.
+void DdsBus::Impl::follow_pace(const SimClock& clock) {
+  if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)), from_seconds(clock.waited)})) return;
+  reached_message.component = settings.component;
+  reached_message.incarnation = incarnation;
+  reached_message.sequence = clock.sequence;
+  reached->publish(reached_message);
+}
+
+/// Heartbeats say that the process lives: they come in real time.
+void DdsBus::Impl::publish_health(TimePoint wall) {
+  const TimePoint now = executor.now();
   ComponentHealth& m = health_message;
   m.stamp = 0;
   m.component = settings.component;
   m.incarnation = incarnation;
   m.pid = static_cast<std::uint32_t>(getpid());
-  m.uptime = to_seconds(now - start);
+  m.uptime = to_seconds(wall - start);
   m.memory_mb = resident_mb();
   const double cpu = cpu_seconds();
-  if (last_health != TimePoint{} && now > last_health) m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(now - last_health));
+  if (last_health != TimePoint{} && wall > last_health) m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(wall - last_health));
   last_cpu = cpu;
-  last_health = now;
+  last_health = wall;
   SecondWriters others;
   for (const auto& reader : readers) {
     reader->gate.hear(reader->intake, now);
@@ -331,7 +347,7 @@ void DdsBus::Impl::publish_health(TimePoint now) {
     reader->gate.open_for(reader->intake.pinned());
     others.add(reader->intake);
   }
-  m.reason = executor.silent_job(now);  // first: the launcher heeds it
+  m.reason = executor.silent_job(wall);  // first: the launcher heeds it
   for (const std::string& reason : {others.reason(), degraded})
     if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
   if (m.reason.empty() && !refusal.empty()) m.reason = "refused to send: " + refusal;
@@ -374,11 +390,16 @@ DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(se
   impl_->executor.on_wake([this] { impl_->drain(); });
   if (settings.health) {
     impl_->health = advertise<ComponentHealth>();
-    impl_->executor.every(kHealthPeriod, [this](TimePoint now) { impl_->publish_health(now); });
+    impl_->executor.every_real(kHealthPeriod, [this](TimePoint wall) { impl_->publish_health(wall); });
+  }
+  if (settings.sim_time) {
+    impl_->reached = advertise<ClockReached>();
+    subscribe<SimClock>([this](const SimClock& clock, const Receipt&) { impl_->follow_pace(clock); });
   }
 }
 
 DdsBus::~DdsBus() {
+  impl_->reached.reset();
   impl_->health.reset();
   for (const auto& reader : impl_->readers) dds_delete(reader->entity);
 }
@@ -393,12 +414,12 @@ std::uint64_t DdsBus::incarnation() const { return impl_->incarnation; }
 
 void DdsBus::set_ready() {
   impl_->state = HealthState::ok;
-  impl_->publish_health(now());
+  impl_->publish_health(monotonic_now());
 }
 
 void DdsBus::set_stopping() {
   impl_->state = HealthState::stopping;
-  impl_->publish_health(now());
+  impl_->publish_health(monotonic_now());
 }
 
 bool DdsBus::has_twin(Duration wait) {
@@ -463,8 +484,8 @@ void DdsBus::after(Duration delay, std::function<void(TimePoint)> on_time) { imp
 CancelToken DdsBus::run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) {
   return impl_->executor.run_job(std::move(work), std::move(done));
 }
-TimePoint DdsBus::now() const { return monotonic_now(); }
-Stamp DdsBus::stamp_now() const { return system_now(); }
+TimePoint DdsBus::now() const { return impl_->executor.now(); }
+Stamp DdsBus::stamp_now() const { return impl_->stamp_now(); }
 void DdsBus::set_degraded(const std::string& reason) { impl_->degraded = reason; }
 void DdsBus::count_left_out(const std::string& what, std::uint64_t more) { impl_->left_out.add(what, more); }
 const std::string& DdsBus::component() const { return impl_->settings.component; }

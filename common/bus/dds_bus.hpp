@@ -21,8 +21,9 @@ struct DdsBusSettings {
   std::uint32_t domain{0};
   bool realtime{false};  ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
   Urgency urgency{Urgency::perceive};
-  int cpu{-1};        ///< pins the executor; -1: none
-  bool health{true};  ///< publishes ComponentHealth (tools do not)
+  int cpu{-1};           ///< pins the executor; -1: none
+  bool health{true};     ///< publishes ComponentHealth (tools do not)
+  bool sim_time{false};  ///< follows the pace of the simulator (common/bus/paced_clock), which waits for this component
 };
 
 /// Sets CYCLONEDDS_URI to dds/loopback.xml of the resource root when the environment has none.

@@ -18,6 +18,7 @@
 namespace handsel {
 namespace {
 constexpr Duration kJobSilence = std::chrono::seconds(2);
+constexpr Duration kLongestBurst = std::chrono::milliseconds(100);
 
 timespec to_timespec(Duration d) { return {static_cast<time_t>(d.count() / 1'000'000'000), static_cast<long>(d.count() % 1'000'000'000)}; }
 }  // namespace
@@ -29,14 +30,11 @@ TimePoint monotonic_now() {
 }
 
 struct Executor::Timer {
-  int fd{-1};
   Duration period{};  // 0: once
   TimePoint due{};
+  bool real{};  // on the monotonic clock
   std::function<void(TimePoint)> on_tick;
   TimerStatus status;
-  ~Timer() {
-    if (fd >= 0) close(fd);
-  }
 };
 
 Executor::Executor(Log log) : log_(std::move(log)) {
@@ -44,18 +42,21 @@ Executor::Executor(Log log) : log_(std::move(log)) {
   sched_getaffinity(0, sizeof processors_, &processors_);
   epoll_ = epoll_create1(EPOLL_CLOEXEC);
   wake_fd_ = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  timer_fd_ = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
   epoll_event event{};
   event.events = EPOLLIN;
-  event.data.ptr = nullptr;
-  if (epoll_ < 0 || wake_fd_ < 0 || epoll_ctl(epoll_, EPOLL_CTL_ADD, wake_fd_, &event) != 0)
-    throw MissingError(std::string("executor: no descriptor for the event loop: ") + std::strerror(errno));
+  bool watched = epoll_ >= 0;
+  for (const int fd : {wake_fd_, timer_fd_}) {
+    event.data.fd = fd;
+    watched = watched && fd >= 0 && epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) == 0;
+  }
+  if (!watched) throw MissingError(std::string("executor: no descriptor for the event loop: ") + std::strerror(errno));
 }
 
 Executor::~Executor() {
   end_jobs(Duration::max());
-  timers_.clear();
-  if (wake_fd_ >= 0) close(wake_fd_);
-  if (epoll_ >= 0) close(epoll_);
+  for (const int fd : {timer_fd_, wake_fd_, epoll_})
+    if (fd >= 0) close(fd);
 }
 
 bool Executor::end_jobs(Duration limit) {
@@ -77,46 +78,87 @@ bool Executor::end_jobs(Duration limit) {
   return true;
 }
 
-Executor::Timer& Executor::add_timer(Duration first, Duration period, std::function<void(TimePoint)> on_tick) {
+TimePoint Executor::now() {
+  if (due_) return *due_;
+  const TimePoint time = clock_.at(monotonic_now());
+  return last_ = clock_.paced() ? std::max(last_, time) : time;
+}
+
+bool Executor::grant(const TimeGrant& grant) {
+  const TimePoint wall = monotonic_now(), before = clock_.at(wall);
+  if (!clock_.grant(grant, wall)) return false;
+  const TimePoint after = clock_.at(wall);
+  if (after >= before) return true;
+  for (const auto& timer : timers_)  // the first grant: time goes back, what is to be waited for stays
+    if (!timer->real) timer->due -= before - after;
+  last_ = after;
+  return true;
+}
+
+Executor::Timer& Executor::add_timer(TimePoint now, Duration period, Duration first, std::function<void(TimePoint)> on_tick) {
   auto timer = std::make_unique<Timer>();
-  timer->fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
   timer->period = period;
-  timer->due = monotonic_now() + std::max(first, Duration(1));
+  timer->due = now + std::max(first, Duration(1));
   timer->on_tick = std::move(on_tick);
-  itimerspec spec{to_timespec(period), to_timespec(timer->due.time_since_epoch())};
-  epoll_event event{};
-  event.events = EPOLLIN;
-  event.data.ptr = timer.get();
-  if (timer->fd < 0 || timerfd_settime(timer->fd, TFD_TIMER_ABSTIME, &spec, nullptr) != 0 ||
-      epoll_ctl(epoll_, EPOLL_CTL_ADD, timer->fd, &event) != 0)
-    throw MissingError(std::string("executor: no descriptor for a timer: ") + std::strerror(errno));
   timers_.push_back(std::move(timer));
   return *timers_.back();
 }
 
 const TimerStatus& Executor::every(Duration period, std::function<void(TimePoint)> on_tick) {
   if (period <= Duration::zero()) throw std::invalid_argument("every: the period must be positive");
-  return add_timer(period, period, std::move(on_tick)).status;
+  return add_timer(now(), period, period, std::move(on_tick)).status;
 }
 
-void Executor::after(Duration delay, std::function<void(TimePoint)> on_time) { add_timer(delay, Duration::zero(), std::move(on_time)); }
+void Executor::every_real(Duration period, std::function<void(TimePoint)> on_tick) {
+  add_timer(monotonic_now(), period, period, std::move(on_tick)).real = true;
+}
 
-void Executor::fire(Timer& timer) {
-  std::uint64_t expirations = 0;
-  if (read(timer.fd, &expirations, sizeof expirations) != sizeof expirations || expirations == 0) return;
-  const TimePoint now = monotonic_now();
-  if (timer.period == Duration::zero()) {
-    spent_.push_back(&timer);
-    timer.on_tick(now);
-    return;
+void Executor::after(Duration delay, std::function<void(TimePoint)> on_time) {
+  add_timer(now(), Duration::zero(), delay, std::move(on_time));
+}
+
+void Executor::serve_timers() {
+  const TimePoint wall = monotonic_now();
+  const TimePoint time = clock_.at(wall);
+  while (true) {
+    auto next = timers_.end();
+    for (auto timer = timers_.begin(); timer != timers_.end(); ++timer)
+      if ((*timer)->due <= ((*timer)->real ? wall : time) && (next == timers_.end() || (*timer)->due < (*next)->due)) next = timer;
+    if (next == timers_.end()) return;
+    const bool once = (*next)->period == Duration::zero();
+    serve(**next, time);
+    if (once) timers_.erase(next);
   }
-  const Duration late = now - timer.due;
-  ++timer.status.cycles;
-  timer.status.late_cycles += late > timer.period;
-  timer.status.skipped += expirations - 1;
-  timer.status.worst = std::max(timer.status.worst, late);
-  timer.due += timer.period * static_cast<std::int64_t>(expirations);
+}
+
+/// With granted time every tick is made up for, unless it is older than any grant: then time has jumped.
+void Executor::serve(Timer& timer, TimePoint time) {
+  const bool granted = clock_.paced() && !timer.real;
+  if (granted) due_ = last_ = std::max(last_, timer.due);
+  const TimePoint now = timer.real ? monotonic_now() : this->now();
+  if (timer.period > Duration::zero()) {
+    const Duration late = now - timer.due;
+    const Duration missed = granted && time - timer.due < kLongestBurst ? Duration::zero() : (granted ? time : now) - timer.due;
+    const std::int64_t skipped = missed / timer.period;
+    ++timer.status.cycles;
+    timer.status.late_cycles += late > timer.period;
+    timer.status.skipped += static_cast<std::uint64_t>(skipped);
+    timer.status.worst = std::max(timer.status.worst, late);
+    timer.due += timer.period * (skipped + 1);
+  }
   timer.on_tick(now);
+  due_.reset();
+}
+
+void Executor::arm() {
+  if (timers_.empty()) return;
+  const TimePoint wall = monotonic_now();
+  TimePoint first = TimePoint::max();
+  for (const auto& timer : timers_) first = std::min(first, timer->real ? timer->due : clock_.look_at(timer->due, wall));
+  if (first == armed_) return;
+  const itimerspec spec{{}, to_timespec(std::max(first.time_since_epoch(), Duration(1)))};
+  timerfd_settime(timer_fd_, TFD_TIMER_ABSTIME, &spec, nullptr);
+  armed_ = first;
 }
 
 void Executor::wake() noexcept {
@@ -132,20 +174,20 @@ void Executor::stop() noexcept {
 }
 
 void Executor::turn(int timeout_ms) {
-  epoll_event events[16];
-  const int n = epoll_wait(epoll_, events, 16, timeout_ms);
+  arm();
+  epoll_event events[2];
+  const int n = epoll_wait(epoll_, events, 2, timeout_ms);
   bool woken = false;
   for (int i = 0; i < n; ++i) {
-    if (events[i].data.ptr)
-      fire(*static_cast<Timer*>(events[i].data.ptr));
-    else
+    std::uint64_t count = 0;
+    [[maybe_unused]] const auto got = read(events[i].data.fd, &count, sizeof count);
+    if (events[i].data.fd == wake_fd_)
       woken = true;
+    else
+      armed_ = {};
   }
-  for (const Timer* spent : spent_) timers_.remove_if([spent](const std::unique_ptr<Timer>& t) { return t.get() == spent; });
-  spent_.clear();
+  serve_timers();
   if (!woken) return;
-  std::uint64_t count = 0;
-  [[maybe_unused]] const auto got = read(wake_fd_, &count, sizeof count);
   woken_.store(false, std::memory_order_release);
   if (drain_) drain_();
   finish_jobs();

@@ -1,4 +1,5 @@
-// The one thread a component's callbacks run on: timers on the monotonic clock, wake-ups from other threads, jobs on a worker thread.
+// The one thread a component's callbacks run on: timers, wake-ups from other threads, jobs on a worker thread. Its time is the monotonic
+// clock, or what the simulator grants (paced_clock.hpp).
 #pragma once
 
 #include <sched.h>
@@ -11,11 +12,13 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/paced_clock.hpp"
 
 namespace handsel {
 
@@ -33,7 +36,17 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
+  /// The callbacks' time. While a timer is served with granted time: the instant it was due at, so that a process that gets its turn late
+  /// does what it would have done in time.
+  TimePoint now();
+  /// The time at which the monotonic clock showed `wall`, which is past.
+  TimePoint past(TimePoint wall) { return clock_.past(wall); }
+  /// PacedClock::grant().
+  bool grant(const TimeGrant& grant);
+
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick);
+  /// On the monotonic clock, whatever is granted; the callback gets that clock's time.
+  void every_real(Duration period, std::function<void(TimePoint)> on_tick);
   void after(Duration delay, std::function<void(TimePoint)> on_time);
   CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done);
 
@@ -59,8 +72,12 @@ class Executor {
     CancelToken token;
   };
   void turn(int timeout_ms);
-  void fire(Timer& timer);
-  Timer& add_timer(Duration first, Duration period, std::function<void(TimePoint)> on_tick);
+  /// Serves every timer that is due, the earliest first.
+  void serve_timers();
+  void serve(Timer& timer, TimePoint time);
+  /// Sets the descriptor of the timers to the earliest.
+  void arm();
+  Timer& add_timer(TimePoint now, Duration period, Duration first, std::function<void(TimePoint)> on_tick);
   void work_loop();
   void finish_jobs();
 
@@ -68,11 +85,15 @@ class Executor {
   cpu_set_t processors_{};  // allowed at construction
   int epoll_{-1};
   int wake_fd_{-1};
+  int timer_fd_{-1};
+  TimePoint armed_{};  // what timer_fd_ is set to
   std::atomic<bool> woken_{false};
   std::atomic<bool> stop_{false};
   std::function<void()> drain_;
   std::list<std::unique_ptr<Timer>> timers_;
-  std::vector<Timer*> spent_;
+  PacedClock clock_;
+  TimePoint last_{};              // now() at the last call
+  std::optional<TimePoint> due_;  // of the timer that is served with granted time
 
   std::thread worker_;
   std::mutex jobs_mutex_;

@@ -22,6 +22,7 @@ struct NodeContext {
   std::filesystem::path scenario;       ///< scenario file; empty: none was named
   std::filesystem::path settings;       ///< directory of <box>.txtpb
   std::uint64_t seed{1};                ///< of every random choice of the node
+  bool sim_time{};                      ///< the simulator gives the pace
   std::filesystem::path state{};        ///< folder of what must survive a restart of the process; empty: nothing is kept
 };
 

@@ -41,7 +41,7 @@ int complain(const char* component, const std::exception& error, int code) {
 int run(int argc, char** argv, const char* component, const NodeFactory& make_node, Urgency urgency) {
   std::string robot, scenario, config, state;
   std::uint64_t seed = 1;
-  bool standby = false;
+  bool standby = false, sim_time = false;
   DdsBusSettings settings;
   settings.component = component;
   settings.urgency = urgency;
@@ -54,6 +54,9 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   app.add_option("--config", config, "folder of the components' settings");
   app.add_option("--state", state, "folder of what must survive a restart (default: HANDSEL_STATE, else a folder of the domain)");
   app.add_option("--seed", seed, "of every random choice")->capture_default_str();
+  app.add_flag("--sim-time", sim_time,
+               "the simulator gives the pace: time stands still while a component of the system waits for a processor")
+      ->envname("HANDSEL_SIM_TIME");
   app.add_flag("--realtime", settings.realtime, "SCHED_FIFO and locked memory where permitted");
   app.add_option("--cpu-affinity", settings.cpu, "run the executor on this processor");
   app.add_flag("--standby", standby, "start even when the domain has this component already");
@@ -66,6 +69,8 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   }
 
   NodeContext context = load_context(robot, scenario, config, seed);
+  context.sim_time = sim_time;
+  settings.sim_time = sim_time && settings.component != "sim";  // which is the one that gives it
   context.state = state.empty() ? domain_state_directory(static_cast<int>(settings.domain)) : std::filesystem::path(state);
   DdsBus bus(settings);
   stopped_by_signal = &bus;

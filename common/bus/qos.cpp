@@ -33,7 +33,7 @@ constexpr Meaning meaning(Profile profile) {
     case Profile::health:
       return {true, false, 1};
     case Profile::setpoint:
-      return {false, false, 1};
+      return {false, false, 32};
     case Profile::request:
     case Profile::reply:
       return {true, false, 0};

@@ -16,7 +16,7 @@ enum class Profile : std::uint8_t {
   latch,     ///< a command whose last sample a late joiner must know: reliable, transient local, keep last 1
   goal,      ///< reliable, keep last 8, many writers
   advice,    ///< reliable, keep last 1
-  setpoint,  ///< best effort, keep last 1
+  setpoint,  ///< best effort, keep last 32: with simulated time several come at once
   request,   ///< reliable, bounded keep all
   reply,     ///< reliable, bounded keep all
   health,    ///< reliable, keep last 1, liveliness lease

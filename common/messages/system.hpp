@@ -59,20 +59,22 @@ struct SafetyState {
   std::vector<Person> lost{};   ///< people lost from sight and not seen to be gone, as they were last known; `age` counts from `stamp`
 };
 
-/// The simulator's time, when it gives the pace. Topic SimClock, profile advice, 100 Hz while the simulation advances.
+/// The simulator gives the pace. Time of the system is CLOCK_MONOTONIC of the simulator's machine less `waited`, and stands still at
+/// `granted_until`. Topic SimClock, profile advice, 100 Hz.
 struct SimClock {
   Stamp stamp{};
-  std::uint64_t incarnation{};  ///< of the simulator; another one starts a new time
-  std::uint64_t sequence{};     ///< grows by one a sample
-  double time{};                ///< since the simulator started [s]
+  std::uint64_t incarnation{};  ///< of the simulator
+  std::uint64_t sequence{};     ///< grows by one with each grant; the same one again while the simulator waits
+  double granted_until{};       ///< no component's time passes this instant [s], [0, 1e9]
+  double waited{};              ///< for how long time has stood still since the simulator started [s], [0, 1e9]
 };
 
-/// A process has handled everything up to a sample of SimClock. Topic ClockReached, profile advice, keyed by component.
+/// A process has received a grant of SimClock, and handled what came before it. Topic ClockReached, profile advice, keyed by component.
 struct ClockReached {
   Stamp stamp{};
   std::string component;
   std::uint64_t incarnation{};  ///< of the process
-  std::uint64_t sequence{};     ///< of the SimClock sample reached
+  std::uint64_t sequence{};     ///< of that grant
 };
 
 enum class SimAction : std::uint8_t {

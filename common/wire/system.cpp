@@ -55,7 +55,8 @@ void describe(WireIo& io, SimClock& m, handsel_SimClock& w) {
   io.stamp(m.stamp, w.stamp);
   io.integer("incarnation", m.incarnation, w.incarnation);
   io.integer("sequence", m.sequence, w.sequence_number);
-  io.number("time", m.time, w.time, kTime);
+  io.number("granted_until", m.granted_until, w.granted_until, kTime);
+  io.number("waited", m.waited, w.waited, kTime);
 }
 
 void describe(WireIo& io, ClockReached& m, handsel_ClockReached& w) {

@@ -1,0 +1,119 @@
+#include "common/bus/paced_clock.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "common/bus/executor.hpp"
+
+using namespace handsel;
+
+namespace {
+
+TimePoint at(double seconds) { return TimePoint(from_seconds(seconds)); }
+TimeGrant until(double seconds, double waited = 0, std::uint64_t incarnation = 1) {
+  return {.incarnation = incarnation, .until = at(seconds), .waited = from_seconds(waited)};
+}
+
+TEST(PacedClock, IsTheMachinesClockUntilTheFirstGrant) {
+  PacedClock clock;
+  EXPECT_EQ(clock.at(at(7)), at(7));
+  EXPECT_EQ(clock.look_at(at(9), at(7)), at(9));
+  EXPECT_FALSE(clock.paced());
+}
+
+TEST(PacedClock, StandsStillWhereNoMoreIsGranted) {
+  PacedClock clock;
+  ASSERT_TRUE(clock.grant(until(10.02), at(10)));
+  EXPECT_EQ(clock.at(at(10.01)), at(10.01));
+  EXPECT_EQ(clock.at(at(10.05)), at(10.02));
+  ASSERT_TRUE(clock.grant(until(10.03, 0.03), at(10.05)));
+  EXPECT_EQ(clock.at(at(10.055)), at(10.025));
+}
+
+TEST(PacedClock, NeverGoesBackAfterTheFirstGrant) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  clock.at(at(10.02));
+  clock.grant(until(10.04, 0.015), at(10.021));
+  EXPECT_EQ(clock.at(at(10.022)), at(10.02));
+  EXPECT_EQ(clock.at(at(10.04)), at(10.025));
+}
+
+TEST(PacedClock, TakesTheSystemsTimeFromTheFirstGrantAlsoWhenThatIsEarlier) {
+  PacedClock clock;
+  EXPECT_EQ(clock.at(at(100)), at(100));
+  clock.grant(until(60.02, 40), at(100));
+  EXPECT_EQ(clock.at(at(100.01)), at(60.01));
+}
+
+TEST(PacedClock, GoesOnWhenTheSimulatorHasBeenSilentForASecond) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  double wall = 10;
+  for (; wall < 10.9; wall += 0.02) clock.at(at(wall));
+  EXPECT_EQ(clock.at(at(wall)), at(10.02));
+  for (; wall < 11.3; wall += 0.02) clock.at(at(wall));
+  EXPECT_FALSE(clock.paced());
+  const TimePoint begin = clock.at(at(12));
+  EXPECT_EQ(clock.at(at(13)) - begin, from_seconds(1));
+  EXPECT_LT(begin, at(11.1)) << "time has jumped";
+}
+
+TEST(PacedClock, AProcessThatGotNoProcessorDoesNotBlameTheSimulator) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  clock.at(at(10.02));
+  EXPECT_EQ(clock.at(at(15)), at(10.02));
+  EXPECT_TRUE(clock.paced());
+}
+
+TEST(PacedClock, OnlyOneSimulatorGivesThePace) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  EXPECT_FALSE(clock.grant(until(99, 0, 2), at(10.01)));
+  EXPECT_EQ(clock.at(at(10.5)), at(10.02));
+}
+
+TEST(PacedClock, AnEarlierArrivalIsNeverInTheFuture) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  clock.at(at(10.05));
+  EXPECT_EQ(clock.past(at(10.01)), at(10.01));
+  EXPECT_EQ(clock.past(at(10.04)), at(10.02));
+}
+
+TEST(Executor, MakesUpForEveryTickOfGrantedTimeAtTheInstantItWasDue) {
+  Executor executor([](const std::string&) {});
+  const TimePoint start = monotonic_now();
+  executor.grant({.incarnation = 1, .until = start + from_seconds(0.02), .waited = {}});
+  std::vector<Duration> ticks;
+  TimePoint before{};
+  const TimerStatus& status = executor.every(from_seconds(0.001), [&](TimePoint now) {
+    EXPECT_EQ(now, executor.now());
+    if (!ticks.empty()) ticks.push_back(now - before);
+    if (ticks.empty()) ticks.emplace_back();
+    before = now;
+  });
+  timespec nap{0, 15'000'000};
+  nanosleep(&nap, nullptr);  // the process gets no processor
+  executor.run_until([] { return false; }, from_seconds(0.1));
+  EXPECT_GE(ticks.size(), 18u);
+  EXPECT_LE(ticks.size(), 20u) << "time has passed what was granted";
+  for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_EQ(ticks[i], from_seconds(0.001));
+  EXPECT_EQ(status.late_cycles, 0u);
+  EXPECT_EQ(status.skipped, 0u);
+}
+
+TEST(Executor, HeartbeatsGoOnWhileTimeStandsStill) {
+  Executor executor([](const std::string&) {});
+  executor.grant({.incarnation = 1, .until = monotonic_now(), .waited = {}});
+  int beats = 0, ticks = 0;
+  executor.every_real(from_seconds(0.01), [&](TimePoint) { ++beats; });
+  executor.every(from_seconds(0.01), [&](TimePoint) { ++ticks; });
+  executor.run_until([] { return false; }, from_seconds(0.3));
+  EXPECT_GE(beats, 10);
+  EXPECT_EQ(ticks, 0);
+}
+
+}  // namespace
