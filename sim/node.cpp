@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <random>
 
 #include "common/config/resources.hpp"
 
@@ -12,6 +13,8 @@ namespace {
 
 constexpr std::uint64_t kCatchUp =
     5;  // steps at most in one tick, well below the gap that stops the robot; what is then missing is slip, shown in real_time_factor
+
+constexpr Duration kRepeat = std::chrono::milliseconds(100);  // of a grant, while time stands still
 
 std::uint64_t steps_per(double rate, double step) { return std::max<std::uint64_t>(1, std::llround(1 / (rate * step))); }
 
@@ -31,11 +34,20 @@ Node::Node(Bus& bus, const NodeContext& context)
   per_truth_ = steps_per(settings_.truth_rate, settings_.step);
   restart();
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
-    if (m.robot == context_.robot->name())
-      world_->command(m, r.writer, to_seconds(r.arrival.time_since_epoch()));
-    else
+    if (m.robot != context_.robot->name())
       bus_.count_left_out("joint_command: for another robot", 1);
+    else if (keeper_)
+      set_points_.push_back({m, r.writer});
+    else
+      world_->command(m, r.writer, to_seconds(r.arrival.time_since_epoch()));
   });
+  if (context.sim_time) {
+    keeper_.emplace(settings_);
+    clock_out_ = bus.advertise<SimClock>();
+    clock_.incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
+    bus.subscribe<ClockReached>(
+        [this](const ClockReached& m, const Receipt&) { keeper_->answered(m.component, m.incarnation, m.sequence); });
+  }
   if (world_->follows()) bus.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
   bus.every(from_seconds(settings_.step), [this](TimePoint now) { tick(now); });
@@ -66,7 +78,49 @@ void Node::on_control(const SimControl& control) {
   }
 }
 
+Stamp Node::stamp_now() const { return keeper_ ? bus_.stamp_now() - (bus_.now() - keeper_->time()).count() : bus_.stamp_now(); }
+
+void Node::announce(TimePoint now) {
+  if (clock_.sequence == keeper_->grant_number() && now - announced_ < kRepeat) return;
+  const TimeGrant grant = keeper_->grant();
+  clock_.stamp = bus_.stamp_now();
+  clock_.sequence = keeper_->grant_number();
+  clock_.granted_until = to_seconds(grant.until.time_since_epoch());
+  clock_.waited = to_seconds(grant.waited);
+  clock_out_->publish(clock_);
+  announced_ = now;
+}
+
+void Node::keep_pace(TimePoint now) {
+  keeper_->turn(now);
+  announce(now);
+  while (keeper_->may_step(paused_ || !set_points_.empty())) {
+    if (keeper_->takes_setpoint() && !set_points_.empty()) {
+      const SetPoint& next = set_points_.front();
+      world_->command(next.message, next.writer, to_seconds(keeper_->time().time_since_epoch()));
+      set_points_.pop_front();
+    }
+    if (!paused_) {
+      world_->step();
+      ++steps_;
+      publish();
+    }
+    keeper_->stepped();
+    announce(now);
+  }
+  measure_factor(now);
+}
+
+void Node::measure_factor(TimePoint now) {
+  if (const double passed = to_seconds(now - measured_from_); passed >= 1.0) {
+    factor_ = (world_->time() - measured_sim_) / passed;
+    measured_from_ = now;
+    measured_sim_ = world_->time();
+  }
+}
+
 void Node::tick(TimePoint now) {
+  if (keeper_) return keep_pace(now);
   if (paused_) return;
   if (!started_) {
     started_ = true;
@@ -85,19 +139,15 @@ void Node::tick(TimePoint now) {
     ++steps_;
     publish();
   }
-  if (const double passed = to_seconds(now - measured_from_); passed >= 1.0) {
-    factor_ = (world_->time() - measured_sim_) / passed;
-    measured_from_ = now;
-    measured_sim_ = world_->time();
-  }
+  measure_factor(now);
 }
 
 void Node::publish() {
   if (steps_ % per_state_ == 0 && world_->robot_state(state_)) {
-    state_.stamp = bus_.stamp_now();
+    state_.stamp = stamp_now();
     state_out_->publish(state_);
   }
-  const auto stamp_of = [&](double seen) { return bus_.stamp_now() - from_seconds(world_->time() - seen).count(); };
+  const auto stamp_of = [&](double seen) { return stamp_now() - from_seconds(world_->time() - seen).count(); };
   human_due_.clear();
   world_->human_observations(human_due_);
   for (auto& delivery : human_due_) {
@@ -118,7 +168,7 @@ void Node::publish() {
     if (before == 0 && truth_.limit_violations > 0)
       std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world_->time(),
                    world_->last_limit_violation().c_str());
-    truth_.stamp = bus_.stamp_now();
+    truth_.stamp = stamp_now();
     truth_.real_time_factor = factor_;
     truth_out_->publish(truth_);
   }

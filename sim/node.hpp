@@ -1,13 +1,16 @@
 // Binds the emulated world to a bus. It speaks the hardware's messages: no component knows that it is simulated.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/config/scenario.pb.h"
+#include "sim/time_keeper.hpp"
 #include "sim/world.hpp"
 
 namespace handsel::sim {
@@ -18,6 +21,11 @@ class Node {
 
  private:
   void tick(TimePoint now);
+  /// With simulated time: makes the steps that are due and have what they need.
+  void keep_pace(TimePoint now);
+  void announce(TimePoint now);
+  void measure_factor(TimePoint now);
+  Stamp stamp_now() const;
   void publish();
   void on_control(const SimControl&);
   void restart();
@@ -31,6 +39,15 @@ class Node {
   std::unique_ptr<Publisher<HumanObservation>> human_out_;
   std::unique_ptr<Publisher<ObjectObservation>> object_out_;
   std::unique_ptr<Publisher<GroundTruth>> truth_out_;
+  std::unique_ptr<Publisher<SimClock>> clock_out_;  // with simulated time only
+  std::optional<TimeKeeper> keeper_;                // likewise
+  struct SetPoint {
+    JointCommand message;
+    std::uint64_t writer{};
+  };
+  std::deque<SetPoint> set_points_;  // not taken by a step yet
+  SimClock clock_;
+  TimePoint announced_{};
   RobotState state_;
   GroundTruth truth_;
   std::vector<Delivery<HumanObservation>> human_due_;

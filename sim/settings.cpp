@@ -59,6 +59,9 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.pad.stiffness = positive(read.pad_stiffness(), "pad_stiffness");
   s.servo.finger_travel = positive(read.finger_travel(), "finger_travel");
   s.servo.rotor_inertia = positive(read.rotor_inertia(), "rotor_inertia");
+  s.clock_period = positive(read.clock_period(), "clock_period");
+  s.max_lag = positive(read.max_lag(), "max_lag");
+  s.max_wait = positive(read.max_wait(), "max_wait");
   s.data_root = data_root();
   return s;
 }

@@ -29,6 +29,10 @@ struct SimSettings {
   double position_noise{1e-5};  ///< [rad]
   double coverage{4};           ///< [m]
   double setpoint_period{0};    ///< [s], 0: measured
+  // With simulated time only (sim/time_keeper):
+  double clock_period{0.01};  ///< one grant lets the components' time advance by this [s]
+  double max_lag{0.005};      ///< steps may come this much after their time before time stands still [s]
+  double max_wait{0.5};       ///< for a component that does not answer, or for set-points [s]
   SsmSettings ssm;
   std::filesystem::path data_root;  ///< where relative recordings are found; empty: nowhere
 };

@@ -1,0 +1,103 @@
+#include "sim/time_keeper.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace handsel;
+using namespace handsel::sim;
+
+namespace {
+
+TimePoint at(double seconds) { return TimePoint(from_seconds(seconds)); }
+
+SimSettings settings() {
+  SimSettings s;
+  s.robot_side.period = 0.001;
+  return s;
+}
+
+/// Makes the steps that may be made now; returns their number.
+int turn(TimeKeeper& keeper, double wall, bool set_points) {
+  keeper.turn(at(wall));
+  int steps = 0;
+  for (; keeper.may_step(set_points); ++steps) keeper.stepped();
+  return steps;
+}
+
+TEST(TimeKeeper, KeepsThePaceOfTheMachineWhenNobodyIsLate) {
+  TimeKeeper keeper(settings());
+  int steps = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    keeper.answered("spark", 1, keeper.grant_number());
+    steps += turn(keeper, 5 + 0.001 * i, true);
+  }
+  EXPECT_EQ(steps, 1001);
+  EXPECT_EQ(keeper.waited(), Duration::zero());
+}
+
+TEST(TimeKeeper, WaitsForASetPointOnlyAsLongAsTheyCome) {
+  TimeKeeper keeper(settings());
+  EXPECT_EQ(turn(keeper, 5, false), 1) << "none has ever come";
+  EXPECT_EQ(turn(keeper, 5.001, true), 1);
+  double wall = 5.002;
+  int steps = 0;
+  for (; wall < 5.4; wall += 0.001) steps += turn(keeper, wall, false);
+  EXPECT_EQ(steps, 0);
+  for (; wall < 5.6; wall += 0.001) steps += turn(keeper, wall, false);
+  EXPECT_GT(steps, 50) << "no longer than max_wait";
+  EXPECT_NEAR(to_seconds(keeper.waited()), 0.5, 0.02);
+}
+
+TEST(TimeKeeper, TimeStandsStillUntilEverybodyHasAnswered) {
+  TimeKeeper keeper(settings());
+  keeper.answered("spark", 1, 0);
+  int steps = 0;
+  double wall = 5;
+  for (; wall < 5.2; wall += 0.001) steps += turn(keeper, wall, true);
+  EXPECT_EQ(steps, 10) << "one clock_period";
+  EXPECT_EQ(keeper.grant().until, at(5) + from_seconds(0.02));
+  keeper.answered("spark", 1, 1);
+  steps += turn(keeper, wall, true);
+  EXPECT_GT(steps, 10);
+  EXPECT_EQ(keeper.grant_number(), 2u);
+  EXPECT_NEAR(to_seconds(keeper.waited()), 0.185, 0.002);
+}
+
+TEST(TimeKeeper, OneThatDoesNotAnswerHoldsTheOthersUpOnce) {
+  TimeKeeper keeper(settings());
+  keeper.answered("spark", 1, 0);
+  int steps = 0;
+  for (double wall = 5; wall < 7; wall += 0.001) steps += turn(keeper, wall, true);
+  EXPECT_NEAR(steps, 1500, 20);
+  keeper.answered("spark", 2, keeper.grant_number());  // restarted: it is waited for again
+  const std::uint64_t grant = keeper.grant_number();
+  for (double wall = 7; wall < 7.3; wall += 0.001) turn(keeper, wall, true);
+  EXPECT_EQ(keeper.grant_number(), grant + 1);
+}
+
+TEST(TimeKeeper, AStarvedSimulatorNeitherRushesNorGivesUpOnOthers) {
+  TimeKeeper keeper(settings());
+  keeper.answered("spark", 1, 0);
+  turn(keeper, 5, true);
+  EXPECT_LE(turn(keeper, 6, true), 6) << "steps that are late by more than max_lag are not made up for";
+  for (double wall = 6; wall < 10; wall += 1) turn(keeper, wall, true);  // a turn a second
+  keeper.answered("spark", 1, keeper.grant_number());
+  EXPECT_NEAR(to_seconds(at(10) - keeper.time()), to_seconds(keeper.waited()), 2) << "the time of a step is wall less waited";
+}
+
+TEST(TimeKeeper, NobodysTimeIsEverMoreThanTwoPeriodsAheadOfAStep) {
+  std::mt19937 random(4711);
+  std::uniform_real_distribution<double> wait(0, 0.03);
+  TimeKeeper keeper(settings());
+  double wall = 5;
+  for (int i = 0; i < 20000; ++i) {
+    wall += wait(random);
+    if (random() % 3 == 0) keeper.answered("spark", 1, keeper.grant_number());
+    turn(keeper, wall, random() % 4 != 0);
+    ASSERT_LE(to_seconds(keeper.grant().until - keeper.time()), 0.02 + 1e-9);
+    ASSERT_GE(to_seconds(keeper.grant().until - keeper.time()), 0.01 - 1e-9);
+  }
+}
+
+}  // namespace
