@@ -1,15 +1,20 @@
 #include "deploy/handsel/system.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 
 #include "common/base/errors.hpp"
 #include "common/config/resources.hpp"
 #include "common/wire/interface_id.hpp"
+#include "deploy/handsel/proc_stat.hpp"
 #include "deploy/handsel/status.hpp"
 
 namespace handsel {
 namespace {
+
+constexpr Duration kStarvedCheck = std::chrono::milliseconds(200);
 
 SystemOptions checked(SystemOptions options) {
   check_system(options);
@@ -102,7 +107,18 @@ std::optional<Duration> System::wait_ready(Duration limit) {
     }
     return missing;
   };
-  if (!wait(limit, [&] { return lacking().empty(); })) {
+  // Time in which a process waited for a processor does not count: of two systems on one processor each starts more slowly.
+  std::map<std::string, ThreadDelay> delays;
+  const auto starved = [&] {
+    Duration longest{};
+    for (const ProcessStatus& process : launcher_.processes())
+      if (process.pid > 0) longest = std::max(longest, delays[process.name].update(process.pid));
+    return longest;
+  };
+  bool ready = false;
+  for (Duration left = limit; !ready && left > Duration::zero() && !interrupted(); left = limit + starved() - (monotonic_now() - begin))
+    ready = wait(std::min(left, kStarvedCheck), [&] { return lacking().empty(); });
+  if (!ready) {
     if (interrupted()) return std::nullopt;
     throw MissingError("the system is not ready after " + std::to_string(static_cast<int>(to_seconds(limit))) + " s; waiting for " +
                        join(lacking()) + "; logs are in " + log_directory_.string());
