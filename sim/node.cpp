@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <random>
 
+#include "common/bus/process_state.hpp"
 #include "common/config/resources.hpp"
 
 namespace handsel::sim {
@@ -45,8 +46,10 @@ Node::Node(Bus& bus, const NodeContext& context)
     keeper_.emplace(settings_);
     clock_out_ = bus.advertise<SimClock>();
     clock_.incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
-    bus.subscribe<ClockReached>(
-        [this](const ClockReached& m, const Receipt&) { keeper_->answered(m.component, m.incarnation, m.sequence); });
+    bus.subscribe<ClockReached>([this](const ClockReached& m, const Receipt&) {
+      if (!visible_.contains(m.incarnation)) visible_[m.incarnation] = process_state(static_cast<pid_t>(m.incarnation)) != 'X';
+      keeper_->answered(m.component, m.incarnation, m.sequence);
+    });
   }
   if (world_->follows()) bus.subscribe<HumanObservation>([this](const HumanObservation& m, const Receipt&) { world_->observe(m); });
   bus.subscribe<SimControl>([this](const SimControl& m, const Receipt&) { on_control(m); });
@@ -80,6 +83,13 @@ void Node::on_control(const SimControl& control) {
 
 Stamp Node::stamp_now() const { return keeper_ ? bus_.stamp_now() - (bus_.now() - keeper_->time()).count() : bus_.stamp_now(); }
 
+bool Node::runs(std::uint64_t process) const {
+  const auto visible = visible_.find(process);
+  if (visible == visible_.end() || !visible->second) return true;  // of another container, perhaps
+  const char state = process_state(static_cast<pid_t>(process));
+  return state != 'T' && state != 'Z' && state != 'X';
+}
+
 void Node::announce(TimePoint now) {
   if (clock_.sequence == keeper_->grant_number() && now - announced_ < kRepeat) return;
   const TimeGrant grant = keeper_->grant();
@@ -93,6 +103,7 @@ void Node::announce(TimePoint now) {
 
 void Node::keep_pace(TimePoint now) {
   keeper_->turn(now);
+  keeper_->leave_out_stopped([this](std::uint64_t process) { return runs(process); });
   announce(now);
   while (keeper_->may_step(paused_ || !set_points_.empty())) {
     if (keeper_->takes_setpoint() && !set_points_.empty()) {

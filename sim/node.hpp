@@ -24,6 +24,8 @@ class Node {
   /// With simulated time: makes the steps that are due and have what they need.
   void keep_pace(TimePoint now);
   void announce(TimePoint now);
+  /// Not stopped and not ended, as far as the kernel shows the process here.
+  bool runs(std::uint64_t process) const;
   void measure_factor(TimePoint now);
   Stamp stamp_now() const;
   void publish();
@@ -45,7 +47,8 @@ class Node {
     JointCommand message;
     std::uint64_t writer{};
   };
-  std::deque<SetPoint> set_points_;  // not taken by a step yet
+  std::map<std::uint64_t, bool> visible_;  // processes that answered: does the kernel show them here?
+  std::deque<SetPoint> set_points_;        // not taken by a step yet
   SimClock clock_;
   TimePoint announced_{};
   RobotState state_;

@@ -7,6 +7,7 @@ namespace handsel::sim {
 namespace {
 
 constexpr std::int64_t kGrantsAhead = 2;
+constexpr Duration kLook = std::chrono::milliseconds(10);
 constexpr Duration kOwnTurn = std::chrono::milliseconds(10);  // between two turns, when the simulator gets its processor
 
 }  // namespace
@@ -18,8 +19,14 @@ TimeKeeper::TimeKeeper(const SimSettings& settings)
       max_wait_(from_seconds(settings.max_wait)),
       per_setpoint_(std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(settings.robot_side.period / settings.step)))) {}
 
-void TimeKeeper::answered(const std::string& component, std::uint64_t incarnation, std::uint64_t grant) {
-  answers_[component] = {incarnation, grant};
+void TimeKeeper::answered(const std::string& component, std::uint64_t process, std::uint64_t grant) {
+  answers_[component] = {process, grant};
+}
+
+void TimeKeeper::leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs) {
+  if (blocked_ < looked_ + kLook) return;
+  looked_ = blocked_;
+  stop_waiting([&](const Answer& answer) { return !runs(answer.process); });
 }
 
 void TimeKeeper::turn(TimePoint wall) {
@@ -38,23 +45,24 @@ bool TimeKeeper::everybody_answered() const {
   return std::all_of(answers_.begin(), answers_.end(), [&](const auto& answer) { return answer.second.grant >= grant_; });
 }
 
-/// Those that have not answered are waited for again once they do.
-void TimeKeeper::stop_waiting() {
-  setpoints_flow_ = false;
-  std::erase_if(answers_, [&](const auto& answer) { return answer.second.grant < grant_; });
+void TimeKeeper::stop_waiting(const std::function<bool(const Answer&)>& whom) {
+  if (std::erase_if(answers_, [&](const auto& answer) { return whom(answer.second); }) > 0) setpoints_flow_ = false;
 }
 
 bool TimeKeeper::may_step(bool has_setpoint) {
   if (wall_ - waited_ < time()) {
-    blocked_ = Duration::zero();
+    blocked_ = looked_ = Duration::zero();
     return false;
   }
-  if (blocked_ > max_wait_) stop_waiting();
+  if (blocked_ > max_wait_) {
+    setpoints_flow_ = false;
+    stop_waiting([&](const Answer& answer) { return answer.grant < grant_; });
+  }
   if (takes_setpoint()) setpoints_flow_ = setpoints_flow_ || has_setpoint;
   const bool at_boundary = time() >= start_ + clock_period_ * static_cast<std::int64_t>(grant_);
   if ((takes_setpoint() && setpoints_flow_ && !has_setpoint) || (at_boundary && !everybody_answered())) return false;
   if (at_boundary) ++grant_;
-  blocked_ = Duration::zero();
+  blocked_ = looked_ = Duration::zero();
   return true;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,14 +14,16 @@
 namespace handsel::sim {
 
 /// Time of the system is wall less waited(). A step waits for its set-point as long as set-points come, and at each boundary of a
-/// clock_period for every component's answer to the grant before; both no longer than max_wait. Time that steps come late by more than
-/// max_lag is waited: so is the time for which the simulator itself gets no processor.
+/// clock_period for every component's answer to the grant before; both no longer than max_wait, and not for a process that has been
+/// stopped. Time that steps come late by more than max_lag is waited: so is the time for which the simulator itself gets no processor.
 class TimeKeeper {
  public:
   explicit TimeKeeper(const SimSettings& settings);
 
   /// A component answered a grant. The first answer makes it one that is waited for.
-  void answered(const std::string& component, std::uint64_t incarnation, std::uint64_t grant);
+  void answered(const std::string& component, std::uint64_t process, std::uint64_t grant);
+  /// Asks `runs` for each component's process, when a step has been held up for 10 ms, and does not wait for those that do not run.
+  void leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs);
   /// Called before the steps of a turn; the first call starts time.
   void turn(TimePoint wall);
   /// Whether the next step may be made. `has_setpoint`: its set-point has come.
@@ -36,18 +39,19 @@ class TimeKeeper {
   Duration waited() const { return waited_; }
 
  private:
+  struct Answer {
+    std::uint64_t process{}, grant{};
+  };
   bool everybody_answered() const;
-  void stop_waiting();
+  /// For those: they are waited for again once they answer.
+  void stop_waiting(const std::function<bool(const Answer&)>& whom);
 
   Duration period_, clock_period_, max_lag_, max_wait_;
   std::uint64_t per_setpoint_;
   bool started_{false}, setpoints_flow_{false};
   TimePoint start_{}, wall_{};
-  Duration waited_{}, blocked_{};  // blocked_: by the same step, while the simulator itself could go on
+  Duration waited_{}, blocked_{}, looked_{};  // blocked_: by the same step, while the simulator itself could go on
   std::uint64_t steps_{0}, grant_{0};
-  struct Answer {
-    std::uint64_t incarnation{}, grant{};
-  };
   std::map<std::string, Answer> answers_;
 };
 

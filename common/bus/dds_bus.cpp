@@ -321,7 +321,7 @@ void DdsBus::Impl::look_at_matching(Reader& reader) {
 void DdsBus::Impl::follow_pace(const SimClock& clock) {
   if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)), from_seconds(clock.waited)})) return;
   reached_message.component = settings.component;
-  reached_message.incarnation = incarnation;
+  reached_message.incarnation = static_cast<std::uint64_t>(getpid());
   reached_message.sequence = clock.sequence;
   reached->publish(reached_message);
 }

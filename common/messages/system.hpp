@@ -73,7 +73,7 @@ struct SimClock {
 struct ClockReached {
   Stamp stamp{};
   std::string component;
-  std::uint64_t incarnation{};  ///< of the process
+  std::uint64_t incarnation{};  ///< process id: one that the kernel has stopped is not waited for
   std::uint64_t sequence{};     ///< of that grant
 };
 

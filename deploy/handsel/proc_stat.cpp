@@ -18,14 +18,6 @@ Duration run_delay(const std::string& file) {
 
 }  // namespace
 
-char process_state(pid_t pid) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
-  std::string text;
-  std::getline(in, text);
-  const std::size_t name_ends = text.rfind(')');  // the name may hold anything
-  return name_ends == std::string::npos || name_ends + 2 >= text.size() ? 'X' : text[name_ends + 2];
-}
-
 Duration main_thread_delay(pid_t pid) {
   const std::string id = std::to_string(pid);
   return run_delay("/proc/" + id + "/task/" + id + "/schedstat");

@@ -1,4 +1,4 @@
-// What the kernel says of a running process: /proc.
+// For how long a running process has waited for a processor: /proc.
 #pragma once
 
 #include <sys/types.h>
@@ -9,8 +9,6 @@
 
 namespace handsel {
 
-/// The letter of /proc/PID/stat (proc(5)); 'X' when there is no such process.
-char process_state(pid_t pid);
 /// How long the main thread has waited for a processor so far; zero when the kernel does not tell.
 Duration main_thread_delay(pid_t pid);
 

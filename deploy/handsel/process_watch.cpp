@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "common/bus/executor.hpp"
+#include "common/bus/process_state.hpp"
 
 namespace handsel {
 namespace {

@@ -76,6 +76,17 @@ TEST(TimeKeeper, OneThatDoesNotAnswerHoldsTheOthersUpOnce) {
   EXPECT_EQ(keeper.grant_number(), grant + 1);
 }
 
+TEST(TimeKeeper, AStoppedProcessIsNotWaitedFor) {
+  TimeKeeper keeper(settings());
+  keeper.answered("spark", 7, 0);
+  int steps = 0;
+  for (double wall = 5; wall < 6; wall += 0.001) {
+    keeper.leave_out_stopped([](std::uint64_t process) { return process != 7; });
+    steps += turn(keeper, wall, true);
+  }
+  EXPECT_GT(steps, 970);
+}
+
 TEST(TimeKeeper, AStarvedSimulatorNeitherRushesNorGivesUpOnOthers) {
   TimeKeeper keeper(settings());
   keeper.answered("spark", 1, 0);

@@ -1,0 +1,11 @@
+// What the kernel says of a running process: /proc.
+#pragma once
+
+#include <sys/types.h>
+
+namespace handsel {
+
+/// The letter of /proc/PID/stat (proc(5)); 'X' when there is no such process.
+char process_state(pid_t pid);
+
+}  // namespace handsel
