@@ -330,7 +330,7 @@ void DdsBus::Impl::follow_pace(const SimClock& clock) {
 void DdsBus::Impl::publish_health(TimePoint wall) {
   const TimePoint now = executor.now();
   ComponentHealth& m = health_message;
-  m.stamp = 0;
+  m.stamp = system_now();
   m.component = settings.component;
   m.incarnation = incarnation;
   m.pid = static_cast<std::uint32_t>(getpid());
