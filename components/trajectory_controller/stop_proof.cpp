@@ -53,7 +53,7 @@ StopProof::StopProof(const StopProofSettings& settings, const RobotModel& robot,
       position_(Vector::Zero(robot.dof())),
       velocity_(Vector::Zero(robot.dof())),
       motions_(chain_.frames().size()) {
-  for (std::vector<double>* by_axis : {&travel_, &other_travel_, &speed_, &turning_, &jerk_, &moved_, &now_})
+  for (std::vector<double>* by_axis : {&travel_, &other_travel_, &speed_, &turning_, &jerk_, &moved_, &now_, &time_})
     by_axis->resize(static_cast<std::size_t>(robot.dof()));
   for (const Axis& axis : robot.axes()) {
     lower_.push_back(axis.lower);
@@ -195,16 +195,34 @@ void StopProof::sample(const Stop& stop, double time, const Pose& T_world_base, 
     }
 }
 
-/// Returns the largest speed of every axis from the sample before to the one after.
-const std::vector<double>& StopProof::speeds_around(const Stop& stop, int slot) noexcept {
+/// Returns when everything that is in a pair is at rest. Axes that carry none of it, as those of the head, may take longer.
+double StopProof::time_until_rest(const Stop& stop) noexcept {
+  std::fill(time_.begin(), time_.end(), 0.0);
+  for (int k = 0; k < stop.count; ++k) {
+    const AxisStop& axis = stop.axes[static_cast<std::size_t>(k)];
+    time_[static_cast<std::size_t>(axis.axis)] = axis.duration;
+  }
+  double longest = 0.0;
+  const auto look = [&](const std::vector<Lever>& levers) {
+    for (const Lever& lever : levers) longest = std::max(longest, time_[static_cast<std::size_t>(lever.axis)]);
+  };
+  for (std::size_t c = 0; c < paired_.size(); ++c) {
+    if (!paired_[c]) continue;
+    look(chain_.capsules()[c].carried);
+    for (const std::vector<Lever>& finger : chain_.capsules()[c].fingers) look(finger);
+  }
+  return longest;
+}
+
+/// Returns the largest speed of every axis between a sample and the next.
+const std::vector<double>& StopProof::speeds_between(const Stop& stop, int slot, double interval) noexcept {
   const auto k = static_cast<std::size_t>(slot);
   if (speeds_known_[k]) return speeds_[k];
   speeds_known_[k] = true;
   std::fill(speeds_[k].begin(), speeds_[k].end(), 0.0);
-  const double interval = stop.duration / kIntervals;
   for (int i = 0; i < stop.count; ++i) {
     const AxisStop& axis = stop.axes[static_cast<std::size_t>(i)];
-    speeds_[k][static_cast<std::size_t>(axis.axis)] = axis.max_speed_between((slot - 1) * interval, (slot + 1) * interval);
+    speeds_[k][static_cast<std::size_t>(axis.axis)] = axis.max_speed_between(slot * interval, (slot + 1) * interval);
   }
   return speeds_[k];
 }
@@ -287,11 +305,13 @@ bool StopProof::find_pairs(const Crowd& people, const Pose& T_world_base, double
   return true;
 }
 
-/// Between two samples a link moves no faster than the faster of them, but for how much speeds and levers may bend within the interval; nor
-/// faster than the largest speeds of its axes there at their levers, which says more where axes come to rest.
+/// Samples both until everything in a pair is at rest. Between two samples a link moves no faster than the faster of them, but for how much
+/// speeds and levers may bend within the interval; nor faster than the largest speeds of its axes there at their levers, which says more
+/// where axes come to rest.
 bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd& people, const Pose& T_world_base, double age) noexcept {
-  if (stop.count == 0) return true;
-  const double interval = stop.duration / kIntervals;
+  const double until_rest = time_until_rest(stop);
+  if (until_rest == 0.0) return true;
+  const double interval = until_rest / kIntervals;
   position_ = position;
   velocity_.setZero();
   std::fill(now_.begin(), now_.end(), 0.0);
@@ -322,32 +342,30 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
     const auto region = static_cast<std::size_t>(part.region);
     const RegionMotion& bounds = settings_.people[region];
     const double from = start_speed(part, settings_.speed_error, bounds);
-    for (int slot = 0; slot <= kIntervals; ++slot) {
-      const Sample& at = samples_[static_cast<std::size_t>(slot)][pair.capsule];
-      double carried = at.carried, inner = at.inner;
-      for (int beside : {std::max(0, slot - 1), std::min(kIntervals, slot + 1)}) {
-        const Sample& other = samples_[static_cast<std::size_t>(beside)][pair.capsule];
-        carried = std::max(carried, other.carried);
-        inner = std::max(inner, other.inner);
-      }
-      carried += bend;
+    const auto within = [&](const Sample& at, double needed) {
+      const double apart = needed + link.radius + part.reach + 0.5 * (at.b - at.a).norm();
+      if ((0.5 * (at.a + at.b) - part.centre).squaredNorm() > apart * apart) return false;
+      Vector3 on_robot, on_person;
+      const double distance = std::sqrt(nearest_points(at.a, at.b, part.a, part.b, on_robot, on_person)) - link.radius - part.radius;
+      refutation_.distance = distance;
+      return distance <= needed;
+    };
+    for (int slot = 0; slot < kIntervals; ++slot) {
+      const Sample& first = samples_[static_cast<std::size_t>(slot)][pair.capsule];
+      const Sample& second = samples_[static_cast<std::size_t>(slot) + 1][pair.capsule];
+      double carried = std::max(first.carried, second.carried) + bend, inner = std::max(first.inner, second.inner);
       if (inner > 0.0) inner += inner_bend;
       if (contact_speed(carried, inner, region) <= max_contact_speed_[region]) continue;
-      const std::vector<double>& speeds = speeds_around(stop, slot);
+      const std::vector<double>& speeds = speeds_between(stop, slot, interval);
       carried = std::min(carried, link.carried_bound(speeds));
       inner = std::min(inner, link.inner_bound(speeds));
       const double contact = contact_speed(carried, inner, region);
       if (contact <= max_contact_speed_[region]) continue;
-      const double speed = carried + inner;
-      const double until = std::min(stop.duration, (slot + 0.5) * interval);
-      const double needed =
-          speed * interval / 2.0 + inner_travel + margin + reach_after(until + settings_.latency + age + part.age, from, bounds);
-      const double apart = needed + link.radius + part.reach + 0.5 * (at.b - at.a).norm();
-      if ((0.5 * (at.a + at.b) - part.centre).squaredNorm() > apart * apart) continue;
-      Vector3 on_robot, on_person;
-      const double distance = std::sqrt(nearest_points(at.a, at.b, part.a, part.b, on_robot, on_person)) - link.radius - part.radius;
-      if (distance > needed) continue;
-      refutation_ = {link.link, slot * interval, contact, max_contact_speed_[region], distance, needed};
+      // Within the interval the link is no farther from where it is at one of its ends than it goes in half of it.
+      const double needed = (carried + inner) * interval / 2.0 + inner_travel + margin +
+                            reach_after((slot + 1) * interval + settings_.latency + age + part.age, from, bounds);
+      if (!within(first, needed) && !within(second, needed)) continue;
+      refutation_ = {link.link, slot * interval, contact, max_contact_speed_[region], refutation_.distance, needed};
       return false;
     }
   }

@@ -125,7 +125,8 @@ class StopProof {
   double contact_speed(double carried, double inner, std::size_t region) const noexcept;
   bool check_stop(const Stop& stop, const Vector& position, const Crowd& people, const Pose& T_world_base, double age) noexcept;
   void sample(const Stop& stop, double time, const Pose& T_world_base, int slot) noexcept;
-  const std::vector<double>& speeds_around(const Stop& stop, int slot) noexcept;
+  double time_until_rest(const Stop& stop) noexcept;
+  const std::vector<double>& speeds_between(const Stop& stop, int slot, double interval) noexcept;
   Sample placed(const ChainCapsule& capsule, const Pose& T_world_base) const noexcept;
 
   StopProofSettings settings_;
@@ -141,12 +142,12 @@ class StopProof {
   std::vector<char> paired_;                                 // capsules that are in a pair
   std::vector<char> all_frames_, needed_frames_;             // marks for the chain: all; those that carry a paired capsule
   std::array<std::vector<Sample>, kIntervals + 1> samples_;  // of every capsule
-  std::array<std::vector<double>, kIntervals + 1> speeds_;   // largest of each axis around a sample
-  std::array<bool, kIntervals + 1> speeds_known_{};
+  std::array<std::vector<double>, kIntervals> speeds_;       // largest of each axis between a sample and the next
+  std::array<bool, kIntervals> speeds_known_{};
   Vector position_, velocity_;
   std::vector<FrameMotion> motions_;  // of each frame
-  // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the sample.
-  std::vector<double> travel_, other_travel_, speed_, turning_, jerk_, moved_, now_;
+  // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the sample; until when it moves.
+  std::vector<double> travel_, other_travel_, speed_, turning_, jerk_, moved_, now_, time_;
   std::vector<double> max_travel_, max_carried_, max_inner_;  // of each capsule during both stops [m, m/s]
   std::array<double, kBodyRegions> finger_ratio_{};           // energy of a contact of the fingers alone to one of the arm, at equal speed
   double min_contact_speed_{}, max_person_speed_{};

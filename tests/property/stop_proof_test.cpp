@@ -179,6 +179,39 @@ TEST_F(StopProofStories, a_fast_arm_beside_a_head_is_refused_and_a_slow_one_is_n
   EXPECT_TRUE(proof_.check(state, people, Pose::Identity(), 0.02, 0.0));
 }
 
+TEST_F(StopProofStories, a_turning_head_takes_nothing_from_the_speed_of_the_arm) {
+  MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
+  std::vector<Pose> links;
+  robot_.forward(state.position, links);
+  CrowdCapsule face{};
+  face.a = face.b = face.centre = links[static_cast<std::size_t>(robot_.tool_link())].translation() + Vector3(0.6, 0, 0);
+  face.radius = face.reach = 0.12;
+  face.region = BodyRegion::head;
+  face.measured = true;
+  Crowd people;
+  people.capsules.push_back(face);
+  const int shoulder = robot_.require_group("arm").axes.front();
+  const auto fastest = [&] {
+    double harmless = 0.0, harmful = 1.5;
+    for (int k = 0; k < 20; ++k) {
+      state.velocity[shoulder] = 0.5 * (harmless + harmful);
+      people.revision += 1;
+      (proof_.check(state, people, Pose::Identity(), 0.02, 0.0) ? harmless : harmful) = state.velocity[shoulder];
+    }
+    return harmless;
+  };
+  const double still = fastest();
+  for (int axis : robot_.require_group("head").axes) {
+    state.velocity[axis] = 0.9;
+    state.acceleration[axis] = 2.0;
+  }
+  const double turning = fastest();
+  std::printf("fastest harmless shoulder %.3f rad/s, with a head that turns %.3f rad/s\n", still, turning);
+  EXPECT_GT(still, 0.26) << "intervals of a stop are bounded by more than their own two samples";
+  EXPECT_LT(still, 1.4);
+  EXPECT_NEAR(turning, still, 1e-3);
+}
+
 TEST_F(StopProofStories, a_stop_that_would_leave_the_bounds_of_an_axis_is_refused) {
   MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
   const int axis = robot_.require_group("arm").axes.front();
