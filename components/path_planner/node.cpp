@@ -7,6 +7,7 @@
 #include "common/config/resources.hpp"
 #include "common/cost/cost_settings.hpp"
 #include "components/path_planner/cartesian.hpp"
+#include "components/path_planner/head_room.hpp"
 #include "components/path_planner/path_planner.hpp"
 #include "components/path_planner/request.hpp"
 
@@ -27,6 +28,7 @@ config::PathPlannerSettings load(const NodeContext& context) {
   if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0 ||
       s.live_turning_margin() < 0)
     throw ConfigError("path_planner.txtpb: live_rounds, live_tries and the margins must be >= 0, live_gain in [0, 1)");
+  if (s.head_room() < 0) throw ConfigError("path_planner.txtpb: head_room must be >= 0");
   return s;
 }
 
@@ -80,6 +82,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   live_.tries = file.live_tries();
   live_margins_ = {file.live_margin(), file.live_turning_margin()};
   roam_ = file.roam();
+  head_room_ = file.head_room();
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(
@@ -197,12 +200,27 @@ void Node::start(const PathRequest& request) {
       drive(seat.robot, *seat.navigation, roam_, work->problem);
     }
     const Hooks hooks{[&token] { return token.cancelled(); }, {}};
-    if (work->request.running.empty()) {
-      work->result = from_nothing(seat, work->request, work->problem, T_world_root, hooks);
-    } else {
+    const auto solve = [&] {
+      if (work->request.running.empty()) {
+        work->result = from_nothing(seat, work->request, work->problem, T_world_root, hooks);
+        return;
+      }
       LiveResult live = go_on(seat.robot, seat.world, seat.cost, work->problem, work->request.running, settings_, live_, hooks);
       work->outcome = live.outcome;
       work->result = std::move(live.result);
+    };
+    const std::uint64_t budget = work->problem.budget;
+    std::uint64_t spent = 0;
+    if (make_head_room(seat, work->request, work->problem, *work->people) > 0) {
+      work->problem.budget = budget / 2;
+      solve();
+      seat.world.set_obstacles({});
+      spent = work->result.checks;
+    }
+    if (!work->result.solved && !token.cancelled()) {
+      work->problem.budget = budget - std::min(spent, budget - 1);
+      solve();
+      work->result.checks += spent;
     }
     return from_seconds(timing_.check_time * static_cast<double>(work->result.checks));
   };
@@ -225,6 +243,16 @@ void Node::start(const PathRequest& request) {
     reply_out_->publish(reply);
   };
   running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, answer));
+}
+
+/// Room about heads for what is planned between postures; 0 for the rest: a straight line leads where it leads.
+double Node::make_head_room(const Seat& seat, const PathRequest& request, const Problem& problem, const HumanState& people) const {
+  seat.world.set_obstacles({});
+  if (request.straight || problem.goals.empty() || seat.navigation != nullptr || request.space == PlanSpace::cartesian) return 0;
+  seat.world.set_moving_axes(problem.axes);
+  std::vector<Vector> goals;
+  for (const Vector& goal : problem.goals) goals.push_back(RobotModel::with(problem.start, *seat.robot.group(request.group), goal));
+  return keep_off_heads(seat.world, people, head_room_, problem.start, goals);
 }
 
 /// Start and goal of a live request: the goal that is led to if it is wanted still, else the first one; all axes.

@@ -52,6 +52,7 @@ class Node {
   };
   Seat seat_for(const std::string& group);
   std::string complete(PathRequest& request) const;
+  double make_head_room(const Seat& seat, const PathRequest& request, const Problem& problem, const HumanState& people) const;
   static std::vector<Vector> ends_of(const Problem& problem, const Vector& goal_so_far);
   Result from_nothing(const Seat& seat, const PathRequest& request, Problem& problem, const Pose& T_world_root, const Hooks& hooks);
   void stop_running(std::uint64_t client, std::uint64_t last);
@@ -66,6 +67,7 @@ class Node {
   LiveSettings live_;
   Margins live_margins_;
   double roam_{};
+  double head_room_{};
   std::array<std::uint64_t, 5> live_outcomes_{};
   Timing timing_;
   std::unique_ptr<Publisher<PathReply>> reply_out_;

@@ -1,4 +1,5 @@
-// Requests of every kind at the path planner on LocalBus: postures, poses, regions, kept upright, Cartesian; and what makes no sense.
+// Requests of every kind at the path planner on LocalBus: postures, poses, regions, kept upright, Cartesian, beside a head; and what makes
+// no sense.
 #include <cstdlib>
 #include <filesystem>
 
@@ -6,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "common/bus/local_bus.hpp"
+#include "common/model/human_body.hpp"
+#include "components/path_planner/head_room.hpp"
 #include "components/path_planner/node.hpp"
 #include "components/path_planner/request.hpp"
 
@@ -34,7 +37,7 @@ class PathRequests : public ::testing::Test {
     people_out_ = spark.advertise<HumanState>();
     spark.every(std::chrono::milliseconds(50), [this](TimePoint) {
       scene_out_->publish(scene_);
-      people_out_->publish({});
+      people_out_->publish(people_);
     });
     node_ = std::make_unique<Node>(network_.add("path_planner"), context_);
     Bus& client = network_.add("manipulation_planner");
@@ -72,6 +75,7 @@ class PathRequests : public ::testing::Test {
   NodeContext context_;
   const Group& arm_;
   Scene scene_;
+  HumanState people_;
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<HumanState>> people_out_;
   std::unique_ptr<Node> node_;
@@ -108,6 +112,57 @@ TEST_F(PathRequests, a_pose_a_set_of_them_and_a_region_are_reached) {
   r = request();
   r.poses = {far};
   EXPECT_THAT(ask(r).reason, HasSubstr("no posture of the group \"arm\" reaches the goal"));
+}
+
+TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
+  // The arm sweeps from one side to the other; a head is before the middle of the way.
+  Vector start = jido().rest_posture(), goal = start, middle = start;
+  start[arm_.axes[0]] -= 0.7;
+  goal[arm_.axes[0]] += 0.7;
+  CollisionWorld world(jido(), context_.objects);
+  world.set_scene(scene_);
+  const Vector3 p_tip = tip(RobotModel::part(middle, arm_)).translation();
+  const Vector3 out = (p_tip - scene_.T_world_base.translation()).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const auto head_at = [&](double away) {
+    Person person;
+    person.id = "anna";
+    person.stature = 1.2;
+    person.joints = standing_body(Vector3::Zero(), 0, person.stature);
+    const Vector3 shift = p_tip + away * out - simplified_body(person).head;
+    for (BodyJoint& joint : person.joints) joint.position += shift;
+    people_.people = {person};
+    people_.covered = true;
+  };
+  const auto room = [&](const Vector& q) { return keep_off_heads(world, people_, 0.5, q, {q}); };
+  double away = 0.1;
+  for (head_at(away); room(middle) < 0.1; away += 0.02) head_at(away);
+  ASSERT_GT(room(start), 0.3);
+  ASSERT_GT(room(goal), 0.3);
+  network_.run_for(std::chrono::milliseconds(200));
+  PathRequest r = request();
+  r.start = start;
+  r.goals = {RobotModel::part(goal, arm_)};
+  const auto least = [&](const PathReply& reply) {
+    double out_of = 1.0;
+    for (std::size_t i = 1; i < reply.path.size(); ++i)
+      for (int k = 0; k <= 50; ++k)
+        out_of = std::min(out_of, room(RobotModel::with(start, arm_, reply.path[i - 1] + 0.02 * k * (reply.path[i] - reply.path[i - 1]))));
+    return out_of;
+  };
+  const PathReply around = ask(r);
+  ASSERT_TRUE(around.solved) << around.reason;
+  EXPECT_GE(least(around), 0.3 - 1e-9);
+
+  // What is nearer is reached all the same, and left.
+  r = request();
+  r.start = start;
+  r.goals = {RobotModel::part(middle, arm_)};
+  const PathReply near = ask(r);
+  ASSERT_TRUE(near.solved) << near.reason;
+  r.id = request().id;
+  r.start = middle;
+  r.goals = {RobotModel::part(start, arm_)};
+  EXPECT_TRUE(ask(r).solved);
 }
 
 TEST_F(PathRequests, what_is_held_stays_upright_in_the_world) {
