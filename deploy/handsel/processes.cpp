@@ -31,15 +31,6 @@ void require_processes(const std::vector<std::string>& names) {
   }
 }
 
-/// Whether the simulator may give the pace: not where a source from outside, whose time goes on, is listened to.
-bool is_all_simulated(const SystemOptions& options) {
-  if (!options.whole() || options.ros2) return false;
-  config::Scenario scenario;
-  load_text_proto(scenario_file(options.scenario), scenario);
-  return std::none_of(scenario.people().begin(), scenario.people().end(),
-                      [](const config::PersonDescription& person) { return person.behaviour() == config::EXTERNAL; });
-}
-
 }  // namespace
 
 std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
@@ -47,7 +38,6 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   require_processes(options.without);
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
   const std::string robot = robot_of(options);
-  const bool sim_time = is_all_simulated(options);
   std::vector<ProcessSpec> specs;
   std::vector<std::string> processes(kProcesses.begin(), kProcesses.end());
   std::erase_if(processes, [&](const std::string& process) {
@@ -64,7 +54,6 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
     spec.arguments.insert(spec.arguments.end(), {"--robot", robot});
     if (process == "supervisor") spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
-    if (sim_time) spec.arguments.emplace_back("--sim-time");
     specs.push_back(std::move(spec));
   }
   if (specs.empty()) throw ConfigError("no process is left to be started");
