@@ -42,7 +42,7 @@ class Node {
   std::unique_ptr<Publisher<ObjectObservation>> object_out_;
   std::unique_ptr<Publisher<GroundTruth>> truth_out_;
   std::unique_ptr<Publisher<SimClock>> clock_out_;  // with simulated time only
-  std::optional<TimeKeeper> keeper_;                // likewise
+  std::optional<TimeKeeper> keeper_;                // with simulated time only
   struct SetPoint {
     JointCommand message;
     std::uint64_t writer{};
