@@ -63,6 +63,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       modes_(settings.timeouts),
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       reach_limit_(proof_),
+      finger_limit_(proof_, *robot_),
       stop_space_(settings.view, proof_, *robot_) {
   require(settings.period > 0 && settings.period <= 0.02, "period must be above 0 and at most 0.02 s");
   require(settings.start_tolerance >= 0, "start_tolerance must not be negative");
@@ -87,7 +88,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   set_point_ = rest_state(Vector::Zero(n));
   effort_ = Vector::Zero(n);
   next_ = set_point_;
-  full_velocity_ = full_acceleration_ = posture_ = yield_from_ = away_ = Vector::Zero(n);
+  finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = yield_from_ = away_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
@@ -385,7 +386,17 @@ const Wrench* Controller::felt_wrench(std::size_t hand) const noexcept {
   return hand <= state_.other_hands.size() ? &state_.other_hands[hand - 1].wrist_wrench : nullptr;
 }
 
+/// Where people can reach the hands, fingers move so slowly that they are harmless whenever they touch somebody.
+void Controller::limit_fingers(TimePoint now) noexcept {
+  constexpr int kEvery = 10;  // cycles
+  if (cycles_ % kEvery != 0) return;
+  const double age = std::max(0.0, human_seen_.age(now));
+  const double limit = finger_limit_.factor(set_point_.position, state_.T_world_base, age, held_payload(), crowd_);
+  for (Hand& hand : hands_) hand.executor.limit_speed(limit);
+}
+
 void Controller::step_hands(TimePoint now) noexcept {
+  limit_fingers(now);
   if (new_state_ && arm_ != Arm::running) robot_->forward(set_point_.position, links_);
   for (std::size_t i = 0; i < hands_.size(); ++i) {
     Hand& hand = hands_[i];

@@ -14,6 +14,7 @@
 #include "common/model/manipulator.hpp"
 #include "components/trajectory_controller/axis_mover.hpp"
 #include "components/trajectory_controller/contact_watch.hpp"
+#include "components/trajectory_controller/finger_limit.hpp"
 #include "components/trajectory_controller/gaze.hpp"
 #include "components/trajectory_controller/go_gate.hpp"
 #include "components/trajectory_controller/guard.hpp"
@@ -172,6 +173,7 @@ class Controller {
   void step_arm(TimePoint now) noexcept;
   void step_hands(TimePoint now) noexcept;
   void step_hand(Hand& hand, TimePoint now) noexcept;
+  void limit_fingers(TimePoint now) noexcept;
   double felt_payload(std::size_t hand) const noexcept;
   const Wrench* felt_wrench(std::size_t hand) const noexcept;
   HandState told_hand(const Hand& hand) const noexcept { return hand.refused ? HandState::refused : hand.executor.state(); }
@@ -267,6 +269,8 @@ class Controller {
 
   StopProof proof_;
   ReachLimit reach_limit_;
+  FingerLimit finger_limit_;
+  Vector finger_speeds_;  // until a stop begins, all axes, >= 0; 0 of those that are no fingers [rad/s, m/s]
   StopSpace stop_space_;
   bool blind_{};              // where the arm can be within the stop of the last set-point no live source looks
   std::uint64_t unproven_{};  // set-points replaced by those of a checked stop so far

@@ -6,7 +6,8 @@
 namespace handsel::trajectory_controller {
 
 namespace {
-constexpr double kMinor = 0.2;  // of the largest effort: axes with less only hold
+constexpr double kMinor = 0.2;      // of the largest effort: axes with less only hold
+constexpr double kSameSpeed = 0.1;  // a limit that changes by less than this fraction does not change a motion under way
 }  // namespace
 
 HandExecutor::HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
@@ -111,18 +112,26 @@ std::string HandExecutor::accept(const HandCommand& command) {
   return {};
 }
 
-void HandExecutor::retarget(std::size_t i, double target) {
+void HandExecutor::retarget(std::size_t i, double target) noexcept {
   Finger& f = fingers_[i];
   f.target = std::clamp(target, lower_[i], upper_[i]);
   const bool gently = phase_ == Phase::closing || phase_ == Phase::seeking;
   if (paused_) return;
   AxisLimits l = limits(i, phase_ == Phase::regripping ? stop_ : comfort_, gently ? settings_.grasp_speed : 1.0);
+  if (phase_ != Phase::regripping) l.velocity *= speed_limit_;
   if (phase_ == Phase::closing) {
     l.velocity *= f.share;
     l.acceleration *= f.share;
     l.jerk *= f.share;
   }
   f.mover.go_to(f.target, l, limits(i, stop_, 1.0));
+}
+
+void HandExecutor::limit_speed(double fraction) noexcept {
+  if (std::abs(fraction - speed_limit_) <= kSameSpeed * speed_limit_) return;
+  speed_limit_ = fraction;
+  if (at_rest()) return;
+  for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);
 }
 
 void HandExecutor::start(Phase phase) {

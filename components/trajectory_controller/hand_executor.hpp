@@ -61,6 +61,10 @@ class HandExecutor {
   /// Writes the hand axes of the set-point, one period later.
   void step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept;
 
+  /// Motions use at most this fraction in (0, 1] of the comfort velocity; one that is under way adapts. Stops, and closing again on a load
+  /// that comes back, are not limited.
+  void limit_speed(double fraction) noexcept;
+
   /// Only moves on along what is under way.
   void advance(double dt, MotionState3& out) noexcept;
 
@@ -95,7 +99,7 @@ class HandExecutor {
   AxisLimits limits(std::size_t i, const KinematicLimits& of, double share) const;
   void start(Phase phase);
   void free_person() noexcept;
-  void retarget(std::size_t i, double target);
+  void retarget(std::size_t i, double target) noexcept;
   double pressed(const RobotState& robot, std::size_t i) const noexcept;
   void watch_contacts(const RobotState& robot, double dt) noexcept;
   void seek(const RobotState& robot, double dt) noexcept;
@@ -115,8 +119,9 @@ class HandExecutor {
   Phase phase_{Phase::hold};
   HandState state_{HandState::idle};
   bool paused_{}, payload_felt_{}, person_near_{};
-  bool closed_{};   // since it was reset or opened last
-  bool freeing_{};  // it opens for a person who is clamped
+  bool closed_{};            // since it was reset or opened last
+  bool freeing_{};           // it opens for a person who is clamped
+  double speed_limit_{1.0};  // fraction of the comfort velocity
   double settled_for_{}, lost_for_{};
   double level_{}, most_effort_{};  // share of the squeeze in force; its largest effort
   Vector release_to_;

@@ -14,6 +14,10 @@ constexpr double kBackward = 0.02;  // it runs back
 }  // namespace
 
 void Controller::run_guard(TimePoint now) noexcept {
+  for (const Hand& hand : hands_)
+    for (int axis : hand.executor.axes())
+      finger_speeds_[axis] =
+          std::abs(set_point_.velocity[axis]) + settings_.proof.robot_side_delay * std::abs(set_point_.acceleration[axis]);
   if (arm_ != Arm::running || runner_.finished()) {
     verdict_now_ = verdict_near_ = verdict_far_ = {};
     verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
@@ -87,7 +91,8 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
   const StopTable stop = stop_table(motion, robot_->stop_limits());
   const double age = std::max(0.0, human_seen_.age(now));
   verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, stop, crowd_, settings_.walls, age, speed_factor());
-  const ReachQuery query{posture_, full_velocity_, set_point_.acceleration, stop, state_.T_world_base, onward_ease(), age, held_payload()};
+  const ReachQuery query{posture_, full_velocity_, set_point_.acceleration, finger_speeds_, stop, state_.T_world_base, onward_ease(),
+                         age,      held_payload()};
   const double forward = reach_limit_.factor(query, crowd_, false);
   verdict.separation = verdict.separation || forward < verdict.forward;
   verdict.forward = std::min(verdict.forward, forward);

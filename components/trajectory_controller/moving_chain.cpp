@@ -18,9 +18,10 @@ struct Place {
   int finger_frame{-1};                 // of a finger: index into the frames of its hand
   Pose T_frame_link{Pose::Identity()};  // in the finger's frame, if it has one
   bool finger{};
-  double reach{};            // of a finger: the largest distance of the link's origin from where the finger begins [m]
-  double mass{};             // of a finger: of its links so far [kg]
-  std::vector<Lever> inner;  // of a finger: its axes from its beginning to the link, with the reach of each axis itself
+  double reach{};               // of a finger: the largest distance of the link's origin from where the finger begins [m]
+  double mass{};                // of a finger: of its links so far [kg]
+  std::vector<Lever> inner;     // of a finger: its axes from its beginning to the link, with the reach of each axis itself
+  std::vector<double> factors;  // by which each of these turns or slides with its axis
 };
 
 std::vector<char> finger_axes(const RobotModel& robot) {
@@ -116,6 +117,7 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
     sliding_[static_cast<std::size_t>(joint.dof)] = slides;
     if (finger) {
       child.inner.push_back({joint.dof, child.reach});
+      child.factors.push_back(std::abs(joint.mimic_factor));
       if (slides) child.reach += max_value(robot, joint);
     }
     std::vector<ChainFrame>& frames = finger ? hands[parent.frame].frames : frames_;
@@ -141,8 +143,10 @@ MovingChain::MovingChain(const RobotModel& robot, const std::vector<LinkCapsule>
     sphere.finger_mass = std::max(sphere.finger_mass, place.mass);
     const double reach = place.reach + std::max(capsule.a.norm(), capsule.b.norm()) + capsule.radius;
     std::vector<Lever> inner;
-    for (const Lever& axis : place.inner)
-      inner.push_back({axis.axis, sliding_[static_cast<std::size_t>(axis.axis)] ? 1.0 : reach - axis.length});
+    for (std::size_t k = 0; k < place.inner.size(); ++k) {
+      const Lever& axis = place.inner[k];
+      inner.push_back({axis.axis, place.factors[k] * (sliding_[static_cast<std::size_t>(axis.axis)] ? 1.0 : reach - axis.length)});
+    }
     sphere.fingers.push_back(std::move(inner));
     // As large as it can become: for the levers.
     double from_frame = reach;

@@ -32,7 +32,7 @@ ReachLimit::ReachLimit(const StopProof& proof)
       motions_(all_frames_.size()),
       changes_(motions_),
       gain_(Vector::Zero(static_cast<Eigen::Index>(proof.chain().sliding().size()))),
-      speeds_(proof.chain().sliding().size()) {}
+      finger_speeds_(proof.chain().sliding().size()) {}
 
 double ReachLimit::factor(const ReachQuery& query, const Crowd& people, bool backward) noexcept {
   const StopProofSettings& s = proof_.settings();
@@ -45,7 +45,7 @@ double ReachLimit::factor(const ReachQuery& query, const Crowd& people, bool bac
   const double reaction = s.latency + s.robot_side_delay + query.ease, margin = s.tracker_error + s.robot_error + s.limit_margin;
   PartReaches reach;  // by the time the whole motion has stopped
   reach_of_parts(people, reaction + query.age + stop.time[kStopGrid], s.speed_error, s.people, reach);
-  for (std::size_t i = 0; i < speeds_.size(); ++i) speeds_[i] = std::abs(query.velocity[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < finger_speeds_.size(); ++i) finger_speeds_[i] = query.finger_speeds[static_cast<Eigen::Index>(i)];
   proof_.chain().move(query.position, query.velocity, all_frames_, motions_);
   const bool faster = query.ease > 0.0;
   if (faster) {
@@ -58,27 +58,31 @@ double ReachLimit::factor(const ReachQuery& query, const Crowd& people, bool bac
     const Vector3 ra = frame.R * link.a, rb = frame.R * link.b;
     const Vector3 va = query.T_world_base.linear() * (frame.linear + frame.angular.cross(ra));
     const Vector3 vb = query.T_world_base.linear() * (frame.linear + frame.angular.cross(rb));
-    const double extra = frame.angular.norm() * link.radius + (link.fingers.empty() ? 0.0 : link.inner_bound(speeds_));
+    const double extra = frame.angular.norm() * link.radius;
+    const double inner = link.fingers.empty() ? 0.0 : link.inner_bound(finger_speeds_);  // does not depend on the factor
     const double speed = std::sqrt(std::max(va.squaredNorm(), vb.squaredNorm())) + extra;
     const double gain = faster ? gained(changes_[static_cast<std::size_t>(link.frame)], link) : 0.0;
-    if (speed * limit + gain <= min_contact) continue;
+    if (inner == 0.0 && speed * limit + gain <= min_contact) continue;
     const Vector3 a = query.T_world_base * (frame.p + ra), b = query.T_world_base * (frame.p + rb);
     const Vector3 centre = 0.5 * (a + b);
     const double size = 0.5 * (b - a).norm() + link.radius;
-    const double travel = limit * speed * (reaction + 0.5 * stop.time[kStopGrid]) + margin + size;
+    const double travel = (limit * speed + inner) * (reaction + 0.5 * stop.time[kStopGrid]) + margin + size;
     for (std::size_t p = 0; p < reach.count; ++p) {
       const CrowdCapsule& part = people.capsules[p];
       const double rough = travel + part.reach + reach.distance[p];
       if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       const auto region = static_cast<std::size_t>(part.region);
-      if (speed * limit + gain <= contact[region]) continue;
+      // What the fingers leave of a contact's energy is the arm's.
+      const double of_fingers = inner == 0.0 ? 0.0 : inner * proof_.finger_ratio_at(part.region, query.payload);
+      const double of_arm = std::sqrt(std::max(0.0, contact[region] * contact[region] - of_fingers * of_fingers));
+      if (speed * limit + gain <= of_arm) continue;
       const RegionMotion& bounds = s.people[region];
       // What the arm's present acceleration adds before a stop begins counts, but never forbids all motion.
-      const double contact_now = std::max(contact[region] - gain, kMinContactRatio * contact[region]);
+      const double contact_now = std::max(of_arm - gain, kMinContactRatio * contact[region]);
       const double from = start_speed(part, s.speed_error, bounds), late = reaction + query.age + part.age;
       const auto needed = [&](double factor, double closing) {
         const double slowing = time_at(stop, factor - contact_now / speed);
-        return reach_after(late + slowing, from, bounds) + factor * closing * (reaction + 0.5 * slowing) + margin;
+        return reach_after(late + slowing, from, bounds) + (factor * closing + inner) * (reaction + 0.5 * slowing) + margin;
       };
       Vector3 on_robot, on_person;
       const double axes_apart = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person));

@@ -11,10 +11,11 @@ namespace handsel::trajectory_controller {
 
 /// Motion at full speed along a path, from one of its points.
 struct ReachQuery {
-  const Vector& position;      ///< all axes [rad, m]
-  const Vector& velocity;      ///< all axes, with the time-law factor 1 [rad/s, m/s]
-  const Vector& acceleration;  ///< of the set-point now, all axes [rad/s^2, m/s^2]
-  const StopTable& stop;       ///< of the motion at full speed
+  const Vector& position;       ///< all axes [rad, m]
+  const Vector& velocity;       ///< all axes, with the time-law factor 1 [rad/s, m/s]
+  const Vector& acceleration;   ///< of the set-point now, all axes [rad/s^2, m/s^2]
+  const Vector& finger_speeds;  ///< of the fingers until a stop begins, all axes, >= 0; 0 of those that are no fingers [rad/s, m/s]
+  const StopTable& stop;        ///< of the motion at full speed
   Pose T_world_base{Pose::Identity()};
   double ease{};     ///< time in which the arm's present acceleration can be taken away [s]
   double age{};      ///< of the human data [s]
@@ -37,7 +38,7 @@ class ReachLimit {
   std::vector<char> all_frames_;
   std::vector<FrameMotion> motions_, changes_;  // of the frames: at full speed; velocities gained until a stop begins
   Vector gain_;
-  std::vector<double> speeds_;  // by axis
+  std::vector<double> finger_speeds_;  // by axis
 };
 
 }  // namespace handsel::trajectory_controller

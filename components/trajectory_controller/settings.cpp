@@ -35,6 +35,7 @@ StopProofSettings read_stop_proof(const config::ControllerStopProof& in, const R
   s.robot_error = read(in.robot_error(), "robot_error", 0, 1);
   s.limit_ratio = read(in.limit_ratio(), "limit_ratio", kTiny, 1);
   s.limit_margin = read(in.limit_margin(), "limit_margin", 0, 1);
+  s.finger_ratio = read(in.finger_ratio(), "finger_ratio", 0.01, 1);
   s.max_rejoins = static_cast<int>(read(in.max_rejoins(), "max_rejoins", 0, 1000));
   s.shown_time = read(in.shown_time(), "shown_time", 0, 10);
   s.min_robot_mass = read(in.min_robot_mass(), "min_robot_mass", kTiny, 1000);

@@ -76,9 +76,15 @@ double StopProof::max_speed_at(BodyRegion region, double payload) const noexcept
                            std::max(settings_.min_robot_mass, moving_mass_ + std::max(0.0, payload)));
 }
 
-/// The speed of the arm whose contact has the energy of the arm's and the fingers' together: these are light.
+double StopProof::finger_ratio_at(BodyRegion region, double payload) const noexcept {
+  const ContactLimit& limit = settings_.contact[static_cast<std::size_t>(region)];
+  const double arm_mass = std::max(settings_.min_robot_mass, moving_mass_ + std::max(0.0, payload));
+  return std::sqrt(reduced_mass(limit, finger_mass_) / reduced_mass(limit, arm_mass));
+}
+
+/// Returns the speed of the arm whose contact has the energy of the arm's and the fingers' together: these are light.
 double StopProof::contact_speed(double carried, double inner, std::size_t region) const noexcept {
-  return inner == 0.0 ? carried : std::sqrt(carried * carried + finger_ratio_[region] * inner * inner);
+  return inner == 0.0 ? carried : std::hypot(carried, finger_ratio_[region] * inner);
 }
 
 AxisState StopProof::AxisStop::at(double t) const noexcept {
@@ -383,8 +389,7 @@ bool StopProof::check(const MotionState3& state, const Crowd& people, const Pose
   if (people.capsules.empty()) return true;
   for (std::size_t r = 0; r < kBodyRegions; ++r) {
     max_contact_speed_[r] = max_speed_at(static_cast<BodyRegion>(r), payload);
-    const ContactLimit& limit = settings_.contact[r];
-    finger_ratio_[r] = reduced_mass(limit, finger_mass_) / reduced_mass(limit, std::max(settings_.min_robot_mass, moving_mass_));
+    finger_ratio_[r] = finger_ratio_at(static_cast<BodyRegion>(r), 0.0);
   }
   min_contact_speed_ = *std::min_element(max_contact_speed_.begin(), max_contact_speed_.end());
   const double duration = std::max(at_once_.duration, robot_side_.duration) + settings_.latency + age;

@@ -30,6 +30,7 @@ struct StopProofSettings {
   double robot_error{0.01};        ///< a link is this near where its set-point is, beyond the latency [m]
   double limit_ratio{0.9};         ///< reach_limit aims at this fraction of a contact speed, so that the proof seldom has to intervene
   double limit_margin{0.02};       ///< and at this much more distance [m]
+  double finger_ratio{0.7};        ///< fingers alone use this fraction of a contact speed where people can reach them; the arm has the rest
   int max_rejoins{4};          ///< of a path, one soon after the other, that end in a set-point without a checked stop; then it is given up
   double shown_time{0.5};      ///< the cause is shown for so long after a set-point without a checked stop [s]
   double min_robot_mass{2.0};  ///< effective mass of a link at a contact, at least [kg]
@@ -78,6 +79,8 @@ class StopProof {
   void position_at(bool robot_side, double time, Vector& position) const noexcept;
   /// Returns the largest contact speed of a region for the robot holding `payload` [m/s].
   double max_speed_at(BodyRegion region, double payload) const noexcept;
+  /// Returns the speed of the arm whose contact with the region has the energy of a finger's at 1 m/s [-].
+  double finger_ratio_at(BodyRegion region, double payload) const noexcept;
   const StopProofSettings& settings() const noexcept { return settings_; }
 
  private:
@@ -149,7 +152,7 @@ class StopProof {
   // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the sample; until when it moves.
   std::vector<double> travel_, other_travel_, speed_, turning_, jerk_, moved_, now_, time_;
   std::vector<double> max_travel_, max_carried_, max_inner_;  // of each capsule during both stops [m, m/s]
-  std::array<double, kBodyRegions> finger_ratio_{};           // energy of a contact of the fingers alone to one of the arm, at equal speed
+  std::array<double, kBodyRegions> finger_ratio_{};           // of a contact of the fingers to one of the arm, see finger_ratio_at()
   double min_contact_speed_{}, max_person_speed_{};
   // Rooms: how far each capsule could move at a moment before anybody could reach it [m].
   std::vector<double> room_;

@@ -6,6 +6,7 @@ handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/controller_test.cpp ${
              ${CMAKE_CURRENT_LIST_DIR}/controller_overload_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_blind_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/observed_space_test.cpp ${CMAKE_CURRENT_LIST_DIR}/path_runner_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mode_machine_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
+handsel_test(finger_limit SOURCES ${CMAKE_CURRENT_LIST_DIR}/finger_limit_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(go_gate SOURCES ${CMAKE_CURRENT_LIST_DIR}/go_gate_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 # Latches over supervisor and controller.
 handsel_test(latches_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/latches_property_test.cpp
