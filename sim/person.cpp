@@ -87,6 +87,7 @@ void PersonModel::enter(PersonPhase phase) {
 
 void PersonModel::dart(double speed) {
   speed_ = speed;
+  feet_speed_ = 0;
   hand_active_ = true;
   hand_target_ = hand_point();
   enter(PersonPhase::darting);
@@ -372,10 +373,13 @@ void PersonModel::retract(double) {
 
 void PersonModel::dart_on(double dt, const PersonView& view) {
   const Vector3 to = view.robot_hand - hand_target_;
-  const double move = std::min(speed_ * dt, std::max(0.0, to.norm() - 0.08));
+  const double pace = std::min(speed_, kMaxHandAcceleration * since());
+  const double move = std::min(pace * dt, std::max(0.0, to.norm() - 0.08));
   if (to.norm() > 1e-6) hand_target_ += move / to.norm() * to;
   const Vector3 beyond = hand_target_ - shoulder(index());
-  if (beyond.norm() > 0.95 * reach_) feet_ += (1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
+  const Vector3 lacking = std::max(0.0, 1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
+  feet_speed_ = std::min(feet_speed_ + kMaxTrunkAcceleration * dt, lacking.norm() / dt);
+  if (feet_speed_ > 0) feet_ += feet_speed_ * dt * lacking.normalized();
   if (since() > 1.5) give_up();
 }
 

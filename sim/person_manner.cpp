@@ -93,10 +93,11 @@ void PersonModel::step_aside(double dt) {
   if (length <= 0) return;
   const bool free =
       phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping || (phase_ == PersonPhase::offering && lost_time_ <= 0);
-  const bool under_way = step_clock_ > 0 && step_clock_ * kWalkSpeed < length;
+  const double duration = step_time(length);
+  const bool under_way = step_clock_ > 0 && step_clock_ < duration;
   if (clock_ < settings_.manner.sidestep_at || !(free || under_way)) return;
   step_clock_ += dt;
-  aside_ = home_aside_ + min_jerk(step_clock_ * kWalkSpeed / length) * settings_.manner.sidestep;
+  aside_ = home_aside_ + min_jerk(step_clock_ / duration) * settings_.manner.sidestep;
 }
 
 /// The least height of a hand that holds something, there [m].

@@ -168,6 +168,22 @@ TEST(SimPerson, WhoIsIgnoredComesNearerAndHoldsItOutAnewTwice) {
   EXPECT_EQ(person.phase(), PersonPhase::offering);
 }
 
+/// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most 10 m/s^2 (StopProofSettings::people).
+TEST(SimPerson, AStepNearerIsNoFasterThanPeopleStep) {
+  PersonModel person(giver());
+  Vector3 before = Vector3::Zero();
+  double fastest = 0, most = 0;
+  for (int i = 0; i < 40000; ++i) {
+    person.step(0.001, holding(person, {0.3, 0, 1.0}, false));
+    const Vector3 velocity = person.body().joints[joint("torso")].velocity;
+    if (i > 1) most = std::max(most, (velocity - before).norm() / 0.001);
+    fastest = std::max(fastest, velocity.norm());
+    before = velocity;
+  }
+  EXPECT_LT(most, 4.5);
+  EXPECT_GT(fastest, 0.3) << "no step was made";
+}
+
 TEST(SimPerson, WhoChangesTheirMindDrawsItBackOnceAndOffersAgain) {
   PersonSettings settings = giver();
   settings.manner.withdraws = true;
