@@ -15,7 +15,9 @@ namespace {
 constexpr std::uint64_t kCatchUp =
     5;  // steps at most in one tick, well below the gap that stops the robot; what is then missing is slip, shown in real_time_factor
 
-constexpr Duration kRepeat = std::chrono::milliseconds(100);  // of a grant, while time stands still
+constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, while time stands still
+// Set-points are applied in their order, one a step; one that is older than this and has a successor as old is left out.
+constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
 
 std::uint64_t steps_per(double rate, double step) { return std::max<std::uint64_t>(1, std::llround(1 / (rate * step))); }
 
@@ -107,6 +109,8 @@ void Node::keep_pace(TimePoint now) {
   announce(now);
   while (keeper_->may_step(paused_ || !set_points_.empty())) {
     if (keeper_->takes_setpoint() && !set_points_.empty()) {
+      const Stamp oldest = stamp_now() - kMaxSetPointAge.count();
+      while (set_points_.size() > 1 && set_points_[1].message.stamp < oldest) set_points_.pop_front();
       const SetPoint& next = set_points_.front();
       world_->command(next.message, next.writer, to_seconds(keeper_->time().time_since_epoch()));
       set_points_.pop_front();

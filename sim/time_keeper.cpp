@@ -7,6 +7,7 @@ namespace handsel::sim {
 namespace {
 
 constexpr std::int64_t kGrantsAhead = 2;
+constexpr Duration kStopped = std::chrono::milliseconds(50);  // the ticks that a process then misses are too many to be made up for
 constexpr Duration kLook = std::chrono::milliseconds(10);
 constexpr Duration kOwnTurn = std::chrono::milliseconds(10);  // between two turns, when the simulator gets its processor
 
@@ -24,7 +25,7 @@ void TimeKeeper::answered(const std::string& component, std::uint64_t process, s
 }
 
 void TimeKeeper::leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs) {
-  if (blocked_ < looked_ + kLook) return;
+  if (blocked_ < std::max(kStopped, looked_ + kLook)) return;
   looked_ = blocked_;
   stop_waiting([&](const Answer& answer) { return !runs(answer.process); });
 }

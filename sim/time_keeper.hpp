@@ -22,7 +22,7 @@ class TimeKeeper {
 
   /// A component answered a grant. The first answer makes it one that is waited for.
   void answered(const std::string& component, std::uint64_t process, std::uint64_t grant);
-  /// Asks `runs` for each component's process, when a step has been held up for 10 ms, and does not wait for those that do not run.
+  /// Asks `runs` for each component's process, when a step has been held up for 50 ms, and does not wait for those that do not run.
   void leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs);
   /// Called before the steps of a turn; the first call starts time.
   void turn(TimePoint wall);

@@ -18,7 +18,8 @@
 namespace handsel {
 namespace {
 constexpr Duration kJobSilence = std::chrono::seconds(2);
-constexpr Duration kLongestBurst = std::chrono::milliseconds(100);
+// A process that the simulator waits for is less behind: the simulator grants two periods of 10 ms ahead.
+constexpr Duration kLongestBurst = std::chrono::milliseconds(40);
 
 timespec to_timespec(Duration d) { return {static_cast<time_t>(d.count() / 1'000'000'000), static_cast<long>(d.count() % 1'000'000'000)}; }
 }  // namespace
@@ -131,22 +132,23 @@ void Executor::serve_timers() {
   }
 }
 
-/// With granted time every tick is made up for, unless it is older than any grant: then time has jumped.
+/// With granted time every tick is made up for, at the instant it was due at. After a jump of time, when the simulator has not waited for
+/// this process, only the newest tick is served: what the older ones would have done is no longer of use.
 void Executor::serve(Timer& timer, TimePoint time) {
   const bool granted = clock_.paced() && !timer.real;
-  if (granted) due_ = last_ = std::max(last_, timer.due);
-  const TimePoint now = timer.real ? monotonic_now() : this->now();
+  const TimePoint present = timer.real ? monotonic_now() : granted ? time : this->now();
+  const Duration late = present - timer.due;
+  const bool made_up = granted && late < kLongestBurst;
+  const std::int64_t skipped = made_up || timer.period == Duration::zero() ? 0 : late / timer.period;
+  if (granted) due_ = last_ = std::max(last_, timer.due + timer.period * skipped);
   if (timer.period > Duration::zero()) {
-    const Duration late = now - timer.due;
-    const Duration missed = granted && time - timer.due < kLongestBurst ? Duration::zero() : (granted ? time : now) - timer.due;
-    const std::int64_t skipped = missed / timer.period;
     ++timer.status.cycles;
-    timer.status.late_cycles += late > timer.period;
+    timer.status.late_cycles += !made_up && late > timer.period;
     timer.status.skipped += static_cast<std::uint64_t>(skipped);
-    timer.status.worst = std::max(timer.status.worst, late);
+    if (!made_up) timer.status.worst = std::max(timer.status.worst, late);
     timer.due += timer.period * (skipped + 1);
   }
-  timer.on_tick(now);
+  timer.on_tick(granted ? *due_ : present);
   due_.reset();
 }
 

@@ -1,6 +1,7 @@
 #include "deploy/handsel/processes.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "common/base/errors.hpp"
@@ -31,6 +32,17 @@ void require_processes(const std::vector<std::string>& names) {
   }
 }
 
+/// Returns whether the simulator gives the pace unless the environment says otherwise: not where a source from outside, whose time does
+/// not stand still, is read.
+bool is_paced_by_simulator(const SystemOptions& options) {
+  if (std::getenv("HANDSEL_SIM_TIME") != nullptr) return false;  // the processes read it themselves
+  if (!options.whole() || options.ros2) return false;
+  config::Scenario scenario;
+  load_text_proto(scenario_file(options.scenario), scenario);
+  return std::none_of(scenario.people().begin(), scenario.people().end(),
+                      [](const config::PersonDescription& person) { return person.behaviour() == config::EXTERNAL; });
+}
+
 }  // namespace
 
 std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
@@ -38,6 +50,7 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
   require_processes(options.without);
   const std::filesystem::path folder = std::filesystem::canonical("/proc/self/exe").parent_path();
   const std::string robot = robot_of(options);
+  const bool sim_time = is_paced_by_simulator(options);
   std::vector<ProcessSpec> specs;
   std::vector<std::string> processes(kProcesses.begin(), kProcesses.end());
   std::erase_if(processes, [&](const std::string& process) {
@@ -54,6 +67,7 @@ std::vector<ProcessSpec> system_processes(const SystemOptions& options) {
     spec.arguments.insert(spec.arguments.end(), {"--robot", robot});
     if (process == "supervisor") spec.arguments.insert(spec.arguments.end(), {"--state", state_folder(options)});
     if (is_realtime(process)) spec.arguments.emplace_back("--realtime");
+    if (sim_time) spec.arguments.emplace_back("--sim-time");
     specs.push_back(std::move(spec));
   }
   if (specs.empty()) throw ConfigError("no process is left to be started");

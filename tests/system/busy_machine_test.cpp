@@ -22,8 +22,8 @@ int runs() {
 }
 
 std::string command(int domain, const std::string& report) {
-  return "HANDSEL_SIM_TIME=1 taskset -c 0 " HANDSEL_COMMAND " run --headless --port 0 --timeout 300 --domain " + std::to_string(domain) +
-         " --report " + report + " > " + report + ".log 2>&1; echo $? > " + report + ".exit";
+  return "taskset -c 0 " HANDSEL_COMMAND " run --headless --port 0 --timeout 300 --domain " + std::to_string(domain) + " --report " +
+         report + " > " + report + ".log 2>&1; echo $? > " + report + ".exit";
 }
 
 std::string text_of(const std::string& file) {

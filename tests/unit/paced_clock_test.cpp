@@ -68,11 +68,31 @@ TEST(PacedClock, AProcessThatGotNoProcessorDoesNotBlameTheSimulator) {
   EXPECT_TRUE(clock.paced());
 }
 
+TEST(PacedClock, AProcessThatWasStoppedFirstHearsWhetherItWasWaitedFor) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  clock.at(at(10.005));
+  EXPECT_EQ(clock.at(at(11)), at(10.005)) << "what was granted a second ago is old";
+  clock.grant(until(10.03), at(11.001));  // read late, also old
+  EXPECT_EQ(clock.at(at(11.001)), at(10.005));
+  clock.grant(until(11.02), at(11.002));
+  EXPECT_EQ(clock.at(at(11.002)), at(11.002)) << "the simulator has gone on";
+}
+
+TEST(PacedClock, AProcessThatWasStarvedMakesUpForWhatWasGranted) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  clock.at(at(10.005));
+  EXPECT_EQ(clock.at(at(11)), at(10.005));
+  clock.grant(until(10.02, 0.985), at(11.001));  // repeated: the simulator has waited
+  EXPECT_EQ(clock.at(at(11.001)), at(10.016));
+}
+
 TEST(PacedClock, OnlyOneSimulatorGivesThePace) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   EXPECT_FALSE(clock.grant(until(99, 0, 2), at(10.01)));
-  EXPECT_EQ(clock.at(at(10.5)), at(10.02));
+  EXPECT_EQ(clock.at(at(10.05)), at(10.02));
 }
 
 TEST(PacedClock, AnEarlierArrivalIsNeverInTheFuture) {
@@ -103,6 +123,25 @@ TEST(Executor, MakesUpForEveryTickOfGrantedTimeAtTheInstantItWasDue) {
   for (std::size_t i = 1; i < ticks.size(); ++i) EXPECT_EQ(ticks[i], from_seconds(0.001));
   EXPECT_EQ(status.late_cycles, 0u);
   EXPECT_EQ(status.skipped, 0u);
+}
+
+TEST(Executor, OfTheTicksBeforeAJumpOfTimeOnlyTheNewestIsServed) {
+  Executor executor([](const std::string&) {});
+  TimePoint start = monotonic_now();
+  executor.grant({.incarnation = 1, .until = start + from_seconds(0.02), .waited = {}});
+  std::vector<TimePoint> ticks;
+  const TimerStatus& status = executor.every(from_seconds(0.001), [&](TimePoint now) { ticks.push_back(now); });
+  timespec nap{0, 150'000'000};
+  nanosleep(&nap, nullptr);  // the process is stopped, the simulator does not wait
+  executor.run_until([] { return false; }, from_seconds(0.005));
+  EXPECT_TRUE(ticks.empty()) << "a tick of what was granted long ago";
+  const TimePoint now = monotonic_now();
+  executor.grant({.incarnation = 1, .until = now, .waited = {}});
+  executor.run_until([] { return false; }, from_seconds(0.005));
+  ASSERT_EQ(ticks.size(), 1u);
+  EXPECT_LE(now - ticks[0], from_seconds(0.001)) << "served at an instant that is past";
+  EXPECT_EQ(status.late_cycles, 1u);
+  EXPECT_GT(status.skipped, 100u);
 }
 
 TEST(Executor, HeartbeatsGoOnWhileTimeStandsStill) {

@@ -84,7 +84,7 @@ TEST(TimeKeeper, AStoppedProcessIsNotWaitedFor) {
     keeper.leave_out_stopped([](std::uint64_t process) { return process != 7; });
     steps += turn(keeper, wall, true);
   }
-  EXPECT_GT(steps, 970);
+  EXPECT_GT(steps, 930) << "it is held up for 50 ms, once";
 }
 
 TEST(TimeKeeper, AStarvedSimulatorNeitherRushesNorGivesUpOnOthers) {
