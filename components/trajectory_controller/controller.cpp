@@ -318,7 +318,7 @@ void Controller::give_up_path() noexcept {
   rejoin_ = false;
 }
 
-void Controller::go_back_to_path(TimePoint now) noexcept {
+void Controller::go_back_to_path() noexcept {
   for (std::size_t i = 0; i < axes_.size(); ++i) path_.position[static_cast<Eigen::Index>(i)] = set_point_.position[axes_[i]];
   path_.velocity.setZero();
   path_.acceleration.setZero();
@@ -332,14 +332,16 @@ void Controller::go_back_to_path(TimePoint now) noexcept {
     p.offset += runner_.rejoin_shift();
   }
   arm_ = Arm::running;
-  judge_new_path(now);
-  // It was left because the guard's word fell faster than the path could slow: what it allows further on is found out gently.
+  // It begins at rest. What may be is found out in the next cycles, one of the three verdicts in each: all at once would make a late cycle.
+  verdict_now_ = verdict_near_ = verdict_far_ = {};
+  verdict_now_.forward = verdict_near_.forward = verdict_far_.forward = 0.0;
+  merge_verdicts();
   runner_.begin_with(0.0);
 }
 
 void Controller::step_arm(TimePoint now) noexcept {
   if (rejoin_ && verdict_.mode >= Mode::stop) give_up_path();
-  if (rejoin_ && arm_ == Arm::standing && verdict_.mode < Mode::hold) go_back_to_path(now);
+  if (rejoin_ && arm_ == Arm::standing && verdict_.mode < Mode::hold) go_back_to_path();
   if (arm_ == Arm::running) {
     if (verdict_.mode >= Mode::stop) {
       give_up_path();

@@ -161,7 +161,7 @@ class Controller {
   double fastest_stop() const noexcept;
   double onward_ease() const noexcept;
   void give_up_path() noexcept;
-  void go_back_to_path(TimePoint now) noexcept;
+  void go_back_to_path() noexcept;
   void stand_arm() noexcept;
   void run_guard(TimePoint now) noexcept;
   void judge_path(double ahead, GuardVerdict& verdict, TimePoint now) noexcept;

@@ -46,10 +46,12 @@ const Trajectory& PathRunner::path() const {
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
   constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way: farther on, the way there cuts corners
+  constexpr int kTries = 10;  // in this short a window; the time of a cycle goes with them
   if (finished_) return false;
   SwitchSettings settings;
   settings.first = std::max(0.0, law_.time());
   settings.last = settings.first + kWithin;
+  settings.tries = kTries;
   if (law_.start_from(state, law_.path(), settings) != SwitchOutcome::ok) return false;
   shift_ = this->offset();
   state_ = state;
