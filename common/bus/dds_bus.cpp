@@ -98,6 +98,7 @@ struct DdsBus::Impl {
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
+  Reader* pace{};                              // of sim_clock, where that is followed
   std::unique_ptr<WriterDiscovery> discovery;  // from the first reader of a topic with one writer on
   std::atomic<bool> discovery_news{false};
   std::uint64_t incarnation{};
@@ -133,6 +134,7 @@ struct DdsBus::Impl {
   }
   void mark(Reader& reader);
   void drain();
+  bool knows_time();
   void take(Reader& reader);
   void look_at_matching(Reader& reader);
   void discover_writers();
@@ -275,7 +277,17 @@ void DdsBus::Impl::follow_writers(Reader& reader) {
   reader.gate.open_for(reader.intake.pinned());
 }
 
+/// Returns whether this component knows how far time has advanced. A process that has been stopped does so with the next grant; what has
+/// arrived is not taken before: it would have arrived in the past, and everything later would count as late.
+bool DdsBus::Impl::knows_time() {
+  if (pace == nullptr || !executor.stale()) return true;
+  pace->pending.store(false, std::memory_order_release);
+  take(*pace);
+  return !executor.stale();
+}
+
 void DdsBus::Impl::drain() {
+  if (!knows_time()) return;  // the grant wakes this executor
   if (discovery_news.exchange(false, std::memory_order_acq_rel)) discover_writers();
   {
     const std::lock_guard lock(pending_mutex);
@@ -390,11 +402,15 @@ DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(se
   impl_->executor.on_wake([this] { impl_->drain(); });
   if (settings.health) {
     impl_->health = advertise<ComponentHealth>();
-    impl_->executor.every_real(kHealthPeriod, [this](TimePoint wall) { impl_->publish_health(wall); });
+    impl_->executor.every_real(kHealthPeriod, [this](TimePoint wall) {
+      impl_->publish_health(wall);
+      impl_->executor.wake();  // samples may wait for a grant of a simulator that has ended
+    });
   }
   if (settings.sim_time) {
     impl_->reached = advertise<ClockReached>();
     subscribe<SimClock>([this](const SimClock& clock, const Receipt&) { impl_->follow_pace(clock); });
+    impl_->pace = impl_->readers.back().get();
   }
 }
 

@@ -41,6 +41,8 @@ class Executor {
   TimePoint now();
   /// The time at which the monotonic clock showed `wall`, which is past.
   TimePoint past(TimePoint wall) { return clock_.past(wall); }
+  /// PacedClock::stale(), now.
+  bool stale() const { return clock_.stale(monotonic_now()); }
   /// PacedClock::grant().
   bool grant(const TimeGrant& grant);
 

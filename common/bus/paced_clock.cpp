@@ -17,6 +17,10 @@ bool PacedClock::grant(const TimeGrant& grant, TimePoint wall) {
     at(wall);
   else
     last_ = wall - grant.waited;
+  if (ever_paced_) {
+    until_before_ = until_;
+    waited_before_ = waited_;
+  }
   paced_ = ever_paced_ = true;
   incarnation_ = grant.incarnation;
   until_ = grant.until;
@@ -36,12 +40,17 @@ TimePoint PacedClock::at(TimePoint wall) {
       waited_ = wall - last_;
     }
   }
-  if (paced_ && unbounded(wall) > until_ + kStale) return last_;
+  if (stale(wall)) return last_;
   last_ = std::max(last_, paced_ ? std::min(unbounded(wall), until_) : unbounded(wall));
   return last_;
 }
 
-TimePoint PacedClock::past(TimePoint wall) const { return std::min(unbounded(wall), last_); }
+/// While time stood still it was where the grant before had ended, not where the machine's clock less all that was waited would be.
+TimePoint PacedClock::past(TimePoint wall) const {
+  return std::min(std::max(unbounded(wall), std::min(wall - waited_before_, until_before_)), last_);
+}
+
+bool PacedClock::stale(TimePoint wall) const { return paced_ && unbounded(wall) > until_ + kStale; }
 
 TimePoint PacedClock::look_at(TimePoint instant, TimePoint wall) const {
   const TimePoint there = instant + waited_;

@@ -25,8 +25,10 @@ class PacedClock {
   bool grant(const TimeGrant& grant, TimePoint wall);
   /// The time now.
   TimePoint at(TimePoint wall);
-  /// The time at an earlier `wall`, at most the last at().
+  /// Returns the time at a `wall` since the grant before the last one, at most the last at().
   TimePoint past(TimePoint wall) const;
+  /// Returns whether the newest grant is so old that how far time has advanced is not known.
+  bool stale(TimePoint wall) const;
   /// When to look at the clock again for `instant`: when it will be there, or earlier as long as that is not granted.
   TimePoint look_at(TimePoint instant, TimePoint wall) const;
   bool paced() const { return paced_; }
@@ -38,6 +40,8 @@ class PacedClock {
   std::uint64_t incarnation_{};
   TimePoint until_{}, last_{};
   Duration waited_{};
+  TimePoint until_before_{TimePoint::min()};  // of the grant before
+  Duration waited_before_{};
   Duration silence_{};  // of the simulator, while this component listened
   TimePoint listened_{};
 };

@@ -102,7 +102,7 @@ class LatchesOverDds : public testing::Test {
     BusySystem& s = *busy_;
     const std::string what = std::string(name(death.latch)) + ", then kill -9 " + death.process + ", seed " + std::to_string(death.seed);
     std::mt19937_64 random(death.seed);
-    ASSERT_TRUE(latch(death.latch, random)) << what << ": " << s.safety().reason;
+    ASSERT_TRUE(latch(death.latch, random)) << what << ": " << s.safety().reason << "\n" << s.timeline();
     const bool halts = death.latch != Latch::override_speed;
     if (halts) {
       ASSERT_TRUE(s.wait(from_seconds(4), [&] { return !s.moves(); })) << what;
@@ -124,7 +124,7 @@ class LatchesOverDds : public testing::Test {
     release(death.latch);
     EXPECT_TRUE(s.wait(from_seconds(5), [&] { return !stands(death.latch, s.safety()); })) << what << ": a person's word was not heard";
     s.mark();
-    EXPECT_TRUE(s.wait(kMoves, [&] { return s.deviation() > 0.02; })) << what << ": it does not move again: " << s.safety().reason;
+    EXPECT_TRUE(s.wait(kMoves, [&] { return s.deviation() > 0.02; })) << what << ": it does not move again: " << s.safety().reason << "\n" << s.timeline();
     std::printf("%-62s back %.1f s, %s\n", what.c_str(), back,
                 (halts ? "moved " + std::to_string(moved) + " rad" : "speed factor at most " + std::to_string(fastest)).c_str());
     std::fflush(stdout);

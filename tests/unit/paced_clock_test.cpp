@@ -103,6 +103,17 @@ TEST(PacedClock, AnEarlierArrivalIsNeverInTheFuture) {
   EXPECT_EQ(clock.past(at(10.04)), at(10.02));
 }
 
+TEST(PacedClock, WhatArrivedWhileTimeStoodStillArrivedThen) {
+  PacedClock clock;
+  clock.grant(until(10.02), at(10));
+  clock.at(at(10.02));
+  clock.grant(until(10.03, 0.05), at(10.07));  // time stood still for 50 ms
+  clock.at(at(10.075));
+  EXPECT_EQ(clock.past(at(10.01)), at(10.01));
+  EXPECT_EQ(clock.past(at(10.04)), at(10.02)) << "in the middle";
+  EXPECT_EQ(clock.past(at(10.073)), at(10.023));
+}
+
 TEST(Executor, MakesUpForEveryTickOfGrantedTimeAtTheInstantItWasDue) {
   Executor executor([](const std::string&) {});
   const TimePoint start = monotonic_now();
