@@ -101,6 +101,7 @@ constexpr NumberRange kRanges[] = {
     {"ManipulationPlannerSettings.approach_slack", 0, 2},
     {"ManipulationPlannerSettings.approach_speed", 0, 1, true},
     {"ManipulationPlannerSettings.blocked_timeout", 0, 86400},
+    {"ManipulationPlannerSettings.blocked_pause", 0, 86400},
     {"ManipulationPlannerSettings.carry_speed", 0, 1, true},
     {"ManipulationPlannerSettings.exchange_goals", 0, 1000},
     {"ManipulationPlannerSettings.exchange_tries", 0, 1e+06},

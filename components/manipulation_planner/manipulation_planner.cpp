@@ -103,8 +103,10 @@ void ManipulationPlanner::on(const TrajectoryReply& reply) {
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = &out;
   too_near_ = execution_ && (execution_->causes & kTooNear) != 0 && active_.trajectory != 0 && std::abs(active_.speed_factor) < kCreeping;
-  const bool blocked = too_near_ || (execution_ && (execution_->causes & kBlocked) != 0);
-  if (!blocked) free_at_ = now;
+  // An arm that stands has no collision ahead: it starts, and is held back again.
+  if (execution_ && (execution_->causes & kBlocked) != 0) held_back_at_ = now;
+  const bool held_back = to_seconds(now - held_back_at_) <= settings_.blocked_pause();
+  if (!too_near_ && !held_back) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
   watch_offer();
@@ -381,6 +383,8 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   };
   const Motion* moving = &motion;
   const TimePoint began = waiting_.now();
+  free_at_ = began;
+  held_back_at_ = {};
   const auto late = [this, began, moving] { return to_seconds(waiting_.now() - began) > moving->patience; };
   const auto over = [this, ended, late, moving] {
     return ended() || late() || blocked_for_ > settings_.blocked_timeout() || strayed(*moving) || takes_hold(moving->yields_to) ||

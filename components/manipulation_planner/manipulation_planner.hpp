@@ -361,7 +361,7 @@ class ManipulationPlanner {
   std::optional<ExecutionStatus> execution_;
   Vector set_point_, set_point_velocity_;
   ActiveTrajectory active_;
-  TimePoint free_at_{}, held_at_{}, offered_at_{};
+  TimePoint free_at_{}, held_back_at_{}, held_at_{}, offered_at_{};
   double blocked_for_{0};  // how long the forecast, or a person too near, has held the robot back [s]
   bool too_near_{false};
   std::optional<GraspReply> grasp_reply_;

@@ -34,6 +34,24 @@ TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
   EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "lift"}));
 }
 
+TEST(ManipulationPlanner, AMotionThatIsHeldBackAgainAndAgainIsPlannedAnew) {
+  Rig rig;
+  rig.moves = true;
+  rig.start(ActionKind::pick);
+  rig.run_until("approach");
+  const auto blocked = [&] {
+    const auto& refusals = rig.planner.status().refusals;
+    return std::any_of(refusals.begin(), refusals.end(), [](const Refusal& r) { return r.reason.starts_with("the way is blocked"); });
+  };
+  const double along = rig.along;
+  for (int i = 0; i < 200 && !blocked(); ++i) {
+    rig.execution.causes = i % 20 < 4 ? 1U << static_cast<unsigned>(Cause::forecast_collision) : 0U;
+    rig.along = along;  // it starts and is held back, for ever
+    rig.cycle();
+  }
+  EXPECT_TRUE(blocked());
+}
+
 TEST(ManipulationPlanner, TheObjectRisesWhenLifted) {
   Rig rig;
   rig.start(ActionKind::pick);
