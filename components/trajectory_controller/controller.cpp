@@ -96,10 +96,12 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
 void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
   const auto n = static_cast<Eigen::Index>(robot_->dof());
   if (state.robot != robot_->name() || state.position.size() != n || !state.position.allFinite()) return;
-  constexpr double kRestart = 0.5;
+  constexpr double kRestart = 0.5;            // [s] without a sample
+  constexpr std::uint64_t kOutOfOrder = 100;  // samples: no more are overtaken on their way
   const double since = robot_seen_.ever ? std::clamp(to_seconds(sampled - robot_seen_.at), 0.0, 0.1) : 0.0;
   touch_ = contact_.update(state.external_torque, since, arm_ == Arm::standing, !exchanging_.empty());
-  const bool restarted = robot_seen_.ever && state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart;
+  const bool restarted = robot_seen_.ever && (state.sequence + kOutOfOrder < state_.sequence ||
+                                              (state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart));
   state_ = state;
   gate_.hear(state.mode);
   robot_seen_.mark(sampled);

@@ -87,5 +87,26 @@ TEST(Controller, a_silent_supervisor_lets_the_trajectory_finish_and_then_holds) 
   EXPECT_EQ(b.core.mode(), Mode::normal);
 }
 
+TEST(Controller, a_robot_side_that_is_started_anew_is_followed_from_where_it_stands) {
+  ControllerBench b;
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.0, 0.3, -0.4), 1), "");
+  b.run(1.0);
+  ASSERT_FALSE(b.at_rest());
+  ASSERT_GT(b.ticks, 1000) << "so many samples that none of the new ones can have been overtaken";
+  b.robot_speaks = false;
+  b.run(0.012);  // time may have stood still meanwhile: no silence tells
+  RobotState anew;
+  anew.robot = "small";
+  anew.sequence = 1;
+  anew.position = anew.velocity = anew.effort = Vector::Zero(b.robot->dof());
+  anew.position[0] = -0.5;
+  anew.mode = DriveMode::enabled;
+  b.core.on(anew, b.now);
+  EXPECT_EQ(b.core.set_point().position, anew.position);
+  EXPECT_TRUE(b.at_rest());
+  EXPECT_NE(b.core.status().motion, MotionState::running);
+}
+
 }  // namespace
 }  // namespace handsel::trajectory_controller
