@@ -98,6 +98,7 @@ struct DdsBus::Impl {
   std::vector<std::unique_ptr<Reader>> readers;
   std::mutex pending_mutex;
   std::vector<Reader*> pending, draining;
+  std::uint64_t simulator{};                   // that gives the pace, its incarnation
   Reader* pace{};                              // of sim_clock, where that is followed
   std::unique_ptr<WriterDiscovery> discovery;  // from the first reader of a topic with one writer on
   std::atomic<bool> discovery_news{false};
@@ -332,6 +333,10 @@ void DdsBus::Impl::look_at_matching(Reader& reader) {
 /// Answers every grant, so that the simulator knows this component has had its turn.
 void DdsBus::Impl::follow_pace(const SimClock& clock) {
   if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)), from_seconds(clock.waited)})) return;
+  if (clock.incarnation != simulator) {
+    simulator = clock.incarnation;
+    for (const auto& reader : readers) reader->intake.forget_ages();
+  }
   reached_message.component = settings.component;
   reached_message.incarnation = static_cast<std::uint64_t>(getpid());
   reached_message.sequence = clock.sequence;

@@ -46,6 +46,8 @@ class Intake {
   void deliver(const void* wire, std::uint64_t writer, TimePoint arrival);
   /// Counts a silence that has become longer than the deadline; also moves the window of the rate. Called at the rate of health.
   void watch(TimePoint now);
+  /// This component's time has jumped: what the offsets of stamps were before says nothing any more.
+  void forget_ages() { ages_.clear(); }
   void writer_gone(std::uint64_t writer);
   /// Discovery of writers, on topics with one writer only: samples of a writer that has not appeared are refused.
   void writer_appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now);
@@ -75,7 +77,7 @@ class Intake {
   SubscriptionStatus status_;
   std::optional<WriterPin> pin_;  ///< of a topic with one writer
   std::shared_ptr<void> message_;
-  std::map<std::uint64_t, AgeEstimator> ages_;
+  std::map<std::uint64_t, AgeEstimator> ages_;  // by writer
   std::set<std::uint64_t> logged_;
   bool silence_counted_{false};
   std::array<std::uint64_t, 5> window_{};  ///< received at the last watches
