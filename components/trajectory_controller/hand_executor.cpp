@@ -129,6 +129,8 @@ void HandExecutor::retarget(std::size_t i, double target) noexcept {
 
 void HandExecutor::limit_speed(double fraction) noexcept {
   if (std::abs(fraction - speed_limit_) <= kSameSpeed * speed_limit_) return;
+  // Fingers that close together would not stay together if each of them got faster on its way.
+  if (fraction > speed_limit_ && phase_ == Phase::closing && !at_rest()) return;
   speed_limit_ = fraction;
   if (at_rest()) return;
   for (std::size_t i = 0; i < fingers_.size(); ++i) retarget(i, fingers_[i].target);

@@ -61,7 +61,8 @@ class HandExecutor {
   /// Writes the hand axes of the set-point, one period later.
   void step(const HandInputs& in, double dt, TimePoint now, MotionState3& out) noexcept;
 
-  /// Motions use at most this fraction in (0, 1] of the comfort velocity; one that is under way adapts. Stops, and closing again on a load
+  /// Motions use at most this fraction in (0, 1] of the comfort velocity; one that is under way adapts, but
+  /// a grasp gets no faster while it closes. Stops, and closing again on a load
   /// that comes back, are not limited.
   void limit_speed(double fraction) noexcept;
 

@@ -169,6 +169,33 @@ TEST_F(HandTest, fingers_arrive_together_and_squeeze_along_the_way_they_came) {
   EXPECT_NEAR(out_.position[0], 0.2 + HandSettings{}.seek_travel / 3, 1e-3);
 }
 
+TEST_F(HandTest, a_limit_slows_a_motion_under_way_and_a_grasp_gets_no_faster) {
+  hand_.limit_speed(0.2);
+  command(HandAction::move, 1.0);
+  double fastest = 0;
+  for (int k = 0; k < 300; ++k) {
+    run(kDt);
+    fastest = std::max(fastest, std::abs(out_.velocity[0]));
+  }
+  EXPECT_LE(fastest, 0.2 * 2.5 + 1e-9);
+  EXPECT_GT(fastest, 0.1 * 2.5);
+  hand_.limit_speed(1.0);
+  run(0.25);
+  EXPECT_GT(std::abs(out_.velocity[0]), 0.3 * 2.5) << "a motion adapts";
+  hand_.limit_speed(0.2);
+  run(0.3);
+  EXPECT_LE(std::abs(out_.velocity[0]), 0.2 * 2.5 + 1e-9);
+  run(4);
+  command(HandAction::grasp, 0.0);
+  hand_.limit_speed(1.0);
+  fastest = 0;
+  for (int k = 0; k < 1000; ++k) {
+    run(kDt);
+    fastest = std::max(fastest, std::abs(out_.velocity[0]));
+  }
+  EXPECT_LE(fastest, 0.2 * HandSettings{}.grasp_speed * 2.5 + 1e-9);
+}
+
 TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_the_hand_opens) {
   block_ = {0.5, 0.5, 10.0, 0.5};
   HandCommand c;
