@@ -120,7 +120,9 @@ void Executor::after(Duration delay, std::function<void(TimePoint)> on_time) {
 
 void Executor::serve_timers() {
   const TimePoint wall = monotonic_now();
+  const bool paced = clock_.paced();
   const TimePoint time = clock_.at(wall);
+  if (paced && !clock_.paced()) return wake();  // what has come meanwhile is heard before time continues
   while (true) {
     auto next = timers_.end();
     for (auto timer = timers_.begin(); timer != timers_.end(); ++timer)

@@ -13,6 +13,7 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
+constexpr double kRobotGone = 0.5;    // [s] without a sample: what comes then may be another robot side, somewhere else
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
 HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot, const Group* fingers) {
@@ -93,15 +94,13 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
 
-void Controller::on(const RobotState& state, TimePoint sampled, Duration age) {
+void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bool new_writer) {
   const auto n = static_cast<Eigen::Index>(robot_->dof());
   if (state.robot != robot_->name() || state.position.size() != n || !state.position.allFinite()) return;
-  constexpr double kRestart = 0.5;            // [s] without a sample
-  constexpr std::uint64_t kOutOfOrder = 100;  // samples: no more are overtaken on their way
   const double since = robot_seen_.ever ? std::clamp(to_seconds(sampled - robot_seen_.at), 0.0, 0.1) : 0.0;
   touch_ = contact_.update(state.external_torque, since, arm_ == Arm::standing, !exchanging_.empty());
-  const bool restarted = robot_seen_.ever && (state.sequence + kOutOfOrder < state_.sequence ||
-                                              (state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRestart));
+  const bool restarted =
+      robot_seen_.ever && (new_writer || (state.sequence < state_.sequence && to_seconds(sampled - robot_seen_.at) > kRobotGone));
   state_ = state;
   gate_.hear(state.mode);
   robot_seen_.mark(sampled);
@@ -515,6 +514,8 @@ bool Controller::step(TimePoint now, bool late) noexcept {
     refused_ = false;
     refusal_.clear();
   }
+  // Set-points that nobody is heard to follow would be the first ones of a robot side that comes up elsewhere.
+  asleep_ = asleep_ || (robot_seen_.age(now) > kRobotGone && at_rest());
   if (asleep_) return false;
   next_ = set_point_;
   resync(now);

@@ -40,17 +40,17 @@ struct ControllerSettings {
   double retreat_reach{0.15};         ///< likewise, drawing back from a person at rest, when attention asks for recoil; 0: never [rad]
   bool dry_run{};                     ///< everything but the output: the robot does not follow, and need not
   double hand_rejoin{0.25};  ///< a robot side that stands moves its fingers to set-points this near [rad; of a sliding one at its lever]
-  double tracking_tolerance{0.3};     ///< measured beyond this from the set-point (hand left out): Fault [rad]
-  double tracking_time{0.1};          ///< for this long [s]
-  double forecast_hold{0.6};          ///< collision forecast within this time: Hold [s]
-  double forecast_slow{2.0};          ///< within this time: slower in proportion [s]
-  double cost_from{0.5};              ///< the human-aware cost ahead from which the arm is slower, [0, 1)
-  double cost_factor{0.4};            ///< speed factor at a cost of 1, (0, 1]
-  double head_dead_band{0.03};        ///< the head turns only for more than this [rad]
-  double look_ahead{0.15};            ///< the guard also judges the path this much later,
-  double look_far_ahead{0.45};        ///< and this much: about the time of a stop [s]
-  int late_limit{5};                  ///< late cycles in a row: Hold
-  std::vector<Wall> walls;            ///< that moving links never pass: virtual walls and the sides of the workspace
+  double tracking_tolerance{0.3};  ///< measured beyond this from the set-point (hand left out): Fault [rad]
+  double tracking_time{0.1};       ///< for this long [s]
+  double forecast_hold{0.6};       ///< collision forecast within this time: Hold [s]
+  double forecast_slow{2.0};       ///< within this time: slower in proportion [s]
+  double cost_from{0.5};           ///< the human-aware cost ahead from which the arm is slower, [0, 1)
+  double cost_factor{0.4};         ///< speed factor at a cost of 1, (0, 1]
+  double head_dead_band{0.03};     ///< the head turns only for more than this [rad]
+  double look_ahead{0.15};         ///< the guard also judges the path this much later,
+  double look_far_ahead{0.45};     ///< and this much: about the time of a stop [s]
+  int late_limit{5};               ///< late cycles in a row: Hold
+  std::vector<Wall> walls;         ///< that moving links never pass: virtual walls and the sides of the workspace
   TimeoutSettings timeouts;
   GuardSettings guard;
   StopProofSettings proof;
@@ -80,8 +80,8 @@ class Controller {
   std::string accept(const HandCommand& command, Duration age, TimePoint now);
 
   // Samples: `sampled` is the arrival minus the age at arrival.
-  /// `age`: of the sample when it arrived.
-  void on(const RobotState& state, TimePoint sampled, Duration age = {});
+  /// `age`: of the sample when it arrived. `new_writer`: another process writes it than the one before; set-points begin at its posture.
+  void on(const RobotState& state, TimePoint sampled, Duration age = {}, bool new_writer = false);
   void on(const HumanState& people, TimePoint sampled);
   void on(const Go& go, TimePoint sampled);
   void on(const SafetyState& safety);

@@ -20,10 +20,9 @@ Node::Node(Bus& bus, const NodeContext& context)
       status_out_(bus.advertise<ExecutionStatus>()) {
   command_.robot = context.robot->name();
   read<RobotState>(bus, [this, &bus](const RobotState& m, const Receipt& r) {
-    if (m.robot == command_.robot)
-      core_.on(m, r.arrival, r.age);
-    else
-      bus.count_left_out("robot_state: of another robot", 1);
+    if (m.robot != command_.robot) return bus.count_left_out("robot_state: of another robot", 1);
+    core_.on(m, r.arrival, r.age, robot_writer_ != 0 && r.writer != robot_writer_);
+    robot_writer_ = r.writer;
   });
   read<HumanState>(bus, [this](const HumanState& m, const Receipt& r) {
     watched_ = watched_ || !m.views.empty();

@@ -32,6 +32,7 @@ class Node {
   std::unique_ptr<Publisher<ExecutionStatus>> status_out_;
   std::vector<const SubscriptionStatus*> inputs_;
   const TimerStatus* timer_{};
+  std::uint64_t robot_writer_{};  // of the last RobotState; 0: none yet
   std::uint64_t late_before_{};
   JointCommand command_;
   StatusKey told_;

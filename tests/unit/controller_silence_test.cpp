@@ -9,6 +9,7 @@ namespace handsel::trajectory_controller {
 namespace {
 
 using test::ControllerBench;
+using test::expect_smooth;
 using test::goal;
 using test::has;
 
@@ -93,7 +94,6 @@ TEST(Controller, a_robot_side_that_is_started_anew_is_followed_from_where_it_sta
   ASSERT_EQ(b.go_to(ControllerBench::arm(1.0, 0.3, -0.4), 1), "");
   b.run(1.0);
   ASSERT_FALSE(b.at_rest());
-  ASSERT_GT(b.ticks, 1000) << "so many samples that none of the new ones can have been overtaken";
   b.robot_speaks = false;
   b.run(0.012);  // time may have stood still meanwhile: no silence tells
   RobotState anew;
@@ -103,9 +103,27 @@ TEST(Controller, a_robot_side_that_is_started_anew_is_followed_from_where_it_sta
   anew.position[0] = -0.5;
   anew.mode = DriveMode::enabled;
   b.core.on(anew, b.now);
+  EXPECT_NE(b.core.set_point().position, anew.position) << "a strange sample of the same writer moves nothing";
+  b.core.on(anew, b.now, {}, true);
   EXPECT_EQ(b.core.set_point().position, anew.position);
   EXPECT_TRUE(b.at_rest());
   EXPECT_NE(b.core.status().motion, MotionState::running);
+}
+
+TEST(Controller, sends_nothing_at_rest_while_no_robot_side_has_been_heard_for_long) {
+  ControllerBench b;
+  b.start();
+  b.run(0.5);
+  EXPECT_TRUE(b.ready);
+  b.robot_speaks = false;
+  b.run(0.4);
+  EXPECT_TRUE(b.ready);
+  b.run(0.2);
+  EXPECT_FALSE(b.ready) << "a robot side that comes up elsewhere would take it for its first set-point";
+  b.robot_speaks = true;
+  b.run(0.1);
+  EXPECT_TRUE(b.ready);
+  expect_smooth(b);
 }
 
 }  // namespace
