@@ -44,7 +44,15 @@ class BusySystem {
     bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { watch(state); });
   }
 
-  bool ready() { return system_.wait_ready(kReadyPatience).has_value(); }
+  /// Nobody takes the mug from the hand of an arm that stands for long: that would move the arm.
+  bool ready() {
+    if (!system_.wait_ready(kReadyPatience)) return false;
+    SimControl refuse;
+    refuse.action = SimAction::person_refuse;
+    refuse.subject = "anna";
+    sim_->publish(refuse);
+    return true;
+  }
   const Snapshot& now() { return system_.session().snapshot(); }
   const SafetyState& safety() { return now().safety.sample; }
   std::uint64_t incarnation(const std::string& process) {
