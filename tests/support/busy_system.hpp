@@ -47,10 +47,7 @@ class BusySystem {
   /// Nobody takes the mug from the hand of an arm that stands for long: that would move the arm.
   bool ready() {
     if (!system_.wait_ready(kReadyPatience)) return false;
-    SimControl refuse;
-    refuse.action = SimAction::person_refuse;
-    refuse.subject = "anna";
-    sim_->publish(refuse);
+    disturb(SimAction::person_refuse, 0.0, "anna");
     return true;
   }
   const Snapshot& now() { return system_.session().snapshot(); }
@@ -62,6 +59,11 @@ class BusySystem {
   bool is_ok(const std::string& process) {
     const auto found = now().health.find(process);
     return found != now().health.end() && found->second.sample.state == HealthState::ok;
+  }
+  /// How long the path that runs still takes at full speed [s].
+  double motion_left() {
+    const ActiveTrajectory& active = now().active.sample;
+    return now().active.ever && active.trajectory != 0 ? active.rest.duration() - active.time : 0.0;
   }
   bool moves() { return now().truth.ever && now().truth.sample.robot_moving; }
   void kill(const std::string& process) {
