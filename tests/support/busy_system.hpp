@@ -60,10 +60,11 @@ class BusySystem {
     const auto found = now().health.find(process);
     return found != now().health.end() && found->second.sample.state == HealthState::ok;
   }
-  /// How long the path that runs still takes at full speed [s].
-  double motion_left() {
-    const ActiveTrajectory& active = now().active.sample;
-    return now().active.ever && active.trajectory != 0 ? active.rest.duration() - active.time : 0.0;
+  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too, and what they press on moves the arm for as
+  /// long as they do.
+  bool travels() {
+    const std::string& phase = now().action.sample.phase;
+    return moves() && (phase == "approach" || phase == "carry" || phase == "to rest");
   }
   bool moves() { return now().truth.ever && now().truth.sample.robot_moving; }
   void kill(const std::string& process) {
