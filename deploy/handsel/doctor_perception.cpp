@@ -10,6 +10,7 @@
 #include "common/config/scenario.pb.h"
 #include "common/config/scenario_robot.hpp"
 #include "common/messages/perception.hpp"
+#include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
 #include "components/spark/scene_model.hpp"
 #include "deploy/handsel/doctor.hpp"
@@ -165,13 +166,17 @@ std::vector<Finding> look(const DoctorOptions& options) {
     review.on_malformed(TopicOf<ObjectObservation>::row.topic, why, whole);
   });
   DdsBus bus({.component = "doctor", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
+  // Where the simulator gives the pace, stamps are of the system's time, which has stood still for so long.
+  Duration stood_still{};
+  bus.subscribe<SimClock>([&](const SimClock& clock, const Receipt&) { stood_still = from_seconds(clock.waited); });
   bool counts = false;
   std::set<std::string> heard;
   const auto watch = [&]<class M>(const Lenient& type, std::string topic, M*) -> const SubscriptionStatus& {
     return bus.subscribe_any(type,
                              [&, topic](const void* message, const Receipt& receipt) {
                                heard.insert(topic);
-                               if (counts) review.on(*static_cast<const M*>(message), receipt.arrival, bus.stamp_now());
+                               if (counts)
+                                 review.on(*static_cast<const M*>(message), receipt.arrival, bus.stamp_now() - stood_still.count());
                              },
                              {});
   };
