@@ -11,10 +11,14 @@ libtinyxml2-dev libqhull-dev libglpk-dev libboost-dev libboost-filesystem-dev li
 nlohmann-json3-dev libcli11-dev libspdlog-dev libfmt-dev
 libgtest-dev libgmock-dev libbenchmark-dev mold
 "
-test_packages="chromium"
+test_packages="chromium universal-ctags"
+python_packages="python3"  # with --test, unless there is a Python of at least version 3.9 already
 page_packages="nodejs npm"  # unless there is a Node.js of at least version 18 with npm already
 
-[ "${1:-}" != --test ] || packages="$packages $test_packages"
+if [ "${1:-}" = --test ]; then
+  packages="$packages $test_packages"
+  python3 -c 'import sys; sys.exit(sys.version_info < (3, 9))' 2>/dev/null || packages="$packages $python_packages"
+fi
 node_version=$(node --version 2>/dev/null | sed 's/^v\([0-9]*\).*/\1/')
 if ! command -v npm >/dev/null 2>&1 || [ "${node_version:-0}" -lt 18 ]; then packages="$packages $page_packages"; fi
 

@@ -8,6 +8,7 @@ cd "$here"
 wanted="--omit=dev"
 [ "${2:-}" != --test ] || wanted="--include=dev"
 installed=node_modules/.installed
+# shellcheck disable=SC3013 # dash, bash and busybox compare ages with -nt
 if [ ! -f $installed ] || [ package-lock.json -nt $installed ] || { [ "${2:-}" = --test ] && [ "$(cat $installed)" != "$wanted" ]; }; then
   echo "page: fetching its packages" >&2
   npm ci "$wanted" --ignore-scripts --no-audit --no-fund --loglevel=error >&2
