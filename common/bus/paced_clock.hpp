@@ -16,9 +16,9 @@ struct TimeGrant {
 };
 
 /// The machine's monotonic clock ("wall") less the time for which time has stood still. It stands still where no more is granted, goes back
-/// at no other time than at the first grant, and is the machine's clock until then. A grant that ended more than 50 ms ago lets time advance
-/// no further: a process that has been stopped meanwhile first hears whether the simulator has waited for it. When the simulator has been
-/// silent for a second in which this component could have heard it, time continues from where it stands.
+/// at no other time than at the first grant, and is the machine's clock until then. A grant that ended more than 50 ms ago lets time
+/// advance no further: a process that has been stopped meanwhile first hears whether the simulator has waited for it. When the simulator
+/// has been silent for a second in which this component could have heard it, time continues from where it stands.
 class PacedClock {
  public:
   /// Returns false when the grant is of another simulator than the one heard within the last second, and was ignored.

@@ -46,7 +46,7 @@ const Trajectory& PathRunner::path() const {
 
 bool PathRunner::rejoin(const MotionState3& state) noexcept {
   constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way: farther on, the way there cuts corners
-  constexpr int kTries = 10;  // in this short a window; the time of a cycle goes with them
+  constexpr int kTries = 10;       // in this short a window; the time of a cycle goes with them
   if (finished_) return false;
   SwitchSettings settings;
   settings.first = std::max(0.0, law_.time());

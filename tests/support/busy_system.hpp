@@ -60,8 +60,8 @@ class BusySystem {
     const auto found = now().health.find(process);
     return found != now().health.end() && found->second.sample.state == HealthState::ok;
   }
-  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too, and what they press on moves the arm for as
-  /// long as they do.
+  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too, and what they press on moves the arm for
+  /// as long as they do.
   bool travels() {
     const std::string& phase = now().action.sample.phase;
     return moves() && (phase == "approach" || phase == "carry" || phase == "to rest");
