@@ -10,6 +10,7 @@ namespace handsel::sim {
 namespace {
 
 constexpr double kReached = 1e-10;  // of a resting set-point [rad]
+constexpr double kAtRest = 1e-6;    // fastest set-point that counts as resting [rad/s]
 constexpr const char* kAgain = "; the robot follows again once set-points rest at its posture";
 
 Vector bounds(const RobotModel& model, double Axis::*bound) {
@@ -56,7 +57,8 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
     const bool same = matching_ > 0 && command.position == joined_ && command.velocity.isZero(0.0);
     matching_ = same || continues(command) ? matching_ + 1 : 0;
     joined_ = command.position;
-    if (matching_ >= settings_.resume_count && reached(command)) enable();
+    const bool may_end = mode_ == DriveMode::enabled || in_mode_ >= settings_.min_stop;
+    if (may_end && matching_ >= settings_.resume_count && reached(command)) enable();
   }
   if (reference_ != Reference::follows || !accepted(command, arrival)) return false;
   seen_ = fresh_ = true;
@@ -102,14 +104,14 @@ bool RobotSide::continues(const JointCommand& command) const {
   if (!command.position.allFinite() || !command.velocity.allFinite()) return false;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
     const double off = std::min(std::abs(command.position[i] - position_[i]), std::abs(command.position[i] - measured_[i]));
-    if (off >= tolerance_[i] || std::abs(command.velocity[i]) >= settings_.resume_tolerance) return false;
+    if (off >= tolerance_[i] || std::abs(command.velocity[i]) >= kAtRest) return false;
   }
   return true;
 }
 
 void RobotSide::stop(DriveMode mode) {
   if (mode_ == DriveMode::enabled) begin_stop(mode);
-  mode_ = mode;
+  enter(mode);
   refusal_.clear();
 }
 
@@ -121,8 +123,13 @@ void RobotSide::hold(const Vector& position, DriveMode mode) {
   refusal_.clear();
 }
 
+void RobotSide::enter(DriveMode mode) {
+  if (mode_ != mode) in_mode_ = 0;
+  mode_ = mode;
+}
+
 void RobotSide::enable() {
-  mode_ = DriveMode::enabled;
+  enter(DriveMode::enabled);
   reference_ = Reference::follows;
   refusal_.clear();
   gate_.restart();
@@ -133,7 +140,7 @@ void RobotSide::enable() {
 }
 
 void RobotSide::begin_stop(DriveMode mode) {
-  mode_ = mode;
+  enter(mode);
   reference_ = Reference::stops;
   matching_ = 0;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
@@ -193,6 +200,7 @@ void RobotSide::extrapolate(double dt) {
 }
 
 void RobotSide::step(double now, double dt, bool holding_object) {
+  in_mode_ += dt;
   if (reference_ == Reference::follows && seen_ && now - last_ > settings_.max_gap) {
     begin_stop(DriveMode::enabled);
     refusal_ = "no set-point for more than " + std::to_string(std::lround(1e3 * settings_.max_gap)) + " ms" + kAgain;

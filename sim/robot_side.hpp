@@ -21,6 +21,7 @@ struct RobotSideSettings {
   double hand_lever{0.05};        ///< of a finger that slides [m]
   double max_ahead{0.020};        ///< a set-point may come this much earlier than its time [s]
   int resume_count{10};           ///< that many of them in a row
+  double min_stop{0.5};           ///< shortest time that a protective stop, or brakes, last, so that every process hears of them [s]
   double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
   bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has rested for half a second
 };
@@ -65,6 +66,7 @@ class RobotSide {
 
  private:
   enum class Reference : char { follows, stops, stands };
+  void enter(DriveMode);
   void begin_stop(DriveMode);
   bool continues(const JointCommand&) const;
   bool reached(const JointCommand&) const;
@@ -89,6 +91,7 @@ class RobotSide {
   Vector joined_;                      // the posture of those set-points
   bool seen_{false}, fresh_{false}, clenched_{false};
   double last_{0}, hand_rest_{0}, payload_{0};
+  double in_mode_{0};  // since mode_ was entered [s]
   Vector other_payloads_;
   int matching_{0};
   std::uint64_t refused_{0};

@@ -41,6 +41,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.robot_side.max_gap = positive(read.max_setpoint_gap(), "max_setpoint_gap");
   s.robot_side.max_ahead = s.robot_side.max_gap;
   s.robot_side.period = controller_period(folder);
+  s.robot_side.min_stop = positive(read.min_stop(), "min_stop");
   s.robot_grip.max_force = positive(read.grip_force(), "grip_force");
   s.robot_grip.max_torque = positive(read.grip_torque(), "grip_torque");
   s.person_grip.max_force = positive(read.person_grip_force(), "person_grip_force");

@@ -38,7 +38,7 @@ struct TopicRow {
 // type, topic, profile, rate [Hz], deadline [s], largest [bytes], writers, readers
 // clang-format off
 #define HANDSEL_TOPICS(X) \
-  X(RobotState, "robot_state", sensor, 500, 0.02, 4608, "sim driver ros2_lane", "trajectory_controller spark supervisor ros2_lane") \
+  X(RobotState, "robot_state", sensor, 500, 0.02, 5128, "sim driver ros2_lane", "trajectory_controller spark supervisor ros2_lane") \
   X(JointCommand, "joint_command", setpoint, 1000, 0.02, 2560, "trajectory_controller", "sim driver") \
   X(HumanObservation, "human_observation", sensor, 30, 0.2, 1310720, "sim ros2_lane", "spark sim") \
   X(ObjectObservation, "object_observation", sensor, 30, 0.2, 655360, "sim ros2_lane", "spark") \

@@ -191,6 +191,7 @@ constexpr NumberRange kRanges[] = {
     {"SimSettings.grip_torque", 0, 10000, true},
     {"SimSettings.lose_time", 0, 10, true},
     {"SimSettings.max_setpoint_gap", 0, 10, true},
+    {"SimSettings.min_stop", 0.1, 60},
     {"SimSettings.pad_friction", 0, 100, true},
     {"SimSettings.pad_patch", 0, 1, true},
     {"SimSettings.pad_stiffness", 0, 1e+06, true},

@@ -20,6 +20,7 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.vector("position", m.position, w.position, kCoordinate);
   io.vector("velocity", m.velocity, w.velocity, kCoordinate);
   io.vector("effort", m.effort, w.effort, kForce);
+  io.vector("reference", m.reference, w.reference, kCoordinate);
   io.vector("external_torque", m.external_torque, w.external_torque, kForce);
   io.wrench("wrist_wrench", m.wrist_wrench, w.wrist_wrench);
   io.number("hand_effort", m.hand_effort, w.hand_effort, {0, 1e5});
@@ -32,6 +33,7 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
   io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has not as many values as position");
+  io.check(m.reference.size() == n || m.reference.size() == 0, "reference", "has not as many values as position");
   io.check(m.external_torque.size() == n || m.external_torque.size() == 0, "external_torque", "has not as many values as position");
 }
 

@@ -13,6 +13,7 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
+constexpr double kBent = 0.06;        // [rad] load and touch bend a robot at rest off its reference by less than this
 constexpr double kRobotGone = 0.5;    // [s] without a sample: what comes then may be another robot side, somewhere else
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
@@ -89,7 +90,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   set_point_ = rest_state(Vector::Zero(n));
   effort_ = Vector::Zero(n);
   next_ = set_point_;
-  finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = yield_from_ = away_ = Vector::Zero(n);
+  reference_seen_ = finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = yield_from_ = away_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
@@ -113,8 +114,9 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bo
   if (ready_ && !restarted) return;
   // The posture of a robot side that has just come up is the first set-point.
   ready_ = true;
-  set_point_ = rest_state(state.position);
-  for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), state.position[i]);
+  const Vector& posture = rests_at_reference() ? state.reference : state.position;
+  set_point_ = rest_state(posture);
+  for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), posture[i]);
   next_ = set_point_;
   if (arm_ == Arm::running || rejoin_) give_up_path();
   stand_arm();
@@ -458,23 +460,42 @@ void Controller::step_head() noexcept {
   head_paused_ = !may_move;
 }
 
+bool Controller::rests_at_reference() const noexcept {
+  const Vector& reference = state_.reference;
+  if (settings_.dry_run || reference.size() != state_.position.size()) return false;
+  return std::all_of(arm_axes_.begin(), arm_axes_.end(),
+                     [&](int axis) { return std::abs(reference[axis] - state_.position[axis]) < kBent; });
+}
+
+bool Controller::reference_left_set_points() const noexcept {
+  constexpr double kSame = 1e-9;  // [rad]
+  return std::any_of(arm_axes_.begin(), arm_axes_.end(),
+                     [&](int axis) { return std::abs(state_.reference[axis] - set_point_.position[axis]) > kSame; });
+}
+
 void Controller::resync(TimePoint now) noexcept {
   const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || !follows();
   if (!wanted) adopted_ = false;
   if (!wanted || arm_ != Arm::standing || !at_rest() || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
-  // A robot side that stands with its drives enabled moves its reference to set-points that rest: once these have been taken to the posture
-  // it came to rest in, they must not follow what a bent finger or a sagging arm makes of that motion.
-  constexpr double kRests = 0.05, kBent = 0.06;  // [rad/s], [rad]
-  const bool joins = state_.mode == DriveMode::enabled && !follows();
+  // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points that rest at the reference itself move
+  // nothing; while the reference moves, be it to where they rest, they stay. Where the reference is not known, set-points are taken once to
+  // the posture the robot came to rest in: if they followed what a bent finger or a sagging arm makes of that, the robot would creep.
+  constexpr double kRests = 0.05, kExact = 1e-12;  // [rad/s], [rad]
+  const bool joins = state_.mode == DriveMode::enabled && !settings_.dry_run;
+  // Under a fault, a reference at the set-points is that of a robot side that follows: there the measured posture counts.
+  const bool at_reference = rests_at_reference() && (!follows() || reference_left_set_points());
+  const bool reference_rests = at_reference && reference_seen_ == state_.reference;
+  if (at_reference) reference_seen_ = state_.reference;
   const bool rests = std::all_of(arm_axes_.begin(), arm_axes_.end(),
                                  [&](int axis) { return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests; });
   const double dead_band = joins && rests && adopted_ ? kBent : 0.002;
   adopted_ = joins && rests;
   const auto go_there = [&](int axis) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    const double measured = inside(axis, state_.position[axis]);
-    if (std::abs(measured - mover.target()) > dead_band)
-      mover.go_to(measured, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
+    const double target = inside(axis, at_reference ? state_.reference[axis] : state_.position[axis]);
+    if (at_reference && !reference_rests) return;
+    if (std::abs(target - mover.target()) > (at_reference ? kExact : dead_band))
+      mover.go_to(target, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
   };
   for (int axis : arm_axes_) go_there(axis);
   for (int axis : head_axes_) go_there(axis);

@@ -185,6 +185,10 @@ class Controller {
   bool attention_silent(TimePoint now) const noexcept;
   /// Whether the robot side follows set-points: it may stand although its drives are enabled.
   bool follows() const noexcept { return state_.mode == DriveMode::enabled && state_.refusal.empty(); }
+  /// Returns whether the robot side has told its reference, and the arm is where a robot that rests there would be.
+  bool rests_at_reference() const noexcept;
+  /// Returns whether an axis of the arm has another reference than the last set-point. Needs a reference.
+  bool reference_left_set_points() const noexcept;
   void check_last() noexcept;
   void prove_stop(TimePoint now) noexcept;
   void keep_observed(TimePoint now) noexcept;
@@ -222,6 +226,7 @@ class Controller {
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
+  Vector reference_seen_;  // of the robot side, when last looked at
   bool adopted_{};  // the measured posture, since the robot side last followed
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};

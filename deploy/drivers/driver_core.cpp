@@ -127,6 +127,7 @@ RobotState DriverCore::state(bool commanding) const {
   s.position = measured_.position;
   s.velocity = measured_.velocity;
   s.effort = measured_.effort;
+  s.reference = side_.position();
   s.external_torque = measured_.external_torque;
   s.wrist_wrench = measured_.wrist_wrench;
   s.payload = measured_.payload;

@@ -32,6 +32,7 @@ Place read_common(const std::filesystem::path& folder, const File& file, const R
   out.dry_run = in.dry_run();
   out.watch.max_ahead = file.in(in.wire_jitter(), "wire_jitter", 0.0, 0.1);
   out.fade_share = file.in(in.fade_share(), "fade_share", 0.01, 1.0);
+  out.watch.min_stop = file.in(in.min_stop(), "min_stop", 0.1, 60.0);
   config::TrajectoryControllerSettings controller;
   out.watch.period = File(folder / "trajectory_controller.txtpb", controller).in(controller.period(), "period", kTiny, 0.02);
   out.watch.max_gap = file.in(in.max_setpoint_gap(), "max_setpoint_gap", 0.001, 1.0);

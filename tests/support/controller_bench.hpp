@@ -44,6 +44,7 @@ class ControllerBench {
       s.effort = Vector::Zero(robot->dof());
       s.mode = drive;
       s.refusal = refusal;
+      s.reference = reference;
       s.external_torque = external_torque;
       core.on(s, now);
       robot_at_ = now;
@@ -122,6 +123,7 @@ class ControllerBench {
   bool follows{true};
   DriveMode drive{DriveMode::enabled};
   std::string refusal;     ///< why the robot side stands although its drives are enabled
+  Vector reference;        ///< of the robot side; empty: not known
   Vector external_torque;  ///< empty: not measured
   bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true}, attention_speaks{true};
   HumanState people;

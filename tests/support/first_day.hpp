@@ -52,7 +52,7 @@ class FirstDay {
         << " }\n";
     port_ = drivers::UdpPort(0).port();
     const std::string common = "common { port: " + std::to_string(port_) + " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
-                               " max_setpoint_gap: 0.02 wire_jitter: 0.02 fade_share: 0.1 }\n";
+                               " max_setpoint_gap: 0.02 min_stop: 0.5 wire_jitter: 0.02 fade_share: 0.1 }\n";
     folder_.write("position_arm.txtpb", common + "cycle: 0.005\n");
     folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_share: 0.95 lost_cycles: 20\n" + plan.gripper);
     go_.epoch = go_.state_revision = 1;

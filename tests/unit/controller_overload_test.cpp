@@ -18,6 +18,7 @@ struct Loop {
   ControllerBench bench;
   sim::RobotSide side;
   bool wire_holds{true};
+  bool tells_reference{true};
   Vector bend;      // of the measured posture from the reference, all axes
   double shaken{};  // of the fingers, by somebody who holds what is between them [rad]
   std::uint64_t sent{};
@@ -49,7 +50,18 @@ struct Loop {
       side.measured(bench.measured);
       bench.drive = side.mode();
       bench.refusal = side.refusal();
+      if (tells_reference) bench.reference = side.position();
     }
+  }
+  /// Returns how far an axis of the arm has moved from where it is now, within this time [rad].
+  double creeps(double seconds) {
+    const Vector begin = bench.measured.head(3);
+    double most = 0.0;
+    for (double passed = 0.0; passed < seconds; passed += 0.05) {
+      run(0.05);
+      most = std::max(most, (bench.measured.head(3) - begin).cwiseAbs().maxCoeff());
+    }
+    return most;
   }
   std::string close_hand(std::uint64_t id) {
     HandCommand c;
@@ -91,6 +103,50 @@ TEST(Overload, the_robot_stands_by_itself_and_goes_on_with_a_new_go) {
 }
 
 /// Arm, head and hand each in the middle of a motion, and a hand bent by what it holds.
+// Set-points that followed the sagging arm let it creep by its sag ten times a second.
+TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_is) {
+  for (const bool tells : {true, false}) {
+    SCOPED_TRACE(tells ? "reference known" : "reference unknown");
+    Loop l;
+    l.tells_reference = tells;
+    l.bend.head(3) = Vector3(0.004, -0.003, 0.003);
+    l.run(0.3);
+    ASSERT_EQ(l.bench.go_to(goal(), 1), "");
+    l.run(0.4);
+    l.side.stop(DriveMode::enabled);
+    for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
+    ASSERT_EQ(l.bench.core.mode(), Mode::fault);
+    l.run(0.5);
+    EXPECT_LT(l.creeps(4.0), tells ? 1e-9 : 0.005) << "by its sag once, where the reference is not known";
+    l.run(1.0);
+    EXPECT_LT(l.creeps(4.0), 1e-9);
+    ++l.bench.go.epoch;
+    l.bench.go.acknowledge = true;
+    l.run(0.5);
+    EXPECT_EQ(l.bench.core.mode(), Mode::normal) << l.bench.core.status().reason;
+    ASSERT_EQ(l.bench.go_to(goal(), 2), "");
+    l.run(6.0);
+    EXPECT_TRUE(l.side.position().head(3).isApprox(goal(), 1e-6)) << l.side.position().transpose();
+    test::expect_smooth(l.bench);
+  }
+}
+
+TEST(Overload, an_arm_that_a_fault_finds_pressed_against_something_no_longer_presses) {
+  Loop l;
+  l.run(0.3);
+  ASSERT_EQ(l.bench.go_to(goal(), 1), "");
+  l.run(0.8);
+  l.bend[0] = -0.4;  // something holds the arm while its reference is followed
+  for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
+  ASSERT_EQ(l.bench.core.mode(), Mode::fault);
+  const double pressed_at = l.bench.measured[0];
+  for (int i = 0; i < 80; ++i) {
+    l.bend[0] = pressed_at - l.side.position()[0];
+    l.run(0.05);
+  }
+  EXPECT_NEAR(l.side.position()[0], pressed_at, 0.01);
+}
+
 TEST(Overload, whatever_moved_when_set_points_stayed_away_the_robot_side_follows_again) {
   std::mt19937_64 random(5);
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };

@@ -131,6 +131,23 @@ TEST(SimRobotSide, AUserStopWhileSetPointsAreAwayStillEndsOnlyByEnable) {
   EXPECT_EQ(side.mode(), DriveMode::user_stop);
 }
 
+TEST(SimRobotSide, a_protective_stop_at_rest_lasts_until_every_process_has_heard_of_it) {
+  RobotSide side(jido(), start(), RobotSideSettings{});
+  JointCommand c;
+  c.position = start();
+  c.velocity = c.acceleration = Vector::Zero(jido().dof());
+  side.command(c, 0.0);
+  side.step(0.001, 0.001, false);
+  side.stop(DriveMode::protective_stop);
+  double now = 0.001, ended = 0.0;
+  while (side.mode() != DriveMode::enabled && now < 2.0) {
+    side.command(c, now);
+    side.step(now += 0.001, 0.001, false);
+    ended = now;
+  }
+  EXPECT_NEAR(ended, RobotSideSettings{}.min_stop, 0.01);
+}
+
 TEST(SimRobotSide, UserStopEndsOnlyByEnable) {
   RobotSide side(jido(), start(), RobotSideSettings{});
   side.user_stop();
