@@ -21,7 +21,7 @@ struct RobotSideSettings {
   double hand_lever{0.05};        ///< of a finger that slides [m]
   double max_ahead{0.020};        ///< a set-point may come this much earlier than its time [s]
   int resume_count{10};           ///< that many of them in a row
-  double min_stop{0.5};           ///< shortest time that a protective stop, or brakes, last, so that every process hears of them [s]
+  double min_stop{0.5};           ///< shortest time of a protective stop and of brakes [s]
   double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
   bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has rested for half a second
 };

@@ -27,7 +27,7 @@ struct RobotState {
   std::uint64_t sequence{};
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
   Vector position, velocity, effort;    ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
-  Vector reference;                     ///< per axis, what the servos follow or hold [rad] ([m]); empty if unknown
+  Vector reference;                     ///< per axis, what the servos follow [rad, m]; or empty
   Vector external_torque;               ///< per axis, without model gravity and friction [Nm]; empty if unknown
   Wrench wrist_wrench;                  ///< what the world exerts on the hand with its load, gravity of the hand removed, tool frame
   double hand_effort{};                 ///< sum of |finger torques| [Nm]

@@ -13,7 +13,7 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
-constexpr double kBent = 0.06;        // [rad] load and touch bend a robot at rest off its reference by less than this
+constexpr double kBent = 0.06;        // [rad] load and touch bend a robot at rest less than this
 constexpr double kRobotGone = 0.5;    // [s] without a sample: what comes then may be another robot side, somewhere else
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
@@ -90,7 +90,8 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   set_point_ = rest_state(Vector::Zero(n));
   effort_ = Vector::Zero(n);
   next_ = set_point_;
-  reference_seen_ = finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = yield_from_ = away_ = Vector::Zero(n);
+  finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = Vector::Zero(n);
+  reference_seen_ = yield_from_ = away_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
@@ -477,12 +478,14 @@ void Controller::resync(TimePoint now) noexcept {
   const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || !follows();
   if (!wanted) adopted_ = false;
   if (!wanted || arm_ != Arm::standing || !at_rest() || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
-  // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points that rest at the reference itself move
-  // nothing; while the reference moves, be it to where they rest, they stay. Where the reference is not known, set-points are taken once to
-  // the posture the robot came to rest in: if they followed what a bent finger or a sagging arm makes of that, the robot would creep.
+  // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
+  // that rest at the reference move nothing; they stay while the reference moves. Where the
+  // reference is not known, set-points are taken once to the posture the robot came to rest in:
+  // if they followed a sagging arm or a bent finger, the robot would creep.
   constexpr double kRests = 0.05, kExact = 1e-12;  // [rad/s], [rad]
   const bool joins = state_.mode == DriveMode::enabled && !settings_.dry_run;
-  // Under a fault, a reference at the set-points is that of a robot side that follows: there the measured posture counts.
+  // Under a fault, a reference at the set-points is that of a robot side that follows: there the
+  // measured posture counts.
   const bool at_reference = rests_at_reference() && (!follows() || reference_left_set_points());
   const bool reference_rests = at_reference && reference_seen_ == state_.reference;
   if (at_reference) reference_seen_ = state_.reference;

@@ -185,9 +185,9 @@ class Controller {
   bool attention_silent(TimePoint now) const noexcept;
   /// Whether the robot side follows set-points: it may stand although its drives are enabled.
   bool follows() const noexcept { return state_.mode == DriveMode::enabled && state_.refusal.empty(); }
-  /// Returns whether the robot side has told its reference, and the arm is where a robot that rests there would be.
+  /// Returns whether the robot side reports its reference and the arm may rest there.
   bool rests_at_reference() const noexcept;
-  /// Returns whether an axis of the arm has another reference than the last set-point. Needs a reference.
+  /// Returns whether the reference of an axis of the arm differs from the last set-point.
   bool reference_left_set_points() const noexcept;
   void check_last() noexcept;
   void prove_stop(TimePoint now) noexcept;
@@ -227,7 +227,7 @@ class Controller {
 
   // What is sent.
   Vector reference_seen_;  // of the robot side, when last looked at
-  bool adopted_{};  // the measured posture, since the robot side last followed
+  bool adopted_{};         // the measured posture, since the robot side last followed
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};
   MotionState3 set_point_, next_;

@@ -117,7 +117,7 @@ TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_i
     for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
     ASSERT_EQ(l.bench.core.mode(), Mode::fault);
     l.run(0.5);
-    EXPECT_LT(l.creeps(4.0), tells ? 1e-9 : 0.005) << "by its sag once, where the reference is not known";
+    EXPECT_LT(l.creeps(4.0), tells ? 1e-9 : 0.005) << "at most once by its sag";
     l.run(1.0);
     EXPECT_LT(l.creeps(4.0), 1e-9);
     ++l.bench.go.epoch;
