@@ -364,7 +364,8 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
     reader->gate.open_for(reader->intake.pinned());
     others.add(reader->intake);
   }
-  m.reason = executor.silent_job(wall);  // first: the launcher heeds it
+  m.job_silent = executor.job_silent(wall);
+  m.reason = m.job_silent ? "a job has given no sign of life for two seconds" : "";
   for (const std::string& reason : {others.reason(), degraded})
     if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
   if (m.reason.empty() && !refusal.empty()) m.reason = "refused to send: " + refusal;

@@ -267,15 +267,15 @@ void Executor::finish_jobs() {
   for (Job& job : finished) job.done();
 }
 
-std::string Executor::silent_job(TimePoint now) {
+bool Executor::job_silent(TimePoint now) {
   const std::lock_guard lock(jobs_mutex_);
   const std::uint64_t beats = running_token_.beats();
   if (!running_ || beats != seen_beats_) {
     seen_beats_ = beats;
     seen_at_ = now;
-    return {};
+    return false;
   }
-  return now - seen_at_ > kJobSilence ? kSilentJob : std::string();
+  return now - seen_at_ > kJobSilence;
 }
 
 }  // namespace handsel

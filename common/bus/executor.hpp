@@ -25,9 +25,6 @@ namespace handsel {
 /// Now on CLOCK_MONOTONIC.
 TimePoint monotonic_now();
 
-/// Reason of a degraded process whose job does not ask its token any more.
-inline constexpr const char* kSilentJob = "a job has given no sign of life for two seconds";
-
 class Executor {
  public:
   using Log = std::function<void(const std::string&)>;
@@ -63,8 +60,8 @@ class Executor {
   /// Cancels all jobs, drops those that wait, and waits for the running one; false if it is still at work after `limit`.
   bool end_jobs(Duration limit);
 
-  /// Empty, or which job has given no sign of life for two seconds.
-  std::string silent_job(TimePoint now);
+  /// Returns whether the running job has given no sign of life for two seconds.
+  bool job_silent(TimePoint now);
 
  private:
   struct Timer;

@@ -20,7 +20,7 @@ struct TopicHealth {
   double age{};              ///< since the last one [s]; negative: never seen
   std::uint64_t deadline_misses{};
   std::uint64_t rejected{};
-  std::string last_rejection;  ///< one sentence
+  std::string last_rejection;   ///< one sentence
   std::uint64_t refused{};      ///< samples of another writer than the accepted one, on a topic with one writer
   std::string second_writer{};  ///< identity of that other writer (process, host), while it is there; else empty
 };
@@ -39,6 +39,7 @@ struct ComponentHealth {
   std::uint32_t pid{};
   HealthState state{HealthState::starting};
   std::string reason;  ///< of degradation
+  bool job_silent{};   ///< a job in the background has given no sign of life for two seconds
   double cpu{};        ///< share of one core
   double memory_mb{};
   double uptime{};  ///< [s]

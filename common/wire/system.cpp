@@ -33,6 +33,7 @@ void describe(WireIo& io, ComponentHealth& m, handsel_ComponentHealth& w) {
   io.integer("pid", m.pid, w.pid);
   io.choice("state", m.state, w.state, kHealthStateNames);
   io.text("reason", m.reason, w.reason, Text::sentence);
+  io.flag("job_silent", m.job_silent, w.job_silent);
   io.number("cpu", m.cpu, w.cpu, {0, 1e4});
   io.number("memory_mb", m.memory_mb, w.memory_mb, {0, 1e9});
   io.number("uptime", m.uptime, w.uptime, kTime);

@@ -32,7 +32,7 @@ void ProcessWatch::hear(const ComponentHealth& health) {
   const auto watched = watched_.find(health.component);
   if (watched == watched_.end() || static_cast<std::uint32_t>(watched->second.pid) != health.pid) return;
   heard_ = true;
-  watched->second.job_silent = health.reason.starts_with(kSilentJob);
+  watched->second.job_silent = health.job_silent;
   watched->second.liveness.beat(monotonic_now(), watched->second.job_silent);
 }
 

@@ -28,6 +28,7 @@ struct Watched : testing::Test {
   std::unique_ptr<Launcher> launcher;
   std::unique_ptr<ProcessWatch> watch;
   bool silent{};
+  bool job_silent{};                    // in the heartbeats
   std::string reason;                   // in the heartbeats
   std::optional<ComponentHealth> said;  // in the name of the process
 
@@ -51,6 +52,7 @@ struct Watched : testing::Test {
       health.pid = static_cast<std::uint32_t>(process.pid);
       health.state = HealthState::ok;
       health.reason = reason;
+      health.job_silent = job_silent;
       beats->publish(health);
     }
   }
@@ -100,7 +102,7 @@ TEST_F(Watched, a_process_whose_job_is_silent_for_long_is_replaced_though_it_bea
   reason = "something else";
   until(1.5, [] { return false; });
   EXPECT_EQ(launcher->processes()[0].restarts, 0);
-  reason = kSilentJob;
+  job_silent = true;
   ASSERT_TRUE(until(5.0, [&] { return launcher->processes()[0].restarts == 1; }));
   EXPECT_NE(launcher->processes()[0].why.find("a job has given no sign of life for more than 1.0 s"), std::string::npos)
       << launcher->processes()[0].why;
