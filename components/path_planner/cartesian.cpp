@@ -431,7 +431,8 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
   if (!sound) {
     result.nodes.clear();
     result.samples.clear();
-    return refuse(space.cancelled() ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
+    result.cancelled = space.cancelled();
+    return refuse(result.cancelled ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
   }
   result.cost = integral(space, result.samples);
   for (std::size_t i = 1; i < result.samples.size(); ++i)
@@ -444,6 +445,7 @@ CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, H
 Result in_joints(const CartesianResult& found, const std::vector<int>& axes) {
   Result out;
   out.solved = found.solved;
+  out.cancelled = found.cancelled;
   out.reason = found.reason;
   out.cost = found.cost;
   out.work = found.work;

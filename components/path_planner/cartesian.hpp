@@ -37,6 +37,7 @@ struct CartesianNode {
 
 struct CartesianResult {
   bool solved{};
+  bool cancelled{};    ///< ended by its cancel hook before the budget was used up
   std::string reason;  ///< why not, one sentence
   std::vector<CartesianNode> nodes;
   std::vector<Vector> samples;  ///< all axes, along the local paths; neighbours differ by at most largest_step in every joint

@@ -231,7 +231,7 @@ void Node::start(const PathRequest& request) {
     if (of_client.empty()) running_.erase(id.client);
     if (requests_.answer(id) != nullptr) return;  // cancelled
     PathReply reply = reply_of(work->request, work->result);
-    if (!reply.solved && reply.reason == "cancelled" && requests_.superseded(id))
+    if (!reply.solved && work->result.cancelled && requests_.superseded(id))
       reply.reason = "superseded by a newer request of the same client";
     if (!work->request.running.empty()) {
       ++live_outcomes_[static_cast<std::size_t>(work->outcome)];

@@ -276,7 +276,8 @@ class Planning {
 
   bool out_of_budget(double closest) {
     result_.path.clear();
-    if (space_.cancelled()) return refuse("cancelled");
+    result_.cancelled = space_.cancelled();
+    if (result_.cancelled) return refuse("cancelled");
     return refuse(format("no path within %.0f checks; the search came within %.3f rad of joining start and goal",
                          static_cast<double>(problem_.budget), closest));
   }

@@ -73,6 +73,7 @@ struct Hooks {
 
 struct Result {
   bool solved{};
+  bool cancelled{};           ///< ended by its cancel hook before the budget was used up
   std::string reason;         ///< why not, one sentence
   std::string start_touches;  ///< id of the object, box or person the robot touches at the start; empty: none
   std::size_t goal{};         ///< index of the goal reached

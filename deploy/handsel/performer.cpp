@@ -76,6 +76,7 @@ void Performer::tick(TimePoint now) {
       return;
   }
   if (phase_ != Phase::finished && now - begin_ > timeout_) {
+    outcomes_.back().timed_out = true;
     outcomes_.back().reason = "not done after " + std::to_string(static_cast<int>(to_seconds(timeout_))) + " s";
     end_ = now;
     outcomes_.back().duration = to_seconds(now - task_begin_);

@@ -31,6 +31,7 @@ struct StepOutcome {
 struct TaskOutcome {
   std::string task;              ///< "give mug to anna"
   bool success{};                ///< give: the oracle's word; other kinds: the supervisor's
+  bool timed_out{};              ///< it was not done within the time of all tasks
   std::string state, reason;     ///< as the supervisor said last; reason also when the oracle disagrees
   double started{}, duration{};  ///< [s]
   double first_motion{-1};       ///< after the goal was given the robot moved first [s]; negative: never

@@ -111,7 +111,7 @@ class Batch {
     std::vector<std::string> names;
     for (int i : problem.axes) names.push_back(robot_.axes()[i].name);
     std::string reason = result.reason;
-    if (reason == "cancelled") {
+    if (!result.solved && result.cancelled) {
       char text[64];
       std::snprintf(text, sizeof text, "no path within %.1f s", options_.time);
       reason = text;

@@ -31,7 +31,7 @@ std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
   if (performer.succeeded()) return "";
   if (!performer.started()) return "not_ready";
   const TaskOutcome& last = performer.outcomes().back();
-  if (last.reason.rfind("not done after", 0) == 0) return "timeout";
+  if (last.timed_out) return "timeout";
   if (last.state == name(TaskState::succeeded)) return "no_handover";
   return "task_" + last.state;
 }
