@@ -24,6 +24,8 @@ static_assert(ends_with(kStepStateNames, StepState::dropped));
 static_assert(ends_with(kTaskChangeNames, TaskChange::give));
 static_assert(ends_with(kDriveModeNames, DriveMode::emergency_stop));
 static_assert(ends_with(kFactNames, FactKind::released));
+static_assert(ends_with(kActionPhaseTexts, ActionPhase::to_rest));
+static_assert(ends_with(kActionFailureNames, ActionFailure::cancelled));
 static_assert(ends_with(kHolderNames, Holder::human));
 static_assert(ends_with(kHealthStateNames, HealthState::stopping));
 static_assert(ends_with(kSimActionNames, SimAction::emergency_stop));
@@ -39,6 +41,18 @@ const char* name(ActionKind value) { return look_up(kActionKindNames, value); }
 const char* name(StepState value) { return look_up(kStepStateNames, value); }
 const char* name(TaskChange value) { return look_up(kTaskChangeNames, value); }
 const char* name(FactKind value) { return look_up(kFactNames, value); }
+const char* name(ActionFailure value) { return look_up(kActionFailureNames, value); }
+
+std::string text_of(ActionPhase phase) { return look_up(kActionPhaseTexts, phase); }
+
+std::string phase_text(const ActionStatus& action) {
+  std::string text = text_of(action.phase);
+  constexpr std::string_view kSomebody = "somebody";
+  const auto at = text.find(kSomebody);
+  if (at != std::string::npos && !action.human.empty()) text.replace(at, kSomebody.size(), action.human);
+  return text;
+}
+
 const char* name(Holder value) { return look_up(kHolderNames, value); }
 const char* name(HealthState value) { return look_up(kHealthStateNames, value); }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
@@ -62,6 +63,27 @@ inline constexpr const char* kSimActionNames[] = {
     "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore",
     "human_frozen",  "human_empty", "human_late",   "human_elsewhere", "emergency_stop"};
 
+// clang-format off
+inline constexpr const char* kActionPhaseTexts[] = {
+    "", "choosing a grasp", "choosing two grasps", "choosing hands and grasps",
+    "choosing the exchange point", "choosing a place", "looking for the object",
+    "looking ahead to the exchange", "waiting for the scene",
+    "waiting for somebody to come within reach", "watching for an offer",
+    "waiting for somebody to let go", "planning", "approach", "approach with the other hand",
+    "reaching the object", "opening the hand", "opening the other hand", "grasp", "lift",
+    "carry", "carry to the other hand", "offer", "put down", "put back", "letting go",
+    "letting go with the first hand", "retreat", "backing off", "stepping back", "drawing back",
+    "making room", "to rest"};
+inline constexpr const char* kActionFailureNames[] = {
+    "none", "other", "no_answer", "timed_out", "not_permitted", "nothing_grasped", "left_behind",
+    "not_visible", "not_taken", "cancelled"};
+// clang-format on
+
+/// Returns the phase in words; one that waits for a person says "somebody".
+std::string text_of(ActionPhase phase);
+/// Returns the phase in words, with the person it waits for.
+std::string phase_text(const ActionStatus& action);
+const char* name(ActionFailure);
 const char* name(Holder);
 const char* name(HealthState);
 

@@ -90,6 +90,57 @@ struct ActionGoal {
 
 enum class ActionState : std::uint8_t { idle, running, succeeded, failed, cancelled };
 
+/// What a running action is doing.
+enum class ActionPhase : std::uint8_t {
+  none,
+  choosing_grasp,
+  choosing_two_grasps,
+  choosing_hands,
+  choosing_exchange_point,
+  choosing_place,
+  looking_for_object,
+  looking_ahead,  ///< to the handover, while the grasp is chosen
+  waiting_for_scene,
+  waiting_for_person,  ///< `human`, to come within reach
+  watching_for_offer,
+  waiting_for_release,  ///< `human`, to let go of the object
+  planning,
+  approach,
+  approach_other_hand,
+  reaching_object,
+  opening_hand,
+  opening_other_hand,
+  grasp,
+  lift,
+  carry,
+  carry_to_other_hand,
+  offer,
+  put_down,
+  put_back,
+  letting_go,
+  letting_go_first_hand,
+  retreat,
+  backing_off,    ///< after a grasp that failed
+  stepping_back,  ///< a giver has approached
+  drawing_back,   ///< a person is too near
+  making_room,    ///< for an offer
+  to_rest,
+};
+
+/// What kind of failure ended an action: the supervisor's recovery rules decide by it.
+enum class ActionFailure : std::uint8_t {
+  none,
+  other,            ///< the reason alone says which
+  no_answer,        ///< of another process
+  timed_out,        ///< a computation did not end in time
+  not_permitted,    ///< the controller may not move
+  nothing_grasped,  ///< the hand closed on nothing
+  left_behind,      ///< the object stayed where it was when the hand went up
+  not_visible,      ///< object or person
+  not_taken,        ///< the receiver did not take the object
+  cancelled,        ///< on request
+};
+
 /// Topic ActionStatus, profile state, 10 Hz and on change.
 struct ActionStatus {
   Stamp stamp{};
@@ -97,12 +148,13 @@ struct ActionStatus {
   std::uint64_t task{};
   ActionKind kind{};
   ActionState state{ActionState::idle};
-  std::string phase;  ///< planning, approach, grasp, lift, carry, offer, release, retreat
+  ActionPhase phase{};
   std::string object, human;
   bool holding{};                                                    ///< the hand holds `object`
   bool exchange_engaged{};                                           ///< the exchanging forearm and hand are excepted from separation
   Vector3 exchange_point{Vector3::Zero()};                           ///< world, valid while kind is give or receive [m]
   double time_to_exchange{std::numeric_limits<double>::infinity()};  ///< until the object changes hands, as foreseen [s]
+  ActionFailure failure{};                                           ///< of a state failed or cancelled
   std::string reason;
   Refusals refusals;
 };

@@ -65,13 +65,14 @@ void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
   io.integer("task", m.task, w.task);
   io.choice("kind", m.kind, w.kind, kActionKindNames);
   io.choice("state", m.state, w.state, kActionStates);
-  io.text("phase", m.phase, w.phase, Text::sentence);
+  io.choice("phase", m.phase, w.phase, kActionPhaseTexts);
   io.text("object", m.object, w.object, Text::maybe_empty);
   io.text("human", m.human, w.human, Text::maybe_empty);
   io.flag("holding", m.holding, w.holding);
   io.flag("exchange_engaged", m.exchange_engaged, w.exchange_engaged);
   io.point("exchange_point", m.exchange_point, w.exchange_point);
   io.horizon("time_to_exchange", m.time_to_exchange, w.time_to_exchange, 0);
+  io.choice("failure", m.failure, w.failure, kActionFailureNames);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.list("refusals", m.refusals, w.refusals, 256, true);
 }

@@ -14,7 +14,7 @@ constexpr double kLookAgain = 0.5;  // [s]
 
 Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human, const std::string& onto) {
   if (status_.holding && attachment_.object == object_id) co_return Outcome{};
-  status_.phase = "looking for the object";
+  status_.phase = ActionPhase::looking_for_object;
   const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
   Outcome last;
@@ -39,7 +39,7 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
       if (last.good) co_return last;
       refuse("grasp " + std::to_string(grasp.id), last.reason);
       if (status_.holding) co_return last;
-      if (status_.phase != "planning" && ++executed >= 3) break;  // the object may have moved: look again
+      if (status_.phase != ActionPhase::planning && ++executed >= 3) break;  // the object may have moved: look again
     }
   }
   co_return last;
@@ -57,7 +57,7 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
   };
   auto result = std::make_shared<Result>();
   while (person(human) != nullptr && object(object_id) != nullptr) {
-    status_.phase = "looking ahead to the exchange";
+    status_.phase = ActionPhase::looking_ahead;
     *result = {};
     const std::function<void()> job = [this, result, grasps, scene = scene_, layers = layers_.at(waiting_.now()), who = *person(human),
                                        q = set_point_, T_world_object = object(object_id)->T_world_object] {
@@ -75,13 +75,14 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
     Outcome worked = co_await work(job);
     if (!worked.good) co_return worked;
     if (!result->givable.empty() || waiting_.now() >= patience) break;
-    status_.phase = "waiting for " + human + " to come within reach";
+    status_.phase = ActionPhase::waiting_for_person;
     co_await waiting_.pause(kLookAgain);
   }
   for (const auto& refusal : result->refused) refuse(refusal.what, refusal.reason);
   if (result->givable.empty())
     co_return Outcome::failure("no grasp of " + object_id + " can be handed to " + human +
-                               (result->refused.empty() ? ", who is out of sight" : ": " + result->refused.front().reason));
+                                   (result->refused.empty() ? ", who is out of sight" : ": " + result->refused.front().reason),
+                               result->refused.empty() ? ActionFailure::not_visible : ActionFailure::other);
   std::stable_sort(result->givable.begin(), result->givable.end(), [](const Ahead& a, const Ahead& b) { return a.cost < b.cost; });
   std::vector<Grasp> givable;
   for (const Ahead& ahead : result->givable) givable.push_back(grasps[ahead.grasp]);
@@ -90,16 +91,16 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
 }
 
 Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, const std::string& for_human, const Grasp& grasp) {
-  status_.phase = "planning";
+  status_.phase = ActionPhase::planning;
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
-  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+  if (!ready) co_return not_permitted();
 
   Motion approach;
-  approach.phase = "approach";
+  approach.phase = ActionPhase::approach;
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {object_id};
   Motion reach_object;
-  reach_object.phase = "reaching the object";
+  reach_object.phase = ActionPhase::reaching_object;
   reach_object.goals = {grasp.arm_joints};
   reach_object.straight = true;
   reach_object.allowed = {object_id};
@@ -109,9 +110,9 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   if (!fingers_.axes.empty()) opened = RobotModel::with(opened, fingers_, grasp.pregrasp_joints);
   Vector before = RobotModel::with(opened, arm_, grasp.approach_joints);
   PlannedPath last_part = co_await plan_path(before, reach_object);
-  if (!last_part.outcome.good) co_return Outcome::failure("last part of the approach: " + last_part.outcome.reason);
+  if (!last_part.outcome.good) co_return last_part.outcome.of("last part of the approach");
   PlannedPath first_part = co_await plan_path(opened, approach);
-  if (!first_part.outcome.good) co_return Outcome::failure("approach: " + first_part.outcome.reason);
+  if (!first_part.outcome.good) co_return first_part.outcome.of("approach");
 
   Outcome moved = co_await tell_hand(HandAction::move, grasp.pregrasp_joints);
   if (!moved.good) co_return moved;
@@ -122,15 +123,16 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   moved = co_await move(reach_object);
   if (!moved.good) co_return moved;
 
-  status_.phase = "grasp";
+  status_.phase = ActionPhase::grasp;
   HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout(), &grasp.hand_effort);
   if (!closed.outcome.good || closed.state != HandState::grasped) {
     HandResult reopened = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
     Motion back = reach_object;
-    back.phase = "backing off";
+    back.phase = ActionPhase::backing_off;
     back.goals = {grasp.approach_joints};
     Outcome backed = co_await move(back);
-    co_return Outcome::failure(closed.outcome.good ? "the hand closed on nothing" : closed.outcome.reason);
+    if (!closed.outcome.good) co_return closed.outcome;
+    co_return Outcome::failure("the hand closed on nothing", ActionFailure::nothing_grasped);
   }
   grasp_ = grasp;
   // Where the fingers have pushed it to: as soon as it is seen to be still.
@@ -144,7 +146,7 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
   Outcome lifted = co_await lift(object_id, for_human);
-  if (lifted.taken) co_return Outcome{};
+  if (lifted.end == MotionEnd::taken) co_return Outcome{};
   if (!lifted.good) co_return lifted;
   const auto came = [this, &object_id] {
     const SceneObject* taken = object(object_id);
@@ -154,12 +156,12 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   if (carried) co_return lifted;
   release_object();
   HandResult emptied = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
-  co_return Outcome::failure(object_id + " stayed behind when the hand went up");
+  co_return Outcome::failure(object_id + " stayed behind when the hand went up", ActionFailure::left_behind);
 }
 
 Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id, const std::string& for_human) {
   Motion up;
-  up.phase = "lift";
+  up.phase = ActionPhase::lift;
   up.straight = true;
   up.allowed = {object_id};
   up.yields_to = for_human;
@@ -170,7 +172,7 @@ Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id, const s
     if (auto joints = reach(T)) {
       up.goals = {*joints};
       Outcome outcome = co_await move(up);
-      if (outcome.good || outcome.taken) co_return outcome;
+      if (outcome.good || outcome.end == MotionEnd::taken) co_return outcome;
     }
   }
   co_return Outcome::failure("the arm cannot lift " + object_id + " straight up by " + std::to_string(settings_.lift_height()) + " m");
@@ -180,7 +182,7 @@ Routine<ManipulationPlanner::ExchangeChoice> ManipulationPlanner::choose_exchang
   auto choice = std::make_shared<ExchangeChoice>();
   const Person* whom = person(receiver);
   if (whom == nullptr) {
-    choice->outcome = Outcome::failure("person " + receiver + " is out of sight");
+    choice->outcome = Outcome::out_of_sight("person " + receiver);
     co_return *choice;
   }
   const Pose T_kept = T_world_object != nullptr ? *T_world_object : Pose::Identity();
@@ -207,9 +209,11 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
   if (held->holder == Holder::human && !in_hand(*held)) co_return Outcome{};
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
-  status_.phase = "choosing the exchange point";
+  status_.phase = ActionPhase::choosing_exchange_point;
   const bool seen = co_await waiting_.until([this, &human] { return person(human) != nullptr; }, settings_.sight_timeout());
-  if (!seen) co_return Outcome::failure(human.empty() ? "nobody is in sight" : "person " + human + " is not in sight");
+  if (!seen)
+    co_return human.empty() ? Outcome::failure("nobody is in sight")
+                            : Outcome::failure("person " + human + " is not in sight", ActionFailure::not_visible);
   const std::string receiver = person(human)->id;
   status_.human = receiver;
 
@@ -218,9 +222,9 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   bool at_exchange = takes_hold(receiver) || (object(object_id) != nullptr && object(object_id)->holder != Holder::robot);
   const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange;) {
-    status_.phase = "choosing the exchange point";
+    status_.phase = ActionPhase::choosing_exchange_point;
     const Person* whom = person(receiver);
-    if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
+    if (whom == nullptr) co_return Outcome::out_of_sight("person " + receiver);
     ExchangeChoice choice = co_await choose_exchange(receiver, nullptr);
     const ExchangeSearch& search = choice.search;
     last = choice.outcome;
@@ -230,24 +234,24 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
         refuse("exchange point", last.reason);
         co_return last;
       }
-      status_.phase = "waiting for " + receiver + " to come within reach";
+      status_.phase = ActionPhase::waiting_for_person;
       co_await waiting_.pause(kLookAgain);
       continue;
     }
     ++attempt;
     if (!last.good) continue;
     Motion carry;
-    carry.phase = "carry";
+    carry.phase = ActionPhase::carry;
     carry.speed = settings_.carry_speed();
     carry.allowed = {object_id};
     carry.yields_to = receiver;
     whom = person(receiver);
-    if (whom == nullptr) co_return Outcome::failure("person " + receiver + " is out of sight");
+    if (whom == nullptr) co_return Outcome::out_of_sight("person " + receiver);
     lead_to(search, *whom, carry);
     status_.exchange_point = search.poses.front().T_world_object.translation();
     last = co_await move(carry);
-    at_exchange = last.good || last.taken;
-    if (last.taken) break;
+    at_exchange = last.good || last.end == MotionEnd::taken;
+    if (last.end == MotionEnd::taken) break;
     if (!at_exchange || settings_.live_period() <= 0 || attempt >= settings_.motion_attempts()) continue;
     const Vector here = RobotModel::part(posture(), arm_);
     const bool elsewhere = co_await follow(carry, here);
@@ -255,7 +259,7 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   }
   if (!at_exchange) co_return last;
 
-  status_.phase = "offer";
+  status_.phase = ActionPhase::offer;
   status_.exchange_point = (T_world_tool() * attachment_.T_tool_object).translation();
   status_.exchange_engaged = true;
   Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
@@ -265,12 +269,13 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     const Vector grip = RobotModel::part(set_point_, fingers_);
     HandResult kept = co_await hand(HandAction::grasp, grip, settings_.hand_timeout());
     if (!kept.outcome.good) refuse("keeping the object", kept.outcome.reason);
-    co_return Outcome::failure(released.outcome.good ? receiver + " did not take " + object_id + " within " +
-                                                           std::to_string(static_cast<int>(settings_.offer_timeout())) + " s"
-                                                     : released.outcome.reason);
+    if (!released.outcome.good) co_return released.outcome;
+    co_return Outcome::failure(
+        receiver + " did not take " + object_id + " within " + std::to_string(static_cast<int>(settings_.offer_timeout())) + " s",
+        ActionFailure::not_taken);
   }
   release_object();
-  status_.phase = "retreat";
+  status_.phase = ActionPhase::retreat;
   co_await waiting_.pause(0.5);
   Outcome back = co_await retreat(receiver, object_id);
   if (!back.good) refuse("retreat", back.reason);

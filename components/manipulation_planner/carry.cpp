@@ -1,6 +1,7 @@
 // Two hands at once on what is too heavy for one, a closed chain: up, over and down, level on the way.
 #include <algorithm>
 
+#include "common/messages/names.hpp"
 #include "common/model/srs_arm.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
@@ -45,7 +46,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
       HandResult opened = co_await hand(HandAction::move, step->grasp.pregrasp_joints, settings_.hand_timeout());
       if (off.good && opened.outcome.good) {
         Motion back;
-        back.phase = "backing off";
+        back.phase = ActionPhase::backing_off;
         back.straight = true;
         back.goals = {step->grasp.approach_joints};
         back.allowed = {object_id};
@@ -57,7 +58,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   if (!done.good) co_return done;
   done = co_await use_arm(first.to);
   if (!done.good) co_return done;
-  status_.phase = "lift";
+  status_.phase = ActionPhase::lift;
   const auto raised = [this](Pose T, double by) {
     T.translation().z() += by;
     return T;
@@ -66,7 +67,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   std::vector<Pose> up{raised(T_start, settings_.lift_height())};
   done = co_await move_together(object_id, second.to, up);
   if (done.good) {
-    status_.phase = "carry";
+    status_.phase = ActionPhase::carry;
     std::vector<Pose> over{raised(down.T_world_object, settings_.lift_height()), raised(down.T_world_object, kAbovePlace)};
     done = co_await move_together(object_id, second.to, over);
   }
@@ -74,8 +75,8 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   const SceneObject* now = object(object_id);
   const bool off_the_ground = now == nullptr || now->T_world_object.translation().z() > T_start.translation().z() + kSame;
   if (!done.good && off_the_ground) {
-    refuse(status_.phase, done.reason);
-    status_.phase = "put back";
+    refuse(text_of(status_.phase), done.reason);
+    status_.phase = ActionPhase::put_back;
     std::vector<Pose> back{raised(T_start, kAbovePlace)};
     Outcome lowered = co_await move_together(object_id, second.to, back);
     if (!lowered.good) co_return lowered;
@@ -86,7 +87,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
   for (const std::string& arm : arms) {
     done = co_await use_arm(arm);
     if (!done.good) co_return done;
-    status_.phase = "letting go";
+    status_.phase = ActionPhase::letting_go;
     HandResult opened = co_await hand(HandAction::release, RobotModel::part(down.after, fingers_), settings_.hand_timeout());
     if (!opened.outcome.good) co_return opened.outcome;
   }
@@ -112,16 +113,16 @@ Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id
     const bool as_planned = thing != nullptr && (thing->T_world_object.translation() - step->T_world_object.translation()).norm() < kSame;
     if (!grasp && as_planned) grasp = step->grasp;  // at the end of a joint's range only the place as it was seen then is reached
     if (!grasp) co_return Outcome::failure(step->to + " does not reach " + object_id + " where it stands now");
-    status_.phase = "opening the hand";
+    status_.phase = ActionPhase::opening_hand;
     HandResult open = co_await hand(HandAction::move, grasp->pregrasp_joints, settings_.hand_timeout());
     if (!open.outcome.good) co_return open.outcome;
     Motion approach;
-    approach.phase = "approach";
+    approach.phase = ActionPhase::approach;
     approach.goals = {grasp->approach_joints};
     done = co_await move(approach);
     if (!done.good) co_return done;
     Motion reach_object;
-    reach_object.phase = "reaching the object";
+    reach_object.phase = ActionPhase::reaching_object;
     reach_object.straight = true;
     reach_object.goals = {grasp->arm_joints};
     reach_object.allowed = {object_id};
@@ -145,10 +146,11 @@ Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id
 }
 
 Routine<Outcome> ManipulationPlanner::grip(const Grasp& grasp, double share_of_mass) {
-  status_.phase = "grasp";
+  status_.phase = ActionPhase::grasp;
   HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, 2 * settings_.hand_timeout(), &grasp.hand_effort, share_of_mass);
   if (!closed.outcome.good) co_return closed.outcome;
-  if (closed.state != HandState::grasped) co_return Outcome::failure("the hand " + fingers_.name + " closed on nothing");
+  if (closed.state != HandState::grasped)
+    co_return Outcome::failure("the hand " + fingers_.name + " closed on nothing", ActionFailure::nothing_grasped);
   co_return Outcome{};
 }
 
@@ -157,7 +159,7 @@ Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id
   const auto other = std::find_if(hands_.begin(), hands_.end(), [&](const Manipulator& m) { return m.name == follower; });
   if (other == hands_.end()) co_return Outcome::failure("there is no arm " + follower);
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
-  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+  if (!ready) co_return not_permitted();
   Motion together;
   together.allowed = {object_id};
   together.speed = kTogether;
@@ -182,7 +184,7 @@ Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id
     out_->trajectory_requests.push_back(request);
     co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
   }
-  if (!trajectory_reply_) co_return Outcome::failure("the trajectory planner does not answer");
+  if (!trajectory_reply_) co_return Outcome::no_answer("trajectory");
   if (!trajectory_reply_->solved) co_return Outcome::failure("both hands together: " + trajectory_reply_->reason);
   TrajectoryCommand command = command_for(trajectory_reply_->trajectory, together);
   command.axes = trajectory_reply_->axes;

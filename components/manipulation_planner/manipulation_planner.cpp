@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/messages/names.hpp"
 #include "common/model/human_body.hpp"
 
 namespace handsel::manipulation_planner {
@@ -44,6 +45,7 @@ void ManipulationPlanner::on(const ActionGoal& goal) {
     drop_action();
     status_.state = ActionState::cancelled;
     status_.exchange_engaged = false;
+    status_.failure = ActionFailure::cancelled;
     status_.reason = "cancelled on request";
     return;
   }
@@ -130,6 +132,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   if (action_ && action_.done()) {
     const Outcome& outcome = action_.result();
     status_.state = outcome.good ? ActionState::succeeded : ActionState::failed;
+    status_.failure = outcome.kind;
     status_.reason = outcome.reason;
     status_.exchange_engaged = false;
     taken_up_ = {};
@@ -180,7 +183,8 @@ void ManipulationPlanner::lose_object(Outbox& out) {
   halt(out);
   status_.state = ActionState::failed;
   status_.exchange_engaged = false;
-  status_.reason = lost + " slipped out of the hand (" + status_.phase + ")";
+  status_.failure = ActionFailure::other;
+  status_.reason = lost + " slipped out of the hand (" + phase_text(status_) + ")";
 }
 
 /// What the running motion still takes at the pace it has now, and what usually comes after it.
@@ -188,14 +192,17 @@ double ManipulationPlanner::time_to_exchange() const {
   constexpr double kNever = std::numeric_limits<double>::infinity(), kSlowest = 0.05, kReachIn = 1.5, kClose = 0.5;
   if (status_.state != ActionState::running) return kNever;
   const bool gives = status_.kind == ActionKind::give, receives = status_.kind == ActionKind::receive;
-  const std::string& phase = status_.phase;
-  if ((gives && phase == "offer") || (receives && status_.exchange_engaged && phase.rfind("waiting for", 0) == 0)) return 0;
-  if (receives && phase == "grasp") return kClose;
-  const bool on_the_way = (gives && phase == "carry") || (receives && (phase == "approach" || phase == "reaching the object"));
+  const ActionPhase phase = status_.phase;
+  const bool engaged = receives && status_.exchange_engaged;
+  if (gives && phase == ActionPhase::offer) return 0;
+  if (engaged && phase == ActionPhase::waiting_for_release) return 0;
+  if (receives && phase == ActionPhase::grasp) return kClose;
+  const bool carries = gives && phase == ActionPhase::carry, reaches = phase == ActionPhase::reaching_object;
+  const bool on_the_way = carries || (receives && (phase == ActionPhase::approach || reaches));
   if (!on_the_way || !execution_ || execution_->motion != MotionState::running || active_.trajectory != execution_->trajectory)
     return kNever;
   const double left = std::max(0.0, active_.rest.duration() - active_.time) / std::clamp(active_.speed_factor, kSlowest, 1.0);
-  return left + (phase == "approach" ? kReachIn : 0.0) + (receives ? kClose : 0.0);
+  return left + (phase == ActionPhase::approach ? kReachIn : 0.0) + (receives ? kClose : 0.0);
 }
 
 bool ManipulationPlanner::at_rest() const { return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9; }
@@ -265,12 +272,12 @@ Routine<Outcome> ManipulationPlanner::work(const std::function<void()>& job) {
   const std::uint64_t mine = ++jobs_started_;
   out_->jobs.push_back(job);
   const bool done = co_await waiting_.until([this, mine] { return jobs_done_ >= mine; }, settings_.request_timeout());
-  co_return done ? Outcome{} : Outcome::failure("the computation did not end in time");
+  co_return done ? Outcome{} : Outcome::failure("the computation did not end in time", ActionFailure::timed_out);
 }
 
 Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const std::string& object_id, const std::string& for_human,
                                                                         std::uint32_t most) {
-  status_.phase = "choosing a grasp";
+  status_.phase = ActionPhase::choosing_grasp;
   GraspRequest request;
   request.id = next_request();
   request.object = object_id;
@@ -281,7 +288,7 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const st
   const bool answered = co_await ask(&Outbox::grasp_requests, request, grasp_reply_, settings_.request_timeout());
   GraspList list;
   if (!answered) {
-    list.outcome = Outcome::failure("the grasp planner does not answer");
+    list.outcome = Outcome::no_answer("grasp");
     co_return list;
   }
   list.grasps = grasp_reply_->grasps;
@@ -321,7 +328,7 @@ Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const V
     if (length > motion.longest) planned.outcome = Outcome::failure("only a long way around leads there");
     co_return planned;
   }
-  planned.outcome = Outcome::failure("the path planner does not answer");
+  planned.outcome = Outcome::no_answer("path");
   co_return planned;
 }
 
@@ -368,7 +375,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     out_->trajectory_requests.push_back(request);
     co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
   }
-  if (!trajectory_reply_) co_return Outcome::failure("the trajectory planner does not answer");
+  if (!trajectory_reply_) co_return Outcome::no_answer("trajectory");
   if (!trajectory_reply_->solved) co_return Outcome::failure(trajectory_reply_->reason);
   for (const auto& corner : trajectory_reply_->corners) refuse(corner.what, corner.reason);
 
@@ -405,11 +412,14 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     Outcome blocked = Outcome::failure(taken             ? motion.yields_to + " takes hold of " + attachment_.object
                                        : strayed(motion) ? motion.aims_at + " was moved away"
                                                          : "the way is blocked: " + execution_->reason);
-    blocked.too_near = too_near_ && !late();
-    blocked.late = late();
-    blocked.strayed = strayed(motion);
-    blocked.came_on = blocked.strayed && motion.follows && comes_on(taken_up_.giver);
-    blocked.taken = taken;
+    if (taken)
+      blocked.end = MotionEnd::taken;
+    else if (strayed(motion))
+      blocked.end = motion.follows && comes_on(taken_up_.giver) ? MotionEnd::giver_approached : MotionEnd::target_moved;
+    else if (late())
+      blocked.end = MotionEnd::late;
+    else if (too_near_)
+      blocked.end = MotionEnd::person_too_near;
     TrajectoryCommand stop;
     stop.id = ++commands_;
     stop.epoch = execution_->epoch;
@@ -428,21 +438,26 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   co_return Outcome{};
 }
 
+Outcome ManipulationPlanner::not_permitted() const {
+  const std::string why = execution_ ? execution_->reason : "the controller is silent";
+  return Outcome::failure("no permission to move: " + why, ActionFailure::not_permitted);
+}
+
 Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
   Outcome last;
   Motion motion = asked;
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts(); ++attempt) {
     status_.phase = motion.phase;
     const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
-    if (!ready) co_return Outcome::failure("no permission to move: " + (execution_ ? execution_->reason : "the controller is silent"));
+    if (!ready) co_return not_permitted();
     const Vector start = posture();
     PlannedPath planned = co_await plan_path(start, motion);
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
-      if (last.good || last.strayed || last.taken || last.late) co_return last;
-      const Person* in_the_way = last.too_near ? person("") : nullptr;
+      if (last.good || last.is_final()) co_return last;
+      const Person* in_the_way = last.end == MotionEnd::person_too_near ? person("") : nullptr;
       if (in_the_way != nullptr) {
-        refuse(motion.phase, last.reason);
+        refuse(text_of(motion.phase), last.reason);
         const std::string who = in_the_way->id;
         Outcome freed = co_await withdraw(who, motion);
         if (freed.good) continue;
@@ -451,19 +466,19 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
     } else {
       last = planned.outcome;
       if (lost(planned.start_touches)) {
-        refuse(motion.phase, last.reason);
+        refuse(text_of(motion.phase), last.reason);
         const std::string who = planned.start_touches;
         co_await waiting_.until([this, &who] { return !lost(who); }, settings_.permission_timeout());
         continue;
       }
       if (!planned.start_touches.empty()) {
-        refuse(motion.phase, last.reason);
+        refuse(text_of(motion.phase), last.reason);
         Outcome freed = co_await withdraw(planned.start_touches, motion);
         if (freed.good) continue;
         last.reason += "; " + freed.reason;
       }
     }
-    refuse(motion.phase, last.reason);
+    refuse(text_of(motion.phase), last.reason);
     co_await waiting_.pause(0.3);
   }
   co_return last;
@@ -512,7 +527,7 @@ std::vector<Vector3> ManipulationPlanner::ways_out(const std::string& touched) c
 
 Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const Motion& next) {
   Motion out;
-  out.phase = "drawing back";
+  out.phase = ActionPhase::drawing_back;
   out.straight = true;
   out.speed = settings_.approach_speed();
   out.allowed = next.allowed;
@@ -604,7 +619,7 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
   }
   const Vector3 away = T_now.linear() * back.normalized();
   Motion motion;
-  motion.phase = "retreat";
+  motion.phase = ActionPhase::retreat;
   motion.straight = true;
   motion.allowed = {object_id};
   if (!allowed_person.empty()) motion.allowed.push_back(allowed_person);
@@ -623,7 +638,7 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
 }
 
 Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
-  status_.phase = "waiting for the scene";
+  status_.phase = ActionPhase::waiting_for_scene;
   const bool known =
       co_await waiting_.until([this] { return scene_.robot_known && execution_ && set_point_.size() == robot_->dof(); }, 10.0);
   if (!known) co_return Outcome::failure("no scene or no controller state has come");

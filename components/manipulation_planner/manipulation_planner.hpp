@@ -41,16 +41,36 @@ struct Outbox {
   std::vector<std::function<void()>> jobs;  ///< long work; call job_done() after each
 };
 
+/// How a motion of the arm ended.
+enum class MotionEnd : std::uint8_t {
+  reached,           ///< its goal
+  failed,            ///< for a reason of its own
+  person_too_near,   ///< a person is so near that the controller lets the arm go no further
+  target_moved,      ///< what it aimed at was moved
+  giver_approached,  ///< what it aimed at was moved by a step of the giver toward the hand
+  late,              ///< it took longer than it may
+  taken,             ///< the receiver takes hold of the object already
+};
+
 /// Outcome of a part of an action.
 struct Outcome {
   bool good{true};
-  std::string reason;    ///< why not, one sentence
-  bool too_near{false};  ///< because a person is so near that the controller lets it go no further
-  bool strayed{false};   ///< because what it aimed at was moved
-  bool came_on{false};   ///< likewise, by a step toward the hand
-  bool late{false};      ///< it took longer than it may
-  bool taken{false};     ///< because who is to have it takes hold of it already
-  static Outcome failure(std::string why) { return {false, std::move(why), false, false, false}; }
+  std::string reason;                       ///< why not, one sentence
+  MotionEnd end{MotionEnd::reached};        ///< failed also where no motion was part of it
+  ActionFailure kind{ActionFailure::none};  ///< of a failure: recovery is chosen by it
+  /// Returns whether the target of the motion is no longer where it was.
+  bool target_moved() const { return end == MotionEnd::target_moved || end == MotionEnd::giver_approached; }
+  /// Returns whether another attempt at the same motion is of no use.
+  bool is_final() const { return target_moved() || end == MotionEnd::taken || end == MotionEnd::late; }
+  static Outcome failure(std::string why, ActionFailure of_kind = ActionFailure::other) {
+    return {false, std::move(why), MotionEnd::failed, of_kind};
+  }
+  /// Returns this failure with the part of the action in front of its reason.
+  Outcome of(const std::string& part) const { return {good, part + ": " + reason, end, kind}; }
+  static Outcome no_answer(const std::string& planner) {
+    return failure("the " + planner + " planner does not answer", ActionFailure::no_answer);
+  }
+  static Outcome out_of_sight(const std::string& what) { return failure(what + " is out of sight", ActionFailure::not_visible); }
 };
 
 class ManipulationPlanner {
@@ -91,7 +111,7 @@ class ManipulationPlanner {
  private:
   static constexpr double kAnyLength = 1e9;
   struct Motion {
-    std::string phase;
+    ActionPhase phase{};
     std::vector<Vector> goals;  // arm axes, alternatives
     bool straight{false};
     std::vector<std::string> allowed;
@@ -315,6 +335,7 @@ class ManipulationPlanner {
   double time_to_exchange() const;  // as foreseen [s]
   bool at_rest() const;
   bool may_move() const;
+  Outcome not_permitted() const;
   Vector posture() const;  // the arm as commanded, hand and head as measured: squeezing fingers are commanded beyond what they touch
   const SceneObject* object(const std::string& id) const;
   const SceneBox* surface(const std::string& id) const;      // null: no box of that name on which things can stand

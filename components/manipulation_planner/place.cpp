@@ -53,7 +53,7 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(con
   destinations_.clear();
   GraspList list = co_await ask_grasps(object_id, "", settings_.max_grasps_onto());
   if (!list.outcome.good || surface(onto) == nullptr || object(object_id) == nullptr) co_return list;
-  status_.phase = "choosing a place";
+  status_.phase = ActionPhase::choosing_place;
   const Serving found = co_await serving(object_id, onto, list.grasps, settings_.max_grasps(), kPlaces);
   if (!found.outcome.good || found.at.empty()) {
     refuse("place",
@@ -89,13 +89,13 @@ void ManipulationPlanner::place_world(CollisionWorld& world, const Scene& scene,
 
 Routine<Outcome> ManipulationPlanner::lower(const PuttingPosture& posture) {
   Motion above;
-  above.phase = "carry";
+  above.phase = ActionPhase::carry;
   above.goals = {posture.arm_above};
   above.speed = settings_.carry_speed();
   Outcome last = co_await move(above);
   if (!last.good) co_return last;
   Motion down = above;
-  down.phase = "put down";
+  down.phase = ActionPhase::put_down;
   down.goals = {posture.arm_at};
   down.straight = true;
   down.speed = settings_.approach_speed();
@@ -108,7 +108,7 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   const SceneBox* box = surface(onto);
   if (box == nullptr) co_return Outcome::failure("there is no surface called " + onto);
   if (model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
-  status_.phase = "choosing a place";
+  status_.phase = ActionPhase::choosing_place;
   const auto chosen = std::find_if(destinations_.begin(), destinations_.end(), [&](const Destination& d) {
     return grasp_ && d.grasp == grasp_->id && d.object == object_id && d.surface == onto;
   });

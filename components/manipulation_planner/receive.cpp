@@ -150,7 +150,7 @@ Routine<std::optional<ManipulationPlanner::Offer>> ManipulationPlanner::watch_fo
   waited_long_ = false;
   const TimePoint began = waiting_.now();
   for (TimePoint since = began; waiting_.now() < patience;) {
-    status_.phase = "watching for an offer";
+    status_.phase = ActionPhase::watching_for_offer;
     const std::optional<Offer> seen = offered(wanted, giver);
     if (!seen || !offer || seen->object != offer->object || seen->giver != offer->giver) since = waiting_.now();
     offer = seen;
@@ -219,11 +219,11 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
       last = co_await take(offer->object, offer->giver, grasp, attempt);
       if (last.good) co_return last;
       refuse("grasp " + std::to_string(grasp.id), last.reason);
-      if (!last.strayed) did_not_hold.insert(grasp.id);
-      if (last.strayed || last.late || !offered(offer->object, offer->giver)) break;
+      if (!last.target_moved()) did_not_hold.insert(grasp.id);
+      if (last.target_moved() || last.end == MotionEnd::late || !offered(offer->object, offer->giver)) break;
     }
     // Who has drawn it back offers it anew where the hand leaves room for it; and from farther back other ways lead to what is held out.
-    const bool again = attempt < settings_.receive_attempts() && (still_offered() ? !last.strayed : crowds(offer->giver));
+    const bool again = attempt < settings_.receive_attempts() && (still_offered() ? !last.target_moved() : crowds(offer->giver));
     if (again) co_await make_room(offer->giver);
     patience = waiting_.now() + from_seconds(settings_.receive_timeout());
   }
@@ -232,16 +232,16 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
 
 Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const std::string& giver, const Grasp& chosen,
                                            std::uint32_t attempt) {
-  status_.phase = "planning";
+  status_.phase = ActionPhase::planning;
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
-  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+  if (!ready) co_return not_permitted();
   const Outcome out_of_reach = Outcome::failure("no posture of the arm reaches it where it is held now");
   std::optional<Grasp> grasp = aimed(object_id, chosen);
   if (!grasp) co_return out_of_reach;
   Motion approach = approach_to(object_id, giver, *grasp, attempt);
   const Vector opened = RobotModel::with(set_point_, fingers_, chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
-  if (!way.outcome.good) co_return Outcome::failure("approach: " + way.outcome.reason);
+  if (!way.outcome.good) co_return way.outcome.of("approach");
   Outcome opening = co_await tell_hand(HandAction::move, chosen.pregrasp_joints);
   if (!opening.good) co_return opening;
   Outcome last;
@@ -258,30 +258,30 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     approach = approach_to(object_id, giver, *grasp, attempt);
     last = co_await move(approach);
     if (there = put_into_hand(); there) break;
-    if (!last.good && !last.strayed) break;
-    if (last.strayed) waited_long_ = false;
-    if (last.came_on) co_await step_back(object_id, giver);
+    if (!last.good && !last.target_moved()) break;
+    if (last.target_moved()) waited_long_ = false;
+    if (last.end == MotionEnd::giver_approached) co_await step_back(object_id, giver);
     const auto drawn_back = [this] { return to_seconds(waiting_.now() - offered_at_) > kDrawnBack; };
     co_await waiting_.until([&] { return steady() || put_into_hand() || drawn_back(); }, settings_.sight_timeout());
     if (there = put_into_hand(); there) break;
     const bool offers = steady();
     last = offers ? out_of_reach : Outcome::failure(giver + " has drawn " + object_id + " back");
-    last.strayed = !offers;
+    last.end = offers ? MotionEnd::failed : MotionEnd::target_moved;
     grasp = offers ? aimed(object_id, chosen) : std::nullopt;
     if (!grasp) break;
     const Pose T_before =
         scene_.T_world_base * robot_->link_pose(RobotModel::with(set_point_, arm_, grasp->approach_joints), robot_->tool_link());
     last = Outcome::failure(object_id + " is moved about");
-    last.strayed = true;
+    last.end = MotionEnd::target_moved;
     if ((T_before.translation() - T_world_tool().translation()).norm() > kAimed) continue;
     last = co_await hand_opened();
     if (!last.good) break;
     std::vector<Grasp> this_one{*grasp};
     last = co_await keep_off_fingers(object_id, giver, this_one);
-    if (last.good && object(object_id) == nullptr) last = Outcome::failure(object_id + " is out of sight");
+    if (last.good && object(object_id) == nullptr) last = Outcome::out_of_sight(object_id);
     if (!last.good) break;
     Motion reach_object;
-    reach_object.phase = "reaching the object";
+    reach_object.phase = ActionPhase::reaching_object;
     reach_object.goals = {grasp->arm_joints};
     reach_object.straight = true;
     reach_object.allowed = {object_id, giver};
@@ -294,7 +294,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     there = last.good;
     if (there) break;
     last = co_await back_off(object_id, giver, *grasp, last);
-    if (!last.strayed || !steady()) break;
+    if (!last.target_moved() || !steady()) break;
     grasp = aimed(object_id, chosen);
     if (!grasp) break;
   }
@@ -304,7 +304,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   }
   Outcome moved;
 
-  status_.phase = "grasp";
+  status_.phase = ActionPhase::grasp;
   at_offer_ = true;
   // What lies in the hand otherwise than planned is pressed on where the fingers are.
   const bool laid_in = put_into_hand();
@@ -315,7 +315,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     moved = co_await back_off(object_id, giver, *grasp, why);
     co_return moved;
   }
-  status_.phase = "waiting for " + giver + " to let go";
+  status_.phase = ActionPhase::waiting_for_release;
   const auto mine = [this, &object_id] {
     const SceneObject* taken = object(object_id);
     return taken != nullptr && taken->holder == Holder::robot;
@@ -336,7 +336,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   grasp_ = *grasp;
   hold(*object(object_id));
   Motion back;
-  back.phase = "retreat";
+  back.phase = ActionPhase::retreat;
   back.straight = true;
   back.goals = {grasp->approach_joints};
   back.allowed = {object_id, giver};
@@ -350,7 +350,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
 ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& object_id, const std::string& giver, const Grasp& grasp,
                                                              std::uint32_t attempt) const {
   Motion approach;
-  approach.phase = "approach";
+  approach.phase = ActionPhase::approach;
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {giver};
   approach.aims_at = object_id;
@@ -420,10 +420,10 @@ Routine<Outcome> ManipulationPlanner::draw_back(const std::string& object_id, co
 /// At once, and only far enough to leave room for what they hold.
 Routine<Outcome> ManipulationPlanner::step_back(const std::string& object_id, const std::string& giver) {
   const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
-  if (!ready) co_return Outcome::failure("no permission to move: " + execution_->reason);
+  if (!ready) co_return not_permitted();
   const Vector start = posture();
   Motion back;
-  back.phase = "stepping back";
+  back.phase = ActionPhase::stepping_back;
   back.straight = true;
   back.allowed = {object_id, giver};
   for (const Vector3& way : ways_out(giver)) {
@@ -445,11 +445,11 @@ Routine<Outcome> ManipulationPlanner::step_back(const std::string& object_id, co
 
 Routine<Outcome> ManipulationPlanner::back_off(const std::string& object_id, const std::string& giver, const Grasp& grasp,
                                                const Outcome& why) {
-  status_.phase = "backing off";
+  status_.phase = ActionPhase::backing_off;
   HandResult opened = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
   if (!opened.outcome.good) refuse("backing off", opened.outcome.reason);
   Motion back;
-  back.phase = "backing off";
+  back.phase = ActionPhase::backing_off;
   back.straight = true;
   back.goals = {grasp.approach_joints};
   back.allowed = {object_id, giver};

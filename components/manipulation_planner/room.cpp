@@ -70,7 +70,7 @@ std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) cons
 
 Routine<Outcome> ManipulationPlanner::go_to_rest() {
   Motion motion;
-  motion.phase = "to rest";
+  motion.phase = ActionPhase::to_rest;
   motion.speed = attachment_.object.empty() ? 1.0 : settings_.carry_speed();
   const Vector rest = RobotModel::with(posture(), arm_, RobotModel::part(robot_->rest_posture(), arm_));
   const Person* who = person("");
@@ -84,7 +84,7 @@ Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver, bool f
   const Person* who = person(giver);
   if (who == nullptr) co_return Outcome::failure("nobody is in sight");
   Motion back;
-  back.phase = "making room";
+  back.phase = ActionPhase::making_room;
   back.goals = postures_before(*who);
   back.makes_room_for = giver;
   back.any_offer = for_offer;

@@ -65,7 +65,7 @@ Routine<Outcome> ManipulationPlanner::others_to_rest() {
 
 Routine<ManipulationPlanner::RegraspSteps> ManipulationPlanner::ask_regrasp(const std::string& object_id, const Pose& T_world_goal,
                                                                             bool both) {
-  status_.phase = both ? "choosing two grasps" : "choosing hands and grasps";
+  status_.phase = both ? ActionPhase::choosing_two_grasps : ActionPhase::choosing_hands;
   RegraspRequest request;
   request.id = next_request();
   request.object = object_id;
@@ -76,7 +76,7 @@ Routine<ManipulationPlanner::RegraspSteps> ManipulationPlanner::ask_regrasp(cons
   const bool answered = co_await ask(&Outbox::regrasp_requests, request, regrasp_reply_, settings_.regrasp_timeout());
   RegraspSteps plan;
   if (!answered) {
-    plan.outcome = Outcome::failure("the grasp planner does not answer");
+    plan.outcome = Outcome::no_answer("grasp");
     co_return plan;
   }
   plan.steps = regrasp_reply_->steps;
@@ -147,7 +147,7 @@ std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const 
 
 Routine<Outcome> ManipulationPlanner::wait_standing(const std::string& object_id) {
   if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
-  status_.phase = "looking for the object";
+  status_.phase = ActionPhase::looking_for_object;
   const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
   const auto stands = [this, &object_id] {
@@ -218,32 +218,32 @@ Routine<Outcome> ManipulationPlanner::rest_all() {
 
 /// To what the other hand holds, and closed on it; where it does not hold, the hand is opened again and off it.
 Routine<Outcome> ManipulationPlanner::take_over(const std::string& object_id, const Grasp& grasp) {
-  status_.phase = "opening the other hand";
+  status_.phase = ActionPhase::opening_other_hand;
   HandResult open = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
   if (!open.outcome.good) co_return open.outcome;
   Motion approach;
-  approach.phase = "approach with the other hand";
+  approach.phase = ActionPhase::approach_other_hand;
   approach.goals = {grasp.approach_joints};
   Outcome done = co_await move(approach);
   if (!done.good) co_return done;
   Motion reach_object;
-  reach_object.phase = "reaching the object";
+  reach_object.phase = ActionPhase::reaching_object;
   reach_object.straight = true;
   reach_object.goals = {grasp.arm_joints};
   reach_object.allowed = {object_id};
   reach_object.speed = settings_.approach_speed();
   done = co_await move(reach_object);
   if (!done.good) co_return done;
-  status_.phase = "grasp";
+  status_.phase = ActionPhase::grasp;
   HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, settings_.hand_timeout(), &grasp.hand_effort);
   if (closed.outcome.good && closed.state == HandState::grasped) co_return Outcome{};
   HandResult reopened = co_await hand(HandAction::move, grasp.pregrasp_joints, settings_.hand_timeout());
   Motion back = reach_object;
-  back.phase = "backing off";
+  back.phase = ActionPhase::backing_off;
   back.goals = {grasp.approach_joints};
   Outcome backed = co_await move(back);
   if (!closed.outcome.good) co_return closed.outcome;
-  co_return Outcome::failure("the other hand closed on nothing");
+  co_return Outcome::failure("the other hand closed on nothing", ActionFailure::nothing_grasped);
 }
 
 /// The arm in use draws what it holds to its own side, so that the others can go to rest.
@@ -263,7 +263,7 @@ Routine<Outcome> ManipulationPlanner::make_room() {
     }
     if (!farthest) continue;
     Motion draw;
-    draw.phase = "making room";
+    draw.phase = ActionPhase::making_room;
     draw.goals = {*farthest};
     draw.speed = settings_.carry_speed();
     Outcome drawn = co_await move(draw);
@@ -307,7 +307,7 @@ Routine<Outcome> ManipulationPlanner::pass(const std::string& object_id, const R
   const std::optional<Vector> meeting = meeting_posture(step);
   if (!meeting) co_return Outcome::failure("the arms do not reach the place where " + object_id + " is to change hands");
   Motion bring;
-  bring.phase = "carry to the other hand";
+  bring.phase = ActionPhase::carry_to_other_hand;
   bring.goals = {*meeting};
   bring.speed = settings_.carry_speed();
   Outcome done = co_await move(bring);
@@ -331,7 +331,7 @@ Routine<Outcome> ManipulationPlanner::pass(const std::string& object_id, const R
 
   done = co_await use_arm(step.from);
   if (!done.good) co_return done;
-  status_.phase = "letting go with the first hand";
+  status_.phase = ActionPhase::letting_go_first_hand;
   done = co_await let_go(object_id, step.q, step.after);
   if (!done.good) co_return done;
   done = co_await use_arm(step.to);
@@ -359,7 +359,7 @@ Routine<Outcome> ManipulationPlanner::let_go(const std::string& object_id, const
     const auto off = reach(T_world_tool() * T);
     if (!off) continue;
     Motion away;
-    away.phase = "retreat";
+    away.phase = ActionPhase::retreat;
     away.straight = true;
     away.goals = {*off};
     away.allowed = {object_id};

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/messages/names.hpp"
+
 namespace handsel::supervisor {
 namespace {
 
 constexpr std::size_t kMostRefusals = 64;
 constexpr const char* kRunsActions = "manipulation_planner";
+static_assert(static_cast<int>(ActionFailure::cancelled) == config::FailureRule::CANCELLED);
 
 bool only_rests(const Plan& plan) {
   return std::all_of(plan.actions.begin(), plan.actions.end(), [](const PlannedAction& a) { return a.kind == ActionKind::go_to; });
@@ -201,7 +204,7 @@ void TaskRun::step(TimePoint now, const std::vector<std::string>& missing, std::
     } else {
       watch(now, wishes);
       if (over_ || stopping_) return;
-      if (heard) return say(action->phase, wishes);
+      if (heard) return say(phase_text(*action), wishes);
       if (to_seconds(now - sent_) >= settings_.goal_retry()) send(now, go_epoch, next_id, wishes);
     }
     return;
@@ -321,7 +324,7 @@ void TaskRun::ended(TimePoint now) {
     if (!replan(now)) give_up(status_.reason.empty() ? stop_reason_ : status_.reason, now);
     return;
   }
-  if (!good) return answer_failure(action->reason, now);
+  if (!good) return answer_failure(action->failure, action->reason, now);
   last_ = *progress_.current();
   progress_.done();
   if (last_->kind != ActionKind::receive || !last_->object.empty()) return;
@@ -334,12 +337,13 @@ void TaskRun::ended(TimePoint now) {
   replan(now);
 }
 
-void TaskRun::answer_failure(const std::string& reason, TimePoint now) {
+void TaskRun::answer_failure(ActionFailure failure, const std::string& reason, TimePoint now) {
   const PlannedAction failed = *progress_.current();
   const std::string text = failed.text();
   const auto& rules = settings_.failures();
   const auto rule = std::find_if(rules.begin(), rules.end(), [&](const config::FailureRule& r) {
-    return reason.find(r.says()) != std::string::npos && (r.kind().empty() || r.kind() == name(failed.kind));
+    const bool of_failure = r.failure() == 0 || r.failure() == static_cast<int>(failure);
+    return of_failure && (r.kind().empty() || r.kind() == name(failed.kind));
   });
   const bool ruled = rule != rules.end();
   if (ruled && rule->then() == config::FailureRule::AGAIN && tries_[text] < rule->tries()) {

@@ -52,7 +52,7 @@ class TaskRun {
   void watch(TimePoint now, TaskWishes& wishes);
   void stop_action(TaskWishes& wishes);
   void ended(TimePoint now);
-  void answer_failure(const std::string& reason, TimePoint now);
+  void answer_failure(ActionFailure failure, const std::string& reason, TimePoint now);
   void give_up(const std::string& reason, TimePoint now);
   void all_done(TimePoint now);
   void finish(TaskState state, const std::string& reason);

@@ -58,7 +58,7 @@ Observer::Observer(Bus& bus) {
   watch<ActionStatus>(bus, [this, keep](const ActionStatus& action, TimePoint at) {
     const auto& seen = snapshot_.action;
     if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase || seen.sample.state != action.state) {
-      const std::string phase = action.phase.empty() ? "" : " " + action.phase;
+      const std::string phase = action.phase == ActionPhase::none ? "" : " " + phase_text(action);
       if (action.state != ActionState::idle) note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
     }
     if (!action.human.empty()) snapshot_.partner = action.human;

@@ -109,7 +109,7 @@ nlohmann::json to_json(const SystemStatus& status, const Snapshot& snapshot, Tim
     result["task"] = {{"id", task.id},     {"kind", name(task.kind)}, {"state", name(task.state)},
                       {"plan", task.plan}, {"step", task.step},       {"reason", task.reason}};
   }
-  if (snapshot.action.ever) result["phase"] = snapshot.action.sample.phase;
+  if (snapshot.action.ever) result["phase"] = phase_text(snapshot.action.sample);
   if (snapshot.execution.ever) {
     const ExecutionStatus& execution = snapshot.execution.sample;
     result["mode"] = name(execution.mode);
@@ -150,7 +150,8 @@ std::string to_text(const SystemStatus& status, const Snapshot& snapshot, TimePo
     if (task.step < task.plan.size()) text += ", step " + task.plan[task.step];
     text += (task.reason.empty() ? "" : ": " + task.reason) + "\n";
   }
-  if (snapshot.action.ever && !snapshot.action.sample.phase.empty()) text += "phase       " + snapshot.action.sample.phase + "\n";
+  if (snapshot.action.ever && snapshot.action.sample.phase != ActionPhase::none)
+    text += "phase       " + phase_text(snapshot.action.sample) + "\n";
   if (snapshot.execution.ever) {
     const ExecutionStatus& execution = snapshot.execution.sample;
     const std::string causes = cause_names(execution.causes);

@@ -300,7 +300,7 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
     case ConditionKind::cause:
       return fresh(snapshot.execution) && (", " + cause_names(execution.causes) + ", ").find(", " + subject + ", ") != std::string::npos;
     case ConditionKind::phase:
-      return fresh(snapshot.action) && snapshot.action.sample.phase == subject;
+      return fresh(snapshot.action) && phase_text(snapshot.action.sample) == subject;
     case ConditionKind::carrier:
       return fresh(snapshot.truth) && truth.carrier == subject;
     case ConditionKind::task:

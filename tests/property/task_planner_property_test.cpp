@@ -177,9 +177,15 @@ TEST(TaskPlans, supervised_end_whatever_happens) {
     rig.world = random_world(random, 6);
     const Wanted wanted = random_goal(random, rig.world);
     rig.action_time = 0.4;
-    const char* const kReasons[] = {
-        "", "", "", "", "the hand closed on nothing", "the path planner does not answer", "no path is left", "anna did not take it"};
-    rig.fails = [&](const ActionGoal&) { return std::string(kReasons[between(random, 0, 7)]); };
+    const Failure kFailures[] = {{},
+                                 {},
+                                 {},
+                                 {},
+                                 {"the hand closed on nothing", ActionFailure::nothing_grasped},
+                                 {"the path planner does not answer", ActionFailure::no_answer},
+                                 {"no path is left"},
+                                 {"anna did not take it", ActionFailure::not_taken}};
+    rig.fails = [&](const ActionGoal&) { return kFailures[between(random, 0, 7)]; };
     rig.run(2.5);
     rig.supervisor.on(wanted.goal(), rig.now);
     bool over = false;

@@ -63,8 +63,9 @@ class BusySystem {
   /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too, and what they press on moves the arm for
   /// as long as they do.
   bool travels() {
-    const std::string& phase = now().action.sample.phase;
-    return moves() && (phase == "approach" || phase == "carry" || phase == "to rest");
+    const ActionPhase phase = now().action.sample.phase;
+    const bool approaches = phase == ActionPhase::approach;
+    return moves() && (approaches || phase == ActionPhase::carry || phase == ActionPhase::to_rest);
   }
   bool moves() { return now().truth.ever && now().truth.sample.robot_moving; }
   void kill(const std::string& process) {

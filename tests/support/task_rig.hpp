@@ -23,6 +23,13 @@ inline config::SupervisorSettings rig_settings() {
   return s;
 }
 
+/// How an action fails; without a reason it does not.
+struct Failure {
+  std::string reason;
+  ActionFailure kind{ActionFailure::other};
+  Failure(const char* why = "", ActionFailure of = ActionFailure::other) : reason(why), kind(of) {}
+};
+
 /// Plays the rest of the system: spark tells what holds in `world`, the controller obeys Go, the manipulation planner needs `action_time`
 /// for an action and fails as `fails` says; by hand where the test ends actions itself.
 class TaskRig {
@@ -98,7 +105,7 @@ class TaskRig {
   ActionStatus action;
   bool spark_alive{true}, planner_alive{true};
   double action_time{1.0};
-  std::function<std::string(const ActionGoal&)> fails;  ///< reason; empty: it does not
+  std::function<Failure(const ActionGoal&)> fails;
   Go go;
   SafetyState safety;
   std::vector<ActionGoal> goals;
@@ -153,9 +160,11 @@ class TaskRig {
   }
   void act() {
     if (by_hand_ || !planner_alive || !go.allowed || action.state != ActionState::running || to_seconds(now - begun_) < action_time) return;
-    action.reason = fails ? fails(current_) : "";
+    const Failure failure = fails ? fails(current_) : Failure();
+    action.reason = failure.reason;
+    action.failure = failure.reason.empty() ? ActionFailure::none : failure.kind;
     if (action.reason.empty() && !world.perform(current_.kind, current_.object, current_.human, current_.surface))
-      action.reason = "it cannot be done here";
+      action.reason = "it cannot be done here", action.failure = ActionFailure::other;
     action.state = action.reason.empty() ? ActionState::succeeded : ActionState::failed;
   }
   bool by_hand_;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "common/cost/human_cost.hpp"
+#include "common/messages/names.hpp"
 #include "common/model/human_body.hpp"
 #include "components/path_planner/random.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
@@ -57,7 +58,7 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
   seat.subscribe<ActionStatus>([&](const ActionStatus& s, const Receipt&) { action = s; });
   seat.subscribe<ActiveTrajectory>([&](const ActiveTrajectory& a, const Receipt&) { active = a; });
   seat.subscribe<TrajectoryCommand>([&](const TrajectoryCommand& c, const Receipt&) {
-    if (action.phase != "carry" || c.axes.empty()) return;
+    if (action.phase != ActionPhase::carry || c.axes.empty()) return;
     if (first_path != 0) {
       out.switches += c.switch_at > 0;
       return;
@@ -66,7 +67,7 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
     first_point = action.exchange_point;
   });
   seat.every(from_seconds(0.01), [&](TimePoint) {
-    if (action.phase != "carry" || active.trajectory == 0) return;
+    if (action.phase != ActionPhase::carry || active.trajectory == 0) return;
     if (first_path != 0 && active.trajectory >= first_path) carrying += 0.01;
     const bool on_way = active.time > 0.2 && active.time < active.rest.duration() - 0.3;
     still = on_way && active.velocity.norm() < 1e-3 ? still + 0.01 : 0;
@@ -89,13 +90,13 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
   seat.after(from_seconds(3.0), [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug"}); });
   const auto ended = [&] {
     const auto& tasks = system.snapshot().tasks;
-    return action.phase == "offer" || (tasks.count(1) != 0 && tasks.at(1).state == TaskState::failed);
+    return action.phase == ActionPhase::offer || (tasks.count(1) != 0 && tasks.at(1).state == TaskState::failed);
   };
   system.network().run_until(ended, TimePoint(from_seconds(80)));
-  out.offered = action.phase == "offer";
+  out.offered = action.phase == ActionPhase::offer;
   out.moved = (action.exchange_point - first_point).norm();
   const auto& tasks = system.snapshot().tasks;
-  if (!out.offered) out.ended = action.phase + ": " + (tasks.count(1) != 0 ? tasks.at(1).reason : "no task");
+  if (!out.offered) out.ended = phase_text(action) + ": " + (tasks.count(1) != 0 ? tasks.at(1).reason : "no task");
   out.reached = people.people.size() == 1 && within_reach(people.people[0], action.exchange_point);
   out.aside = std::abs(action.exchange_point.y() - body()[static_cast<std::size_t>(body_joint_index("torso"))].position.y());
   return out;

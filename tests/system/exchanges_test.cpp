@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/resources.hpp"
+#include "common/messages/names.hpp"
 #include "deploy/handsel/performer.hpp"
 #include "deploy/handsel/report.hpp"
 #include "deploy/handsel/system.hpp"
@@ -59,7 +60,7 @@ Performance perform(const std::string& name, std::uint64_t seed, const std::opti
     system.wait(kPatience, [&] {
       return performer.finished() || (performer.started() && session.bus().now() - performer.begin() > from_seconds(death->at));
     });
-    out.killed_in = session.snapshot().action.sample.phase;
+    out.killed_in = phase_text(session.snapshot().action.sample);
     if (const pid_t pid = system.launcher().pid(death->process); pid > 0) ::kill(pid, SIGKILL);
   }
   out.over = system.wait(kPatience, [&] { return performer.finished(); });

@@ -123,7 +123,7 @@ Outcome Life::strike(const Blow& blow) {
   });
   const GroundTruth before = now().truth.sample;
   const pid_t old = system_.launcher().pid(blow.process);
-  out.phase = now().action.sample.phase;
+  out.phase = phase_text(now().action.sample);
   const TimePoint struck = monotonic_now();
   ::kill(old, blow.signal);
   if (until(from_seconds(3 * kBack), [&] { return is_back(blow.process, old); })) out.back = to_seconds(monotonic_now() - struck);

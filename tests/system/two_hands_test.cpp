@@ -10,6 +10,7 @@
 
 #include "common/config/resources.hpp"
 #include "common/config/scenario.pb.h"
+#include "common/messages/names.hpp"
 #include "deploy/handsel/lockstep_system.hpp"
 #include "tests/support/duo_stage.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -59,8 +60,8 @@ Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = Ta
   auto goals = seat.advertise<TaskGoal>();
   bool started = false;
   seat.subscribe<ActionStatus>([&](const ActionStatus& s, const Receipt&) {
-    if (s.state == ActionState::running && !s.phase.empty() && (run.phases.empty() || run.phases.back() != s.phase))
-      run.phases.push_back(s.phase);
+    const bool runs = s.state == ActionState::running && s.phase != ActionPhase::none;
+    if (runs && (run.phases.empty() || run.phases.back() != phase_text(s))) run.phases.push_back(phase_text(s));
   });
   seat.subscribe<GroundTruth>([&](const GroundTruth& t, const Receipt&) {
     if (!started) run.T_start = t.T_world_object;

@@ -13,7 +13,7 @@ TEST(ManipulationPlanner, TheHandOpensOnItsWayWhichIsPlannedForItOpened) {
   const double closed = RobotModel::part(rig.q, rig.robot->require_group("hand"))[0];
   rig.start(ActionKind::pick);
   rig.run_until("approach");
-  ASSERT_EQ(rig.planner.status().phase, "approach");
+  ASSERT_EQ(phase_text(rig.planner.status()), "approach");
   for (int i = 0; i < 5; ++i) rig.cycle();
   EXPECT_EQ(rig.execution.motion, MotionState::running);
   EXPECT_EQ(rig.execution.hand, HandState::moving);
@@ -57,7 +57,7 @@ TEST(ManipulationPlanner, TheObjectRisesWhenLifted) {
   rig.start(ActionKind::pick);
   double before = 0;
   for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
-    if (rig.planner.status().phase == "grasp") before = rig.tool().translation().z();
+    if (phase_text(rig.planner.status()) == "grasp") before = rig.tool().translation().z();
     rig.cycle();
   }
   EXPECT_GT(rig.tool().translation().z() - before, 0.1);
@@ -71,8 +71,8 @@ TEST(ManipulationPlanner, GivesWithinReachOfThePersonAndEngagesThemOnlyAtTheOffe
   bool engaged_before_offer = false, engaged_at_offer = false;
   for (int i = 0; i < 2000 && (i < 5 || rig.planner.status().state == ActionState::running); ++i) {
     const ActionStatus& status = rig.planner.status();
-    if (status.phase == "carry") engaged_before_offer |= status.exchange_engaged;
-    if (status.phase == "offer") engaged_at_offer |= status.exchange_engaged;
+    if (phase_text(status) == "carry") engaged_before_offer |= status.exchange_engaged;
+    if (phase_text(status) == "offer") engaged_at_offer |= status.exchange_engaged;
     rig.cycle();
   }
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
@@ -184,20 +184,20 @@ TEST(ManipulationPlanner, NoGraspsIsAReasonNotACrash) {
 TEST(ManipulationPlanner, ADeadPlannerIsAskedAgainAndNamedInTheEnd) {
   Rig rig;
   rig.grasp_planner_lives = false;
-  rig.fails_to_pick("grasp planner");
+  rig.fails_to_pick("grasp planner", ActionFailure::no_answer);
 }
 
 TEST(ManipulationPlanner, AnEmptyHandBacksOffAndSaysSo) {
   Rig rig;
   rig.grasp_holds = false;
-  rig.fails_to_pick("closed on nothing");
+  rig.fails_to_pick("closed on nothing", ActionFailure::nothing_grasped);
   EXPECT_EQ(rig.phases.back(), "backing off");
 }
 
 TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
   Rig rig;
   rig.object_comes = false;
-  rig.fails_to_pick("stayed behind");
+  rig.fails_to_pick("stayed behind", ActionFailure::left_behind);
   EXPECT_FALSE(rig.planner.status().holding);
   EXPECT_GT(std::count(rig.phases.begin(), rig.phases.end(), "lift"), 1) << "it is tried again";
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/resources.hpp"
+#include "common/messages/names.hpp"
 #include "common/model/human_body.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/smooth.hpp"
@@ -54,7 +55,7 @@ class Rig {
   }
 
   void run_until(const std::string& phase) {
-    for (int i = 0; i < 1500 && planner.status().phase != phase; ++i) cycle();
+    for (int i = 0; i < 1500 && phase_text(planner.status()) != phase; ++i) cycle();
   }
 
   void cycle() {
@@ -94,7 +95,8 @@ class Rig {
     for (auto& command : out.trajectories) obey(command);
     for (auto& command : out.hand_commands) obey(command);
     if (execution.hand == HandState::moving && --opening == 0) execution.hand = HandState::idle;
-    if (out.hand_commands.empty() && planner.status().phase == "offer" && person_takes) execution.hand = HandState::released;
+    const bool offers = planner.status().phase == ActionPhase::offer;
+    if (out.hand_commands.empty() && offers && person_takes) execution.hand = HandState::released;
   }
 
   void answer(const GraspRequest& request) {
@@ -159,7 +161,7 @@ class Rig {
     planner.on(reply);
   }
   void obey(const TrajectoryCommand& command) {
-    phases.push_back(planner.status().phase);
+    phases.push_back(phase_text(planner.status()));
     allowed.push_back(command.allowed_contacts);
     execution.trajectory = command.id;
     if (moves) {
@@ -211,11 +213,12 @@ class Rig {
     scene.objects[0].T_world_object = make_pose({1.25, 0.1, 1.1});
     facts.facts.clear();
   }
-  void fails_to_pick(const std::string& reason) {
+  void fails_to_pick(const std::string& reason, ActionFailure kind = ActionFailure::other) {
     start(ActionKind::pick);
     run(90);
     EXPECT_EQ(planner.status().state, ActionState::failed);
     EXPECT_NE(planner.status().reason.find(reason), std::string::npos) << planner.status().reason;
+    EXPECT_EQ(planner.status().failure, kind) << name(planner.status().failure);
   }
   Pose tool() const { return scene.T_world_base * robot->link_pose(q, robot->tool_link()); }
 

@@ -84,7 +84,10 @@ TEST(Supervisor, WhoIsOutOfSightForAMomentIsWaitedForWhoWasNeverThereIsNot) {
 
 TEST(Supervisor, AnUntakenObjectIsPutBackAndTheTaskFailsWithTheFirstReason) {
   TaskRig rig;
-  rig.fails = [](const ActionGoal& goal) { return goal.kind == ActionKind::give ? "anna did not take mug within 15 s" : ""; };
+  rig.fails = [](const ActionGoal& goal) {
+    if (goal.kind != ActionKind::give) return Failure();
+    return Failure("anna did not take mug within 15 s", ActionFailure::not_taken);
+  };
   rig.run(0.5);
   rig.give(1);
   ASSERT_TRUE(rig.finish());
@@ -99,7 +102,10 @@ TEST(Supervisor, AnUntakenObjectIsPutBackAndTheTaskFailsWithTheFirstReason) {
 TEST(Supervisor, WhenNobodyIsNamedAnotherPersonIsAsked) {
   TaskRig rig;
   rig.world.people["bert"] = false;
-  rig.fails = [](const ActionGoal& goal) { return goal.human == "anna" && goal.kind == ActionKind::give ? "anna did not take mug" : ""; };
+  rig.fails = [](const ActionGoal& goal) {
+    const bool to_anna = goal.human == "anna" && goal.kind == ActionKind::give;
+    return to_anna ? Failure("anna did not take mug", ActionFailure::not_taken) : Failure();
+  };
   rig.run(0.5);
   rig.give(1, "");
   ASSERT_TRUE(rig.finish());
@@ -108,10 +114,14 @@ TEST(Supervisor, WhenNobodyIsNamedAnotherPersonIsAsked) {
   EXPECT_EQ(rig.line("give mug to anna"), "failed: anna did not take mug");
 }
 
-TEST(Supervisor, AFailureIsAnsweredByItsReason) {
+TEST(Supervisor, a_failure_is_answered_by_its_kind) {
   TaskRig rig;
   int picks = 0;
-  rig.fails = [&](const ActionGoal& goal) { return goal.kind == ActionKind::pick && ++picks < 3 ? "the hand closed on nothing" : ""; };
+  rig.fails = [&](const ActionGoal& goal) {
+    const bool empty = goal.kind == ActionKind::pick && ++picks < 3;
+    if (!empty) return Failure();
+    return Failure("nothing is between the fingers", ActionFailure::nothing_grasped);
+  };
   rig.run(0.5);
   rig.ask(TaskKind::pick, "mug");
   ASSERT_TRUE(rig.finish());

@@ -83,7 +83,7 @@ export interface TaskStatus { id: bigint; kind: number; state: number; plan: str
 export interface ActionStatus {
   kind: number;
   state: number;
-  phase: string;
+  phase: number;
   object: string;
   human: string;
   holding: boolean;

@@ -101,7 +101,7 @@ export class Panels {
     put("task-state", task ? state : "");
     byId("task-state").dataset.state = state;
     const running = action && link.word("ActionState", action.state) === "running";
-    put("phase", running ? action.phase : "");
+    put("phase", running ? link.word("ActionPhase", action.phase) : "");
     rows("plan", (task?.tree ?? []).map(({ text, depth, state, reason }) => {
       const how = link.word("StepState", state);
       const why = depth > 0 && reason ? ` (${reason})` : "";
