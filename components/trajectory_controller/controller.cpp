@@ -13,7 +13,6 @@ namespace handsel::trajectory_controller {
 namespace {
 
 constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest stop the robot rests
-constexpr double kBent = 0.06;        // [rad] load and touch bend a robot at rest less than this
 constexpr double kRobotGone = 0.5;    // [s] without a sample: what comes then may be another robot side, somewhere else
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
@@ -62,6 +61,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
       runner_(settings.period),
       movers_(static_cast<std::size_t>(robot_->dof())),
       contact_(settings.contact, trajectory_axes(*robot_)),
+      reference_(trajectory_axes(*robot_), robot_->dof()),
       modes_(settings.timeouts),
       proof_(settings.proof, *robot_, robot_capsules(*robot_)),
       reach_limit_(proof_),
@@ -91,7 +91,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   effort_ = Vector::Zero(n);
   next_ = set_point_;
   finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = Vector::Zero(n);
-  reference_seen_ = yield_from_ = away_ = Vector::Zero(n);
+  yield_from_ = away_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
@@ -115,7 +115,7 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bo
   if (ready_ && !restarted) return;
   // The posture of a robot side that has just come up is the first set-point.
   ready_ = true;
-  const Vector& posture = rests_at_reference() ? state.reference : state.position;
+  const Vector& posture = !settings_.dry_run && reference_.reported(state) ? state.reference : state.position;
   set_point_ = rest_state(posture);
   for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), posture[i]);
   next_ = set_point_;
@@ -461,47 +461,42 @@ void Controller::step_head() noexcept {
   head_paused_ = !may_move;
 }
 
-bool Controller::rests_at_reference() const noexcept {
-  const Vector& reference = state_.reference;
-  if (settings_.dry_run || reference.size() != state_.position.size()) return false;
-  return std::all_of(arm_axes_.begin(), arm_axes_.end(),
-                     [&](int axis) { return std::abs(reference[axis] - state_.position[axis]) < kBent; });
-}
-
-bool Controller::reference_left_set_points() const noexcept {
-  constexpr double kSame = 1e-9;  // [rad]
-  return std::any_of(arm_axes_.begin(), arm_axes_.end(),
-                     [&](int axis) { return std::abs(state_.reference[axis] - set_point_.position[axis]) > kSame; });
+bool Controller::moves_nothing() const noexcept {
+  return apart() && !settings_.dry_run && reference_.state() == RobotReference::State::resting;
 }
 
 void Controller::resync(TimePoint now) noexcept {
-  const bool wanted = settings_.dry_run || verdict_.mode == Mode::fault || !follows();
+  using State = RobotReference::State;
+  const bool stale = robot_seen_.age(now) > settings_.timeouts.robot_state;
+  if (stale) reference_.forget();
+  if (cycles_ % RobotReference::kInterval == 0 && !stale) reference_.look(state_, set_point_.position, follows());
+  const bool wanted = settings_.dry_run || apart();
   if (!wanted) adopted_ = false;
-  if (!wanted || arm_ != Arm::standing || !at_rest() || robot_seen_.age(now) > settings_.timeouts.robot_state || cycles_ % 20 != 0) return;
+  if (!wanted || arm_ != Arm::standing || !at_rest() || stale || cycles_ % RobotReference::kInterval != 0) return;
   // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
   // that rest at the reference move nothing; they stay while the reference moves. Where the
-  // reference is not known, set-points are taken once to the posture the robot came to rest in:
-  // if they followed a sagging arm or a bent finger, the robot would creep.
-  constexpr double kRests = 0.05, kExact = 1e-12;  // [rad/s], [rad]
+  // reference is not known, or follows under a fault, set-points are taken once to the posture the
+  // robot came to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
+  constexpr double kRests = 0.05, kDeadBand = 0.002, kExact = 1e-12;  // [rad/s], [rad], [rad]
   const bool joins = state_.mode == DriveMode::enabled && !settings_.dry_run;
-  // Under a fault, a reference at the set-points is that of a robot side that follows: there the
-  // measured posture counts.
-  const bool at_reference = rests_at_reference() && (!follows() || reference_left_set_points());
-  const bool reference_rests = at_reference && reference_seen_ == state_.reference;
-  if (at_reference) reference_seen_ = state_.reference;
-  const bool rests = std::all_of(arm_axes_.begin(), arm_axes_.end(),
-                                 [&](int axis) { return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests; });
-  const double dead_band = joins && rests && adopted_ ? kBent : 0.002;
-  adopted_ = joins && rests;
+  const auto rests = [&](int axis) { return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests; };
+  const auto reached = [&](int axis) {
+    return std::abs(inside(axis, state_.position[axis]) - movers_[static_cast<std::size_t>(axis)].target()) <= kDeadBand;
+  };
+  const bool may_adopt = joins && std::all_of(arm_axes_.begin(), arm_axes_.end(), rests);
+  adopted_ = may_adopt && (adopted_ || std::all_of(arm_axes_.begin(), arm_axes_.end(), reached));
+  const double dead_band = adopted_ ? RobotReference::kBent : kDeadBand;
+  const bool at_reference = moves_nothing();
   const auto go_there = [&](int axis) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
     const double target = inside(axis, at_reference ? state_.reference[axis] : state_.position[axis]);
-    if (at_reference && !reference_rests) return;
     if (std::abs(target - mover.target()) > (at_reference ? kExact : dead_band))
       mover.go_to(target, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
   };
-  for (int axis : arm_axes_) go_there(axis);
-  for (int axis : head_axes_) go_there(axis);
+  if (settings_.dry_run || reference_.state() != State::moving) {
+    for (int axis : arm_axes_) go_there(axis);
+    for (int axis : head_axes_) go_there(axis);
+  }
   // The fingers stay where they came to rest: what they hold bends them, and a person who holds it too moves them all the time.
   for (Hand& hand : hands_) hand.executor.follow(state_.position, joins ? settings_.hand_rejoin : dead_band);
 }

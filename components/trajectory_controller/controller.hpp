@@ -22,6 +22,7 @@
 #include "components/trajectory_controller/mode_machine.hpp"
 #include "components/trajectory_controller/path_runner.hpp"
 #include "components/trajectory_controller/reach_limit.hpp"
+#include "components/trajectory_controller/robot_reference.hpp"
 #include "components/trajectory_controller/setpoint_check.hpp"
 #include "components/trajectory_controller/stop_proof.hpp"
 #include "components/trajectory_controller/stop_space.hpp"
@@ -185,10 +186,10 @@ class Controller {
   bool attention_silent(TimePoint now) const noexcept;
   /// Whether the robot side follows set-points: it may stand although its drives are enabled.
   bool follows() const noexcept { return state_.mode == DriveMode::enabled && state_.refusal.empty(); }
-  /// Returns whether the robot side reports its reference and the arm may rest there.
-  bool rests_at_reference() const noexcept;
-  /// Returns whether the reference of an axis of the arm differs from the last set-point.
-  bool reference_left_set_points() const noexcept;
+  /// Returns whether set-points and robot may be at different places: under a fault, or stopped.
+  bool apart() const noexcept { return verdict_.mode == Mode::fault || !follows(); }
+  /// Returns whether the robot side rests elsewhere, so that set-points do not move the robot.
+  bool moves_nothing() const noexcept;
   void check_last() noexcept;
   void prove_stop(TimePoint now) noexcept;
   void keep_observed(TimePoint now) noexcept;
@@ -226,7 +227,6 @@ class Controller {
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
-  Vector reference_seen_;  // of the robot side, when last looked at
   bool adopted_{};         // the measured posture, since the robot side last followed
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};
@@ -263,6 +263,7 @@ class Controller {
   bool yielding_{}, yield_waits_{}, held_before_{}, retreating_{};
   double retreat_share_{};    // of its speed that the guard allows
   Vector yield_from_, away_;  // away_: motion of the axes that leads away from the nearest person, largest 1
+  RobotReference reference_;
   ModeMachine modes_;
   ModeVerdict verdict_;
   GuardVerdict guard_verdict_, verdict_now_, verdict_near_, verdict_far_, nearest_;

@@ -1,0 +1,44 @@
+// Where the servos of the robot side hold, as the robot side reports it. Pure.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/messages/robot.hpp"
+
+namespace handsel::trajectory_controller {
+
+/// Tells whether set-points move the robot: they do not while its reference rests elsewhere. A robot
+/// side can stop without reporting it, so the reference decides, not the mode alone. Own method.
+class RobotReference {
+ public:
+  enum class State : std::uint8_t {
+    unknown,   ///< not reported, or too far from the measured configuration
+    followed,  ///< set-points are followed, as far as one can tell
+    moving,    ///< the robot side does not follow; its reference comes to rest or to the set-points
+    resting,   ///< the reference has come to rest; set-points move nothing until they rest near it
+  };
+
+  /// `axes`: of the arm. `dof`: number of axes of the robot.
+  RobotReference(std::vector<int> axes, int dof);
+
+  /// Looks at the newest state, at intervals of `kInterval` cycles. `follows`: the robot side says so.
+  void look(const RobotState& state, const Vector& set_point, bool follows) noexcept;
+  /// Forgets what was seen: the newest state is too old.
+  void forget() noexcept { state_ = State::unknown; }
+  State state() const noexcept { return state_; }
+  /// Returns whether the reference is reported and the measured arm may rest there.
+  bool reported(const RobotState& state) const noexcept;
+
+  static constexpr double kBent = 0.06;  ///< [rad] load and touch bend a robot at rest less than this
+  static constexpr int kInterval = 20;   ///< [cycles]
+
+ private:
+  double farthest(const Vector& a, const Vector& b) const noexcept;
+
+  std::vector<int> axes_;
+  Vector seen_;
+  State state_{State::unknown};
+};
+
+}  // namespace handsel::trajectory_controller
