@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <functional>
 #include <memory>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "common/config/resources.hpp"
+#include "common/messages/names.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/stop.hpp"
 #include "deploy/handsel/performer.hpp"
@@ -113,8 +115,14 @@ class BusySystem {
   }
   double deviation() const { return deviation_; }
   /// What has happened since mark().
-  std::string timeline() const {
+  std::string timeline() {
     std::string out;
+    const GroundTruth& truth = now().truth.sample;
+    const Vector3 at = truth.T_world_object.translation();
+    char text[160];
+    std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n", truth.object.c_str(), at.x(), at.y(), at.z(),
+                  truth.carrier.c_str());
+    out += text;
     for (const TimelineEvent& event : events_) out += "  " + std::to_string(to_seconds(event.at - marked_at_)) + " s  " + event.text + "\n";
     return out;
   }
@@ -123,9 +131,22 @@ class BusySystem {
 
  private:
   void watch(const RobotState& state) {
-    if (marked_.size() == 0) marked_ = state.position;
-    for (const int axis : arm_) deviation_ = std::max(deviation_, std::abs(state.position[axis] - marked_[axis]));
+    if (marked_.size() == 0) marked_ = state.position, marked_reference_ = state.reference;
+    for (const int axis : arm_) {
+      const double off = state.position[axis] - marked_[axis];
+      for (const double step : {5e-4, 5e-3, 2e-2})
+        if (deviation_ < step && std::abs(off) >= step) note_motion(state, axis, off);
+      deviation_ = std::max(deviation_, std::abs(off));
+    }
     if (now().active.ever) fastest_ = std::max(fastest_, std::abs(now().active.sample.speed_factor));
+  }
+  /// Writes into the timeline that an axis has moved though nothing should.
+  void note_motion(const RobotState& state, int axis, double off) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    std::string text = "axis " + std::to_string(axis) + " has moved by " + std::to_string(off);
+    if (state.reference.size() > i) text += ", its reference by " + std::to_string(state.reference[i] - marked_reference_[i]);
+    text += " rad, " + std::string(handsel::kDriveModeNames[static_cast<std::size_t>(state.mode)]) + " " + state.refusal;
+    events_.push_back({monotonic_now(), text});
   }
   /// Gives the next task when the last one is over; a supervisor that was started anew is asked again.
   void keep_busy() {
@@ -155,7 +176,7 @@ class BusySystem {
   static constexpr std::size_t kMaxEvents = 1000;
   std::vector<TimelineEvent> events_;
   TimePoint marked_at_{};
-  Vector marked_;
+  Vector marked_, marked_reference_;
   double deviation_{}, fastest_{};
 };
 
