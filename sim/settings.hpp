@@ -6,7 +6,7 @@
 #include "sim/grip.hpp"
 #include "sim/person_hand.hpp"
 #include "sim/robot_body.hpp"
-#include "sim/robot_side.hpp"
+#include "common/robot_side/robot_side.hpp"
 #include "sim/separation_oracle.hpp"
 
 namespace handsel::sim {

@@ -16,6 +16,7 @@
 #include "sim/limits_oracle.hpp"
 #include "sim/people.hpp"
 #include "sim/robot_grasp.hpp"
+#include "sim/stuck_hand.hpp"
 
 namespace handsel::sim {
 
@@ -55,7 +56,8 @@ struct SimWorld::Impl {
         random(seed ^ 0x5e45'0f'f0'1ceULL),
         dispatcher(&configuration),
         dynamics(&dispatcher, &broadphase, &solver, &configuration),
-        side(robot_model, setup.start, side_settings()),
+        side(robot_model, setup.start, s.robot_side),
+        reference{side.position(), side.velocity(), side.acceleration(), side.effort()},
         limits(robot_model, s.robot_side.max_gap, s.setpoint_period),
         separations(robot_model, s.ssm) {
     settings.constraint = settings.constraint && !setup.no_weld;
@@ -73,6 +75,7 @@ struct SimWorld::Impl {
     }
     for (const Manipulator& hand : hands_of(model)) add_hand(hand);
     if (hands.empty()) add_hand({});
+    if (setup.never_releases) stuck_hand.emplace(finger_axes());
     for (const StartObject& start : setup.objects) objects.emplace_back(start, static_cast<int>(objects.size()), shapes, dynamics);
     people = std::make_unique<People>(setup, settings, objects, shapes, dynamics);
     prepare_sight();
@@ -95,10 +98,11 @@ struct SimWorld::Impl {
     for (auto& object : fixed) dynamics.removeCollisionObject(object.get());
   }
 
-  RobotSideSettings side_settings() const {
-    RobotSideSettings s = settings.robot_side;
-    s.never_releases = setup.never_releases;
-    return s;
+  std::vector<int> finger_axes() const {
+    std::vector<int> axes;
+    for (const Hand& hand : hands)
+      if (hand.fingers != nullptr) axes.insert(axes.end(), hand.fingers->axes.begin(), hand.fingers->axes.end());
+    return axes;
   }
 
   void add_hand(const Manipulator& hand) {
@@ -247,7 +251,7 @@ struct SimWorld::Impl {
       closing.add(v.dot(n));
     }
     const bool given_way = gives_way();
-    if (steps % ssm_every == 0 && !given_way && separations.violates(near, *robot, side.velocity(), side.acceleration()))
+    if (steps % ssm_every == 0 && !given_way && separations.violates(near, *robot, reference.velocity, reference.acceleration))
       ssm_violations += ssm_every;
 
     if (watched >= 0) handover->observe(situation(), settings.step);
@@ -263,7 +267,7 @@ struct SimWorld::Impl {
       pushes.clear();
       std::copy_if(touches.begin(), touches.end(), std::back_inserter(pushes), person);
     }
-    return now() < pushed_at + kPush && !separations.presses(*robot, pushes, side.velocity());
+    return now() < pushed_at + kPush && !separations.presses(*robot, pushes, reference.velocity);
   }
 
   ObjectSituation situation() const {
@@ -341,8 +345,13 @@ struct SimWorld::Impl {
     while (next_disturbance < setup.disturbances.size() && setup.disturbances[next_disturbance].at <= now() + 1e-9) {
       control(setup.disturbances[next_disturbance++].control);
     }
-    side.step(now(), settings.step, grips_something());
-    robot->drive(side.position(), side.velocity(), side.acceleration(), side.effort());
+    side.step(now(), settings.step);
+    reference.position = side.position();
+    reference.velocity = side.velocity();
+    reference.acceleration = side.acceleration();
+    reference.effort = side.effort();
+    if (stuck_hand) stuck_hand->apply(settings.step, grips_something(), reference);
+    robot->drive(reference.position, reference.velocity, reference.acceleration, reference.effort);
     const auto holding = std::find_if(hands.begin(), hands.end(), [](const Hand& hand) { return hand.gripped >= 0; });
     const Hand& offering = holding != hands.end() ? *holding : hands.front();
     people->move(settings.step, tool_state(offering), offering.gripped);
@@ -459,6 +468,8 @@ struct SimWorld::Impl {
   std::unique_ptr<People> people;
 
   RobotSide side;
+  Reference reference;
+  std::optional<StuckHand> stuck_hand;
   std::vector<Hand> hands;         // never empty; the first is that of the tool
   bool constraint_carries{false};  // the constraints' force on what is held is larger than that of the hands' contacts
   double held_time{0}, constraint_time{0};

@@ -1,11 +1,11 @@
-#include "sim/robot_side.hpp"
+#include "common/robot_side/robot_side.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/model/manipulator.hpp"
 
-namespace handsel::sim {
+namespace handsel {
 
 namespace {
 
@@ -156,10 +156,6 @@ double RobotSide::payload(std::size_t hand) const {
   return hand <= static_cast<std::size_t>(other_payloads_.size()) ? other_payloads_[static_cast<Eigen::Index>(hand) - 1] : 0.0;
 }
 
-bool RobotSide::hand_moves() const {
-  return std::any_of(hand_axes_.begin(), hand_axes_.end(), [&](int axis) { return std::abs(velocity_[axis]) >= 1e-6; });
-}
-
 void RobotSide::step_stop(double dt) {
   if (reference_ == Reference::stops) {
     bool rests = true;
@@ -199,7 +195,7 @@ void RobotSide::extrapolate(double dt) {
   velocity_ += dt * acceleration_;
 }
 
-void RobotSide::step(double now, double dt, bool holding_object) {
+void RobotSide::step(double now, double dt) {
   in_mode_ += dt;
   if (reference_ == Reference::follows && seen_ && now - last_ > settings_.max_gap) {
     begin_stop(DriveMode::enabled);
@@ -211,16 +207,6 @@ void RobotSide::step(double now, double dt, bool holding_object) {
     extrapolate(dt);
   }
   fresh_ = false;
-  if (!settings_.never_releases) return;
-  if (holding_object && !clenched_) {
-    hand_rest_ = hand_moves() ? 0 : hand_rest_ + dt;
-    clenched_ = hand_rest_ > 0.5;
-    closed_ = position_;
-    squeeze_ = effort_;
-  }
-  if (clenched_) {
-    for (int axis : hand_axes_) position_[axis] = closed_[axis], effort_[axis] = squeeze_[axis], velocity_[axis] = acceleration_[axis] = 0;
-  }
 }
 
-}  // namespace handsel::sim
+}  // namespace handsel

@@ -11,7 +11,7 @@
 #include "common/trajectory/setpoint_gate.hpp"
 #include "common/trajectory/stop.hpp"
 
-namespace handsel::sim {
+namespace handsel {
 
 struct RobotSideSettings {
   double period{0.0};             ///< of the controller's set-points [s]; 0: set-points are not checked (tests of the physics alone)
@@ -23,7 +23,6 @@ struct RobotSideSettings {
   int resume_count{10};           ///< that many of them in a row
   double min_stop{0.5};           ///< shortest time of a protective stop and of brakes [s]
   double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
-  bool never_releases{false};     ///< a mutant: the hand's set-points are ignored once it holds something and has rested for half a second
 };
 
 /// Starts enabled, holding `start`; the watch begins with the first set-point. Every set-point is checked against the guard limits of the
@@ -48,7 +47,7 @@ class RobotSide {
   void hold(const Vector& position, DriveMode mode);
   void enable();
   /// Advances the reference the servos follow to `now`.
-  void step(double now, double dt, bool holding_object);
+  void step(double now, double dt);
 
   const Vector& position() const { return position_; }
   const Vector& velocity() const { return velocity_; }
@@ -57,7 +56,6 @@ class RobotSide {
   /// Mass told to be in the hand, hands as common/model/manipulator has them [kg].
   double payload(std::size_t hand = 0) const;
   DriveMode mode() const { return mode_; }
-  bool hand_moves() const;  ///< its reference does
   bool stopped() const { return reference_ == Reference::stands; }
   bool follows() const { return reference_ == Reference::follows; }  ///< set-points, or would when they come
   /// Why it does not follow though the drives are enabled, one sentence; else empty.
@@ -85,16 +83,15 @@ class RobotSide {
   Reference reference_{Reference::follows};
   std::string refusal_;
   Vector position_, velocity_, acceleration_, effort_, measured_;
-  Vector closed_, squeeze_;  // hand posture and effort kept by the mutant
   std::vector<SoftStop> stops_;
   std::vector<SetpointFilter> joins_;  // from where it stands to set-points that rest near there
   Vector joined_;                      // the posture of those set-points
-  bool seen_{false}, fresh_{false}, clenched_{false};
-  double last_{0}, hand_rest_{0}, payload_{0};
+  bool seen_{false}, fresh_{false};
+  double last_{0}, payload_{0};
   double in_mode_{0};  // since mode_ was entered [s]
   Vector other_payloads_;
   int matching_{0};
   std::uint64_t refused_{0};
 };
 
-}  // namespace handsel::sim
+}  // namespace handsel

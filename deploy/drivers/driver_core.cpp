@@ -69,7 +69,7 @@ void DriverCore::update(const Measured& measured, double now, double dt) {
   side_known_ = true;
   side_.measured(measured.position);
   const bool followed = side_.follows();
-  side_.step(now, dt, false);
+  side_.step(now, dt);
   if (followed && !side_.follows()) {
     why_ = side_.refusal();
   }

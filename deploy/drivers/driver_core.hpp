@@ -9,7 +9,7 @@
 #include "common/messages/robot.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/setpoint_filter.hpp"
-#include "sim/robot_side.hpp"
+#include "common/robot_side/robot_side.hpp"
 
 namespace handsel::drivers {
 
@@ -17,7 +17,7 @@ struct DriverSettings {
   bool dry_run{false};                  ///< everything but the output: nothing is sent to the arm, the posture it would have is reported
   double fade_share{0.1};               ///< share of the guard limits with which a jump between set-points and reference fades
   Pose T_world_base{Pose::Identity()};  ///< where the robot stands
-  sim::RobotSideSettings watch;
+  RobotSideSettings watch;
 };
 
 /// What the maker's controller measured in a cycle; all axes of the robot description.
@@ -68,7 +68,7 @@ class DriverCore {
   const RobotModel& model_;
   std::vector<int> arm_axes_;
   DriverSettings settings_;
-  sim::RobotSide side_;
+  RobotSide side_;
   Measured measured_;
   bool side_known_{}, has_followed_{}, waits_for_person_{};
   Vector reference_;

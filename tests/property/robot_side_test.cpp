@@ -8,17 +8,14 @@
 #include <limits>
 #include <random>
 
+#include "common/robot_side/robot_side.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/solve.hpp"
 #include "deploy/drivers/driver_core.hpp"
-#include "sim/robot_side.hpp"
 #include "tests/support/small_robot.hpp"
 
 namespace handsel {
 namespace {
-
-using sim::RobotSide;
-using sim::RobotSideSettings;
 
 constexpr double kStep = 0.001;
 
@@ -217,7 +214,7 @@ Outcome play(std::uint64_t seed, double garbage_rate, double loss, int steps) {
     if (chance(garbage_rate)) give(garbage(c, random));
     if (!chance(loss)) out.followed += give(c);
     if (chance(garbage_rate)) give(garbage(c, random));
-    side.step(now, kStep, false);
+    side.step(now, kStep);
     out.resumed += side.follows() && !followed;
     // Numbers that jump, and set-points after steps without one, may use up the bounds of several periods at once.
     const bool regular = accepted == 0 || (accepted == 1 && accepted_before == 1 && in_turn) || (accepted == 1 && !followed);
@@ -313,7 +310,7 @@ class Refusals : public testing::Test {
     ++command_.sequence;
     now_ += kStep;
     const bool followed = side_.command(command_, now_);
-    side_.step(now_, kStep, false);
+    side_.step(now_, kStep);
     return followed;
   }
   JointCommand command_;
@@ -383,7 +380,7 @@ TEST_F(Refusals, a_motion_too_fast_to_stop_before_a_bound_is_refused_before_it) 
   }
   EXPECT_EQ(side_.refused(), 1u);
   while (!side_.stopped()) {
-    side_.step(now_ += kStep, kStep, false);
+    side_.step(now_ += kStep, kStep);
     highest = std::max(highest, side_.position()[2]);
   }
   EXPECT_LE(highest, upper + 1e-5);

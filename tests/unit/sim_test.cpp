@@ -60,10 +60,10 @@ TEST(SimRobotSide, StopsSoftlyTwentyMillisecondsAfterTheLastSetPointAndResumesWi
   for (int i = 0; i < 100; ++i, now += 0.001) {
     c.position[0] += 0.0005;
     side.command(c, now);
-    side.step(now, 0.001, false);
+    side.step(now, 0.001);
   }
   const double last = now - 0.001;
-  while (side.follows() && now < last + 1) side.step(now += 0.001, 0.001, false);
+  while (side.follows() && now < last + 1) side.step(now += 0.001, 0.001);
   EXPECT_EQ(side.mode(), DriveMode::enabled) << "nobody has stopped the drives";
   EXPECT_NE(side.refusal().find("no set-point for more than 20 ms"), std::string::npos) << side.refusal();
   EXPECT_NEAR(now - last, 0.021, 0.0015);
@@ -72,7 +72,7 @@ TEST(SimRobotSide, StopsSoftlyTwentyMillisecondsAfterTheLastSetPointAndResumesWi
   const double began = now;
   double v = side.velocity()[0], a = side.acceleration()[0];
   while (!side.stopped() && now < began + 2) {
-    side.step(now += 0.001, 0.001, false);
+    side.step(now += 0.001, 0.001);
     ASSERT_LE(std::abs(side.acceleration()[0] - a), J * 0.001 * (1 + 1e-6));
     ASSERT_LE(std::abs(side.velocity()[0] - v), A * 0.001 * (1 + 1e-6));
     v = side.velocity()[0], a = side.acceleration()[0];
@@ -97,7 +97,7 @@ TEST(SimRobotSide, FollowsSetPointsAtTheMeasuredPostureThoughTheHeldOneIsElsewhe
   c.velocity = c.acceleration = Vector::Zero(jido().dof());
   side.command(c, 0.0);
   double now = 0;
-  while (!side.stopped() && now < 1) side.step(now += 0.001, 0.001, false);
+  while (!side.stopped() && now < 1) side.step(now += 0.001, 0.001);
   ASSERT_TRUE(side.stopped());
   Vector bent = side.position();
   bent[3] += 0.05;
@@ -106,7 +106,7 @@ TEST(SimRobotSide, FollowsSetPointsAtTheMeasuredPostureThoughTheHeldOneIsElsewhe
   double v = 0;
   for (int i = 0; i < 2000 && !side.follows(); ++i) {
     side.command(c, now);
-    side.step(now += 0.001, 0.001, false);
+    side.step(now += 0.001, 0.001);
     EXPECT_LE(std::abs(side.velocity()[3] - v), jido().stop_limits().acceleration[3] * 0.001 * (1 + 1e-6)) << "the reference does not jump";
     v = side.velocity()[3];
   }
@@ -121,11 +121,11 @@ TEST(SimRobotSide, AUserStopWhileSetPointsAreAwayStillEndsOnlyByEnable) {
   c.velocity = c.acceleration = Vector::Zero(jido().dof());
   side.command(c, 0.0);
   double now = 0;
-  while (!side.stopped() && now < 1) side.step(now += 0.001, 0.001, false);
+  while (!side.stopped() && now < 1) side.step(now += 0.001, 0.001);
   side.user_stop();
   EXPECT_EQ(side.refusal(), "") << "the mode says it";
   while (now < 2) {
-    side.step(now += 0.001, 0.001, false);
+    side.step(now += 0.001, 0.001);
     EXPECT_FALSE(side.command(c, now));
   }
   EXPECT_EQ(side.mode(), DriveMode::user_stop);
@@ -137,12 +137,12 @@ TEST(SimRobotSide, a_protective_stop_at_rest_lasts_until_every_process_has_heard
   c.position = start();
   c.velocity = c.acceleration = Vector::Zero(jido().dof());
   side.command(c, 0.0);
-  side.step(0.001, 0.001, false);
+  side.step(0.001, 0.001);
   side.stop(DriveMode::protective_stop);
   double now = 0.001, ended = 0.0;
   while (side.mode() != DriveMode::enabled && now < 2.0) {
     side.command(c, now);
-    side.step(now += 0.001, 0.001, false);
+    side.step(now += 0.001, 0.001);
     ended = now;
   }
   EXPECT_NEAR(ended, RobotSideSettings{}.min_stop, 0.01);
@@ -157,7 +157,7 @@ TEST(SimRobotSide, UserStopEndsOnlyByEnable) {
   double now = 0;
   for (int i = 0; i < 50; ++i) {
     EXPECT_FALSE(side.command(c, now));
-    side.step(now += 0.001, 0.001, false);
+    side.step(now += 0.001, 0.001);
   }
   EXPECT_EQ(side.mode(), DriveMode::user_stop);
   side.enable();
