@@ -525,7 +525,7 @@ bool SimWorld::robot_state(RobotState& out) {
   for (Eigen::Index i = 0; i < out.position.size(); ++i) out.position[i] += w.noise(w.settings.position_noise);
   out.velocity = w.robot->velocity();
   out.effort = w.robot->effort();
-  out.reference = w.side.position();
+  w.side.report(out.reference);
   out.external_torque = w.hands.front().measured.external_torque();
   for (std::size_t i = 1; i < w.hands.size(); ++i) out.external_torque += w.hands[i].measured.external_torque();
   for (std::size_t i = 0; i < w.hands.size(); ++i) {

@@ -20,6 +20,14 @@ struct OtherHand {
   double payload{};
 };
 
+/// What the servos of the robot side follow or hold.
+struct ServoReference {
+  Vector position;        ///< per axis [rad] ([m]); empty if unknown
+  Vector effort;          ///< per axis, what the motors give besides following [Nm] ([N]); or empty
+  double payload{};       ///< mass in the first hand that the servos allow for [kg]
+  Vector other_payloads;  ///< the same of the other hands [kg]
+};
+
 /// Published by the robot side (driver or simulator), 500 Hz. Topic RobotState, profile sensor, keyed by robot.
 struct RobotState {
   Stamp stamp{};
@@ -27,7 +35,7 @@ struct RobotState {
   std::uint64_t sequence{};
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
   Vector position, velocity, effort;    ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
-  Vector reference;                     ///< per axis, what the servos follow [rad, m]; or empty
+  ServoReference reference{};           ///< what the servos follow or hold
   Vector external_torque;               ///< per axis, without model gravity and friction [Nm]; empty if unknown
   Wrench wrist_wrench;                  ///< what the world exerts on the hand with its load, gravity of the hand removed, tool frame
   double hand_effort{};                 ///< sum of |finger torques| [Nm]

@@ -156,6 +156,13 @@ double RobotSide::payload(std::size_t hand) const {
   return hand <= static_cast<std::size_t>(other_payloads_.size()) ? other_payloads_[static_cast<Eigen::Index>(hand) - 1] : 0.0;
 }
 
+void RobotSide::report(ServoReference& out) const {
+  out.position = position_;
+  out.effort = effort_;
+  out.payload = payload_;
+  out.other_payloads = other_payloads_;
+}
+
 void RobotSide::step_stop(double dt) {
   if (reference_ == Reference::stops) {
     bool rests = true;

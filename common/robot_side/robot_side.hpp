@@ -55,6 +55,8 @@ class RobotSide {
   const Vector& effort() const { return effort_; }  ///< kept through a stop: what is held stays held
   /// Mass told to be in the hand, hands as common/model/manipulator has them [kg].
   double payload(std::size_t hand = 0) const;
+  /// Writes what the servos follow or hold.
+  void report(ServoReference& out) const;
   DriveMode mode() const { return mode_; }
   bool stopped() const { return reference_ == Reference::stands; }
   bool follows() const { return reference_ == Reference::follows; }  ///< set-points, or would when they come

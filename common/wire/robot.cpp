@@ -12,6 +12,15 @@ void describe(WireIo& io, OtherHand& m, handsel_OtherHand& w) {
   io.number("payload", m.payload, w.payload, {-1e3, 1e3});
 }
 
+void describe(WireIo& io, ServoReference& m, handsel_ServoReference& w) {
+  io.vector("position", m.position, w.position, kCoordinate);
+  io.vector("effort", m.effort, w.effort, kCoordinate);
+  io.number("payload", m.payload, w.payload, {0, 1e3});
+  io.vector("other_payloads", m.other_payloads, w.other_payloads, {0, 1e3}, 3);
+  const auto n = m.position.size();
+  io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has not as many values as position");
+}
+
 void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.text("robot", m.robot, w.robot, Text::name);
   io.stamp(m.stamp, w.stamp);
@@ -20,7 +29,7 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.vector("position", m.position, w.position, kCoordinate);
   io.vector("velocity", m.velocity, w.velocity, kCoordinate);
   io.vector("effort", m.effort, w.effort, kForce);
-  io.vector("reference", m.reference, w.reference, kCoordinate);
+  io.part("reference", m.reference, w.reference);
   io.vector("external_torque", m.external_torque, w.external_torque, kForce);
   io.wrench("wrist_wrench", m.wrist_wrench, w.wrist_wrench);
   io.number("hand_effort", m.hand_effort, w.hand_effort, {0, 1e5});
@@ -33,7 +42,8 @@ void describe(WireIo& io, RobotState& m, handsel_RobotState& w) {
   io.check(n > 0, "position", "is empty, one value per axis is needed");
   io.check(m.velocity.size() == n, "velocity", "has not as many values as position");
   io.check(m.effort.size() == n || m.effort.size() == 0, "effort", "has not as many values as position");
-  io.check(m.reference.size() == n || m.reference.size() == 0, "reference", "has not as many values as position");
+  const auto held = m.reference.position.size();
+  io.check(held == n || held == 0, "reference", "has not as many values as position");
   io.check(m.external_torque.size() == n || m.external_torque.size() == 0, "external_torque", "has not as many values as position");
 }
 

@@ -43,11 +43,13 @@ double Controller::held_payload() const noexcept {
   return mass;
 }
 
-/// No set-point that moves the robot leaves without a checked stop behind it: otherwise the next one
-/// of the stop checked before is sent.
+/// No set-point that moves the robot leaves without a checked stop behind it: otherwise the next
+/// one of the stop checked before is sent.
 void Controller::prove_stop(TimePoint now) noexcept {
   if (unproven_shown_ > 0) --unproven_shown_;
-  if (proof_.check(next_, crowd_, state_.T_world_base, std::max(0.0, human_seen_.age(now)), held_payload()) || moves_nothing()) return;
+  const double age = std::max(0.0, human_seen_.age(now));
+  const bool proven = proof_.check(next_, crowd_, state_.T_world_base, age, held_payload());
+  if (proven || moves_nothing()) return;
   ++unproven_;
   rejoins_in_vain_ = unproven_shown_ > 0 ? rejoins_in_vain_ + (arm_ == Arm::running ? 1 : 0) : 0;
   unproven_shown_ = static_cast<int>(settings_.proof.shown_time / settings_.period);
@@ -68,7 +70,8 @@ void Controller::keep_observed(TimePoint now) noexcept {
   constexpr int kEvery = 10;  // cycles, at rest
   if (!proof_.moving() && cycles_ % kEvery != 0) return;
   blind_ = !stop_space_.observes_stops(next_.position, state_.T_world_base, std::max(0.0, human_seen_.age(now)));
-  if (!blind_ || !follows() || moves_nothing() || settings_.dry_run || (yielding_ && !retreating_)) return;
+  if (!blind_ || !follows() || moves_nothing() || settings_.dry_run) return;
+  if (yielding_ && !retreating_) return;
   const auto moves = [&](int axis) { return next_.velocity[axis] != 0.0 || next_.acceleration[axis] != 0.0; };
   const bool arm = std::any_of(arm_axes_.begin(), arm_axes_.end(), moves);
   if (arm && arm_ == Arm::running) rejoin_ = !cancelled_;

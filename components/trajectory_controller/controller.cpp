@@ -115,13 +115,18 @@ void Controller::on(const RobotState& state, TimePoint sampled, Duration age, bo
   if (ready_ && !restarted) return;
   // The posture of a robot side that has just come up is the first set-point.
   ready_ = true;
-  const Vector& posture = !settings_.dry_run && reference_.reported(state) ? state.reference : state.position;
+  const bool at_reference = !settings_.dry_run && reference_.reported(state);
+  const Vector& posture = at_reference ? state.reference.position : state.position;
   set_point_ = rest_state(posture);
   for (Eigen::Index i = 0; i < n; ++i) set_point_.position[i] = inside(static_cast<int>(i), posture[i]);
   next_ = set_point_;
   if (arm_ == Arm::running || rejoin_) give_up_path();
   stand_arm();
-  for (Hand& hand : hands_) hand.executor.reset(set_point_.position);
+  for (std::size_t i = 0; i < hands_.size(); ++i) {
+    // What is held stays held: a new controller grips as the one before.
+    hands_[i].executor.reset(set_point_.position, at_reference ? state.reference.effort : Vector());
+    hands_[i].payload = hands_[i].grasped_payload = at_reference ? held_payload(state.reference, i) : 0.0;
+  }
   for (int axis : head_axes_) movers_[static_cast<std::size_t>(axis)].reset(set_point_.position[axis]);
   head_wanted_ = false;
 }
@@ -382,6 +387,12 @@ void Controller::step_arm(TimePoint now) noexcept {
   if (arm_ == Arm::stopping && resting) arm_ = Arm::standing;
 }
 
+double Controller::held_payload(const ServoReference& reference, std::size_t hand) noexcept {
+  if (hand == 0) return reference.payload;
+  const auto other = static_cast<Eigen::Index>(hand) - 1;
+  return other < reference.other_payloads.size() ? reference.other_payloads[other] : 0.0;
+}
+
 double Controller::felt_payload(std::size_t hand) const noexcept {
   if (hand == 0) return state_.payload;
   return hand <= state_.other_hands.size() ? state_.other_hands[hand - 1].payload : 0.0;
@@ -469,19 +480,22 @@ void Controller::resync(TimePoint now) noexcept {
   using State = RobotReference::State;
   const bool stale = robot_seen_.age(now) > settings_.timeouts.robot_state;
   if (stale) reference_.forget();
-  if (cycles_ % RobotReference::kInterval == 0 && !stale) reference_.look(state_, set_point_.position, follows());
+  const bool looks = cycles_ % RobotReference::kInterval == 0 && !stale;
+  if (looks) reference_.look(state_, set_point_.position, follows());
   const bool wanted = settings_.dry_run || apart();
   if (!wanted) adopted_ = false;
-  if (!wanted || arm_ != Arm::standing || !at_rest() || stale || cycles_ % RobotReference::kInterval != 0) return;
+  if (!wanted || !looks || arm_ != Arm::standing || !at_rest()) return;
   // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
   // that rest at the reference move nothing; they stay while the reference moves. Where the
   // reference is not known, or follows under a fault, set-points are taken once to the posture the
   // robot came to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
   constexpr double kRests = 0.05, kDeadBand = 0.002, kExact = 1e-12;  // [rad/s], [rad], [rad]
   const bool joins = state_.mode == DriveMode::enabled && !settings_.dry_run;
-  const auto rests = [&](int axis) { return axis >= state_.velocity.size() || std::abs(state_.velocity[axis]) < kRests; };
+  const bool told = state_.velocity.size() == state_.position.size();
+  const auto rests = [&](int axis) { return !told || std::abs(state_.velocity[axis]) < kRests; };
   const auto reached = [&](int axis) {
-    return std::abs(inside(axis, state_.position[axis]) - movers_[static_cast<std::size_t>(axis)].target()) <= kDeadBand;
+    const double target = movers_[static_cast<std::size_t>(axis)].target();
+    return std::abs(inside(axis, state_.position[axis]) - target) <= kDeadBand;
   };
   const bool may_adopt = joins && std::all_of(arm_axes_.begin(), arm_axes_.end(), rests);
   adopted_ = may_adopt && (adopted_ || std::all_of(arm_axes_.begin(), arm_axes_.end(), reached));
@@ -489,7 +503,7 @@ void Controller::resync(TimePoint now) noexcept {
   const bool at_reference = moves_nothing();
   const auto go_there = [&](int axis) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    const double target = inside(axis, at_reference ? state_.reference[axis] : state_.position[axis]);
+    const double target = inside(axis, at_reference ? state_.reference.position[axis] : state_.position[axis]);
     if (std::abs(target - mover.target()) > (at_reference ? kExact : dead_band))
       mover.go_to(target, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
   };

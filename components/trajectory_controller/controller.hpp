@@ -176,6 +176,7 @@ class Controller {
   void step_hand(Hand& hand, TimePoint now) noexcept;
   void limit_fingers(TimePoint now) noexcept;
   double felt_payload(std::size_t hand) const noexcept;
+  static double held_payload(const ServoReference& reference, std::size_t hand) noexcept;
   const Wrench* felt_wrench(std::size_t hand) const noexcept;
   HandState told_hand(const Hand& hand) const noexcept { return hand.refused ? HandState::refused : hand.executor.state(); }
   Hand* find_hand(const std::string& group);
@@ -227,7 +228,7 @@ class Controller {
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
-  bool adopted_{};         // the measured posture, since the robot side last followed
+  bool adopted_{};  // the measured posture, since the robot side last followed
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};
   MotionState3 set_point_, next_;

@@ -32,7 +32,7 @@ AxisLimits HandExecutor::limits(std::size_t i, const KinematicLimits& of, double
   return l;
 }
 
-void HandExecutor::reset(const Vector& robot_position) noexcept {
+void HandExecutor::reset(const Vector& robot_position, const Vector& robot_effort) noexcept {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     const double lever = fingers_[i].lever;
     fingers_[i] = {};
@@ -41,8 +41,16 @@ void HandExecutor::reset(const Vector& robot_position) noexcept {
     fingers_[i].mover.reset(fingers_[i].target);
   }
   phase_ = Phase::hold;
-  paused_ = closed_ = freeing_ = false;
-  level_ = 0.0;
+  paused_ = freeing_ = false;
+  most_effort_ = 0.0;
+  if (robot_effort.size() == robot_position.size())
+    for (std::size_t i = 0; i < fingers_.size(); ++i) {
+      fingers_[i].effort = robot_effort[axes_[i]];
+      most_effort_ = std::max(most_effort_, std::abs(fingers_[i].effort));
+    }
+  closed_ = most_effort_ > 0.0;
+  level_ = closed_ ? 1.0 : 0.0;
+  if (closed_) keep_grip();
   release_.disarm();
 }
 
@@ -207,14 +215,19 @@ void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
   settled_for_ = 0.0;
 }
 
-void HandExecutor::squeeze(const RobotState& robot, double dt) noexcept {
-  level_ = std::min(1.0, level_ + dt / settings_.squeeze_time);
-  settled_for_ = level_ >= 1.0 ? settled_for_ + dt : 0.0;
-  if (settled_for_ < settings_.settle_time) return;
+/// Makes the set-points and efforts of this moment those that hold the object.
+void HandExecutor::keep_grip() noexcept {
   for (Finger& f : fingers_) {
     f.held = f.target;
     f.grip = std::abs(f.effort) < kMinor * most_effort_ ? 0.0 : std::copysign(1.0, f.effort);
   }
+}
+
+void HandExecutor::squeeze(const RobotState& robot, double dt) noexcept {
+  level_ = std::min(1.0, level_ + dt / settings_.squeeze_time);
+  settled_for_ = level_ >= 1.0 ? settled_for_ + dt : 0.0;
+  if (settled_for_ < settings_.settle_time) return;
+  keep_grip();
   const bool held = pressing(robot) >= settings_.least_contacts && (!person_near_ || pushes(robot));
   state_ = held ? HandState::grasped : HandState::empty;
   phase_ = Phase::hold;

@@ -55,7 +55,8 @@ class HandExecutor {
                const KinematicLimits& comfort, const KinematicLimits& stop, std::vector<char> sliding = {});
 
   int size() const { return static_cast<int>(axes_.size()); }
-  void reset(const Vector& robot_position) noexcept;
+  /// Begins at rest at these positions, pressing with these efforts (all axes of the robot; or empty).
+  void reset(const Vector& robot_position, const Vector& robot_effort = {}) noexcept;
   /// Empty when accepted, else why not, one sentence.
   std::string accept(const HandCommand& command);
   /// Writes the hand axes of the set-point, one period later.
@@ -105,6 +106,7 @@ class HandExecutor {
   void watch_contacts(const RobotState& robot, double dt) noexcept;
   void seek(const RobotState& robot, double dt) noexcept;
   void squeeze(const RobotState& robot, double dt) noexcept;
+  void keep_grip() noexcept;
   void change_level(double dt) noexcept;
   void give_way(const RobotState& robot, double dt) noexcept;
   void judge(const RobotState& robot, double payload, double dt) noexcept;

@@ -14,18 +14,18 @@ double RobotReference::farthest(const Vector& a, const Vector& b) const noexcept
 }
 
 bool RobotReference::reported(const RobotState& state) const noexcept {
-  return state.reference.size() == seen_.size() && state.position.size() == seen_.size() &&
-         farthest(state.reference, state.position) < kBent;
+  return state.reference.position.size() == seen_.size() && state.position.size() == seen_.size() &&
+         farthest(state.reference.position, state.position) < kBent;
 }
 
 void RobotReference::look(const RobotState& state, const Vector& set_point, bool follows) noexcept {
   constexpr double kApart = 0.01;  // [rad] no lag of a robot side that follows is as large at rest
   if (!reported(state)) return forget();
-  const bool rests = seen_ == state.reference;
-  seen_ = state.reference;
+  const bool rests = seen_ == state.reference.position;
+  seen_ = state.reference.position;
   if (!rests)
     state_ = follows ? State::followed : State::moving;
-  else if (!follows || farthest(state.reference, set_point) > kApart)
+  else if (!follows || farthest(state.reference.position, set_point) > kApart)
     state_ = State::resting;
   else if (state_ != State::resting)
     state_ = State::followed;

@@ -22,7 +22,7 @@ class RobotReference {
   /// `axes`: of the arm. `dof`: number of axes of the robot.
   RobotReference(std::vector<int> axes, int dof);
 
-  /// Looks at the newest state, at intervals of `kInterval` cycles. `follows`: the robot side says so.
+  /// Looks at the newest state, every `kInterval` cycles. `follows`: the robot side says so.
   void look(const RobotState& state, const Vector& set_point, bool follows) noexcept;
   /// Forgets what was seen: the newest state is too old.
   void forget() noexcept { state_ = State::unknown; }

@@ -127,7 +127,7 @@ RobotState DriverCore::state(bool commanding) const {
   s.position = measured_.position;
   s.velocity = measured_.velocity;
   s.effort = measured_.effort;
-  s.reference = side_.position();
+  side_.report(s.reference);
   s.external_torque = measured_.external_torque;
   s.wrist_wrench = measured_.wrist_wrench;
   s.payload = measured_.payload;

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "common/config/resources.hpp"
-#include "common/messages/names.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/stop.hpp"
 #include "deploy/handsel/performer.hpp"
@@ -131,7 +130,7 @@ class BusySystem {
 
  private:
   void watch(const RobotState& state) {
-    if (marked_.size() == 0) marked_ = state.position, marked_reference_ = state.reference;
+    if (marked_.size() == 0) marked_ = state.position, marked_reference_ = state.reference.position;
     for (const int axis : arm_) {
       const double off = state.position[axis] - marked_[axis];
       for (const double step : {5e-4, 5e-3, 2e-2})
@@ -144,8 +143,8 @@ class BusySystem {
   void note_motion(const RobotState& state, int axis, double off) {
     const auto i = static_cast<Eigen::Index>(axis);
     std::string text = "axis " + std::to_string(axis) + " has moved by " + std::to_string(off);
-    if (state.reference.size() > i) text += ", its reference by " + std::to_string(state.reference[i] - marked_reference_[i]);
-    text += " rad, " + std::string(handsel::kDriveModeNames[static_cast<std::size_t>(state.mode)]) + " " + state.refusal;
+    const double by = state.reference.position.size() > i ? state.reference.position[i] - marked_reference_[i] : 0.0;
+    text += " rad, its reference by " + std::to_string(by) + " rad " + state.refusal;
     events_.push_back({monotonic_now(), text});
   }
   /// Gives the next task when the last one is over; a supervisor that was started anew is asked again.

@@ -122,9 +122,9 @@ class ControllerBench {
   Vector measured, measured_velocity;
   bool follows{true};
   DriveMode drive{DriveMode::enabled};
-  std::string refusal;     ///< why the robot side stands although its drives are enabled
-  Vector reference;        ///< of the robot side; empty: not known
-  Vector external_torque;  ///< empty: not measured
+  std::string refusal;       ///< why the robot side stands although its drives are enabled
+  ServoReference reference;  ///< of the robot side; empty: not known
+  Vector external_torque;    ///< empty: not measured
   bool robot_speaks{true}, human_speaks{true}, go_speaks{true}, forecast_speaks{true}, attention_speaks{true};
   HumanState people;
   double human_age{};  ///< what is told of people was so this long ago, or a sample's period longer [s]

@@ -50,7 +50,7 @@ struct Loop {
       side.measured(bench.measured);
       bench.drive = side.mode();
       bench.refusal = side.refusal();
-      if (tells_reference) bench.reference = side.position();
+      if (tells_reference) side.report(bench.reference);
     }
   }
   /// Returns how far an axis of the arm has moved from where it is now, within this time [rad].
@@ -135,6 +135,20 @@ TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_i
     EXPECT_TRUE(l.side.position().head(3).isApprox(goal(), 1e-6)) << l.side.position().transpose();
     test::expect_smooth(l.bench);
   }
+}
+
+TEST(Overload, a_controller_that_is_started_anew_keeps_the_grip_and_allows_for_the_load) {
+  ControllerBench bench;
+  const int n = bench.robot->dof();
+  bench.reference = {Vector::Constant(n, 0.2), Vector::Zero(n), 0.35, {}};
+  bench.reference.effort[3] = 0.4;
+  bench.reference.effort[4] = -0.1;
+  bench.measured = bench.reference.position;
+  bench.measured[0] -= 0.003;  // it sags
+  bench.run(0.5);
+  EXPECT_EQ(bench.core.set_point().position, bench.reference.position);
+  EXPECT_EQ(bench.core.effort(), bench.reference.effort);
+  EXPECT_EQ(bench.core.payload(), 0.35);
 }
 
 TEST(Overload, an_arm_that_a_fault_finds_pressed_against_something_no_longer_presses) {
