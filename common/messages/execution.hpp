@@ -74,22 +74,24 @@ enum class Cause : std::uint8_t {
   separation,          ///< Slow ... Stop
   robot_state_silent,  ///< Stop
   human_state_silent,  ///< Stop
-  human_unknown,       ///< Slow ... Stop: nobody seen, but not covered
+  human_unknown,       ///< Slow: nobody is seen, but not all is covered
   drive_not_enabled,   ///< Stop
   tracking_error,      ///< Fault
   limit_violation,     ///< Fault
-  cycle_late,          ///< Hold after 5 in a row
+  cycle_late,          ///< Hold after several in a row; Stop when the robot side lacks set-points
   override_slow,       ///< Slow
   wall,                ///< Slow: a virtual wall or the end of the workspace is ahead
   contact,             ///< Stop: the arm feels a contact
   cost_ahead,          ///< Slow: the human-aware cost on the way ahead is high
-  blind,               ///< Slow ... Stop: no live source observes where the arm can be within its stop
-  stop_unproven,       ///< Stop: the next step has no checked stop behind it; the last checked stop is executed
+  blind,               ///< Slow or Hold: no live source observes where the arm can be within its stop
+  stop_unproven,       ///< Slow: a set-point had no checked stop behind it
   second_writer,       ///< named only: somebody else publishes a topic that has one writer; its samples are refused
   clamped,             ///< Stop: the arm has been pressed against something for too long
   awaits_person,       ///< Hold: a person has to resume (after a pause, a fault, a protective, user or emergency stop)
 };
 const char* name(Cause);
+/// Returns the bit of a cause in ExecutionStatus::causes; 0 for none.
+constexpr std::uint32_t bit(Cause cause) { return cause == Cause::none ? 0U : 1U << static_cast<unsigned>(cause); }
 const char* name(Mode);
 
 enum class MotionState : std::uint8_t { idle, running, finished, refused, stopped };

@@ -12,8 +12,7 @@ namespace {
 constexpr const char* kHint = "; next: handsel task ";  // begins what a person can do about it, at the end of a reason
 constexpr std::size_t kMaxDetail = 100;                 // characters of a cause inside the reason, which has room for 256
 
-constexpr std::uint32_t kFaultCauses =
-    1U << static_cast<unsigned>(Cause::tracking_error) | 1U << static_cast<unsigned>(Cause::limit_violation);
+constexpr std::uint32_t kFaultCauses = bit(Cause::tracking_error) | bit(Cause::limit_violation);
 
 /// Returns whether the robot side stands in this mode because of a person or of its own protection, not for want of set-points.
 bool is_stop(DriveMode mode) {

@@ -7,8 +7,6 @@
 
 namespace handsel::trajectory_controller {
 
-constexpr std::uint32_t bit(Cause cause) { return cause == Cause::none ? 0u : 1u << static_cast<unsigned>(cause); }
-
 struct TimeoutSettings {
   double robot_state{0.02};  ///< Stop [s]
   double human_state{0.2};   ///< Stop [s]

@@ -28,7 +28,6 @@ constexpr const char* kRuns[][2] = {{"Facts", "facts"},        {"Scene", "scene"
                                     {"Costmap", "cost_map"},   {"PathRequest", "paths"}, {"TrajectoryRequest", "trajectories"},
                                     {"GraspRequest", "grasps"}};
 
-constexpr std::uint32_t bit(Cause cause) { return 1U << static_cast<unsigned>(cause); }
 constexpr std::uint32_t kForPeople =
     bit(Cause::attention_slow) | bit(Cause::separation) | bit(Cause::forecast_collision) | bit(Cause::cost_ahead);
 
