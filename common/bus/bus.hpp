@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "common/base/time.hpp"
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 #include "common/wire/message_type.hpp"
 
 namespace handsel {

@@ -6,8 +6,8 @@
 
 #include "common/bus/look_around.hpp"
 #include "common/bus/qos.hpp"
-#include "common/bus/topics.hpp"
 #include "common/messages/robot.hpp"
+#include "common/topics/topics.hpp"
 
 namespace handsel {
 namespace {

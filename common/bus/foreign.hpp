@@ -4,7 +4,7 @@
 #include <functional>
 #include <iterator>
 
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 
 namespace handsel {
 

@@ -9,7 +9,7 @@
 
 #include <dds/dds.h>
 
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 
 namespace handsel {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/base/time.hpp"
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 
 namespace handsel {
 

@@ -1,4 +1,4 @@
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 
 #include <algorithm>
 #include <iterator>

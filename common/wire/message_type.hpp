@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "common/base/time.hpp"
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 
 namespace handsel {
 

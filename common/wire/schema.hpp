@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 
 namespace handsel {
 

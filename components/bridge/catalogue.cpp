@@ -5,9 +5,9 @@
 #include <regex>
 #include <sstream>
 
-#include "common/bus/topics.hpp"
 #include "common/config/resources.hpp"
 #include "common/config/robot.pb.h"
+#include "common/topics/topics.hpp"
 #include "common/wire/schema.hpp"
 #include "components/bridge/drawn_urdf.hpp"
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <optional>
 
-#include "common/bus/topics.hpp"
 #include "common/model/human_body.hpp"
+#include "common/topics/topics.hpp"
 #include "components/spark/sources.hpp"
 #include "sim/recording.hpp"
 

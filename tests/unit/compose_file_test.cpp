@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/bus/dds_configuration.hpp"
-#include "common/bus/topics.hpp"
+#include "common/topics/topics.hpp"
 #include "deploy/handsel/processes.hpp"
 #include "tests/support/compose_file.hpp"
 
