@@ -18,7 +18,6 @@ namespace handsel {
 namespace {
 
 using supervisor::DurableState;
-using trajectory_controller::bit;
 
 constexpr Duration kStep = std::chrono::milliseconds(20);
 
