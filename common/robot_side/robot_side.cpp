@@ -55,9 +55,9 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
   if (reference_ == Reference::stands && takes_up) {
     // A set-point that rests where the one before did is still the same one while the reference moves to it.
     const bool same = matching_ > 0 && command.position == joined_ && command.velocity.isZero(0.0);
-    matching_ = same || continues(command) ? matching_ + 1 : 0;
+    matching_ = same || continues(command, kAtRest) ? matching_ + 1 : 0;
     joined_ = command.position;
-    const bool may_end = mode_ == DriveMode::enabled || in_mode_ >= settings_.min_stop;
+    const bool may_end = mode_ != DriveMode::protective_stop || in_mode_ >= settings_.min_stop;
     if (may_end && matching_ >= settings_.resume_count && reached(command)) enable();
   }
   if (reference_ != Reference::follows || !accepted(command, arrival)) return false;
@@ -75,7 +75,7 @@ bool RobotSide::command(const JointCommand& command, double now, double arrival)
 /// Whether a set-point may be followed; if not, the reference begins to stop, or to move to where the first set-points rest.
 bool RobotSide::accepted(const JointCommand& command, double arrival) {
   if (settings_.period <= 0) return true;
-  if (!seen_ && !reached(command) && continues(command)) {
+  if (!seen_ && !reached(command) && continues(command, settings_.resume_tolerance)) {
     begin_stop(mode_);
     refusal_ = "the robot moves to where the first set-points rest";
     return false;
@@ -100,11 +100,11 @@ void RobotSide::refuse(const SetpointRefusal& refusal) {
 bool RobotSide::reached(const JointCommand& command) const { return (command.position - position_).cwiseAbs().maxCoeff() <= kReached; }
 
 /// A loaded arm sags and a closed hand is bent by what it holds: the measured posture counts as well as the one that is held to.
-bool RobotSide::continues(const JointCommand& command) const {
+bool RobotSide::continues(const JointCommand& command, double max_speed) const {
   if (!command.position.allFinite() || !command.velocity.allFinite()) return false;
   for (Eigen::Index i = 0; i < position_.size(); ++i) {
     const double off = std::min(std::abs(command.position[i] - position_[i]), std::abs(command.position[i] - measured_[i]));
-    if (off >= tolerance_[i] || std::abs(command.velocity[i]) >= kAtRest) return false;
+    if (off >= tolerance_[i] || std::abs(command.velocity[i]) >= max_speed) return false;
   }
   return true;
 }

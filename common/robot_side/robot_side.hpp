@@ -21,7 +21,7 @@ struct RobotSideSettings {
   double hand_lever{0.05};        ///< of a finger that slides [m]
   double max_ahead{0.020};        ///< a set-point may come this much earlier than its time [s]
   int resume_count{10};           ///< that many of them in a row
-  double min_stop{0.5};           ///< shortest time of a protective stop and of brakes [s]
+  double min_stop{0.5};           ///< shortest time of a protective stop [s]
   double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
 };
 
@@ -68,7 +68,7 @@ class RobotSide {
   enum class Reference : char { follows, stops, stands };
   void enter(DriveMode);
   void begin_stop(DriveMode);
-  bool continues(const JointCommand&) const;
+  bool continues(const JointCommand&, double max_speed) const;
   bool reached(const JointCommand&) const;
   bool accepted(const JointCommand&, double arrival);
   void refuse(const SetpointRefusal&);
