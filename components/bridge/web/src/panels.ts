@@ -49,6 +49,13 @@ function rows(id: string, cells: Cell[][]): void {
 
 const kDeepest = 6; // that the tree of a plan is indented
 
+// Names the person an action waits for.
+function phaseText(word: string, human: string): string {
+  if (!human) return word;
+  if (word === "waiting for person") return `waiting for ${human} to come within reach`;
+  return word === "waiting for release" ? `waiting for ${human} to let go` : word;
+}
+
 export class Panels {
   constructor(private readonly link: Link, private readonly axes: string[]) {}
 
@@ -101,7 +108,7 @@ export class Panels {
     put("task-state", task ? state : "");
     byId("task-state").dataset.state = state;
     const running = action && link.word("ActionState", action.state) === "running";
-    put("phase", running ? link.word("ActionPhase", action.phase) : "");
+    put("phase", running ? phaseText(link.word("ActionPhase", action.phase), action.human) : "");
     rows("plan", (task?.tree ?? []).map(({ text, depth, state, reason }) => {
       const how = link.word("StepState", state);
       const why = depth > 0 && reason ? ` (${reason})` : "";
