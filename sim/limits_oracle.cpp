@@ -86,7 +86,7 @@ void LimitsOracle::judge_change(const JointCommand& from, const JointCommand& to
   }
 }
 
-void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, double now, const Vector& actual) {
+void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, double now, const Vector& actual, const Vector& held) {
   if (command.position.size() != actual.size() || command.velocity.size() != actual.size() ||
       command.acceleration.size() != actual.size()) {
     return;
@@ -102,7 +102,7 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
   judge_bounds(command);
   if (starts) {
     for (Eigen::Index i = 0; i < actual.size(); ++i) {
-      const double jump = std::abs(command.position[i] - actual[i]);
+      const double jump = std::min(std::abs(command.position[i] - actual[i]), std::abs(command.position[i] - held[i]));
       if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
     }
   } else if (!continues) {

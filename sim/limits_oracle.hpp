@@ -17,7 +17,7 @@ namespace handsel::sim {
 /// have come, 3200 where a stalling machine leaves it unclear; the continuity of those is judged too, once it is known. From one writer's
 /// set-point to another's, and to one whose sequence number has not grown, the time is unknown: the step must be possible within a time
 /// between 0 and the one between the two arrivals plus a period (0.02 s while the period is not known). A stream that starts anew after a
-/// silence beyond the watch must continue from the posture the robot is in.
+/// silence beyond the watch must continue from the posture the robot is in, or from what its servos hold.
 class LimitsOracle {
  public:
   struct Held {  ///< a set-point, judged when the period is known
@@ -28,7 +28,9 @@ class LimitsOracle {
 
   LimitsOracle(const RobotModel&, double restart_after, double period = 0);
 
-  void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual);
+  /// `actual`: measured positions; `held`: what the servos hold; all axes.
+  void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual, const Vector& held);
+  void observe(const JointCommand& c, std::uint64_t writer, double now, const Vector& actual) { observe(c, writer, now, actual, actual); }
 
   double share_velocity() const { return shares_[0]; }  ///< largest |.| / guard limit so far
   double share_acceleration() const { return shares_[1]; }

@@ -506,7 +506,7 @@ void SimWorld::step() { impl_->step(); }
 double SimWorld::time() const { return impl_->now(); }
 
 void SimWorld::command(const JointCommand& command, std::uint64_t writer, double arrival) {
-  impl_->limits.observe(command, writer, impl_->now(), impl_->robot->position());
+  impl_->limits.observe(command, writer, impl_->now(), impl_->robot->position(), impl_->side.position());
   impl_->side.command(command, impl_->now(), arrival < 0 ? impl_->now() : arrival);
 }
 

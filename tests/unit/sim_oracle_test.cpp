@@ -199,6 +199,15 @@ TEST(LimitsOracleTest, ASecondWriterAndALongGapAreSeen) {
   far.position[0] += 0.2;
   judge.oracle.observe(far, 2, judge.now, actual);
   EXPECT_EQ(judge.oracle.violations(), 1u) << "a new start elsewhere is a jump";
+  judge.now += 0.5;
+  far = stream.next();
+  Vector bent = far.position;
+  bent[0] += 0.2;
+  judge.oracle.observe(far, 2, judge.now, bent, far.position);
+  EXPECT_EQ(judge.oracle.violations(), 1u) << "what the servos hold moves nothing, however bent the robot is";
+  judge.now += 0.5;
+  judge.oracle.observe(stream.next(), 2, judge.now, bent, bent);
+  EXPECT_EQ(judge.oracle.violations(), 2u);
 }
 
 TEST(SeparationOracleTest, ItsStopAgreesWithTheStopOfTheTrajectoryRoom) {
