@@ -102,7 +102,8 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
   judge_bounds(command);
   if (starts) {
     for (Eigen::Index i = 0; i < actual.size(); ++i) {
-      const double jump = std::min(std::abs(command.position[i] - actual[i]), std::abs(command.position[i] - held[i]));
+      const double at = command.position[i];
+      const double jump = std::min(std::abs(at - actual[i]), std::abs(at - held[i]));
       if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
     }
   } else if (!continues) {

@@ -11,13 +11,15 @@
 
 namespace handsel::sim {
 
-/// Between two set-points n periods h apart, with t = n h and |jerk| <= J:
-/// |a1 - a0| <= J t, |v1 - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower <= p <= upper at
-/// each. The period is the usual one that most intervals between the set-points' stamps (arrivals where there are none) are near, once 100
-/// have come, 3200 where a stalling machine leaves it unclear; the continuity of those is judged too, once it is known. From one writer's
-/// set-point to another's, and to one whose sequence number has not grown, the time is unknown: the step must be possible within a time
-/// between 0 and the one between the two arrivals plus a period (0.02 s while the period is not known). A stream that starts anew after a
-/// silence beyond the watch must continue from the posture the robot is in, or from what its servos hold.
+/// Between two set-points n periods h apart, with t = n h and |jerk| <= J: |a1 - a0| <= J t, |v1
+/// - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower
+/// <= p <= upper at each. The period is the usual one that most intervals between the set-points'
+/// stamps (arrivals where there are none) are near, once 100 have come, 3200 where a stalling
+/// machine leaves it unclear; the continuity of those is judged too, once it is known. From one
+/// writer's set-point to another's, and to one whose sequence number has not grown, the time is
+/// unknown: the step must be possible within a time between 0 and the one between the two
+/// arrivals plus a period (0.02 s while the period is not known). A stream that starts anew after
+/// a silence beyond the watch must continue from the posture of the robot, or of its servos.
 class LimitsOracle {
  public:
   struct Held {  ///< a set-point, judged when the period is known

@@ -506,8 +506,9 @@ void SimWorld::step() { impl_->step(); }
 double SimWorld::time() const { return impl_->now(); }
 
 void SimWorld::command(const JointCommand& command, std::uint64_t writer, double arrival) {
-  impl_->limits.observe(command, writer, impl_->now(), impl_->robot->position(), impl_->side.position());
-  impl_->side.command(command, impl_->now(), arrival < 0 ? impl_->now() : arrival);
+  Impl& w = *impl_;
+  w.limits.observe(command, writer, w.now(), w.robot->position(), w.side.position());
+  w.side.command(command, w.now(), arrival < 0 ? w.now() : arrival);
 }
 
 void SimWorld::observe(const HumanObservation& seen) { impl_->people->follow(seen); }

@@ -204,7 +204,7 @@ TEST(LimitsOracleTest, ASecondWriterAndALongGapAreSeen) {
   Vector bent = far.position;
   bent[0] += 0.2;
   judge.oracle.observe(far, 2, judge.now, bent, far.position);
-  EXPECT_EQ(judge.oracle.violations(), 1u) << "what the servos hold moves nothing, however bent the robot is";
+  EXPECT_EQ(judge.oracle.violations(), 1u) << "a set-point that the servos hold moves nothing";
   judge.now += 0.5;
   judge.oracle.observe(stream.next(), 2, judge.now, bent, bent);
   EXPECT_EQ(judge.oracle.violations(), 2u);
