@@ -3,10 +3,10 @@
 
 #include <filesystem>
 
+#include "common/robot_side/robot_side.hpp"
 #include "sim/grip.hpp"
 #include "sim/person_hand.hpp"
 #include "sim/robot_body.hpp"
-#include "common/robot_side/robot_side.hpp"
 #include "sim/separation_oracle.hpp"
 
 namespace handsel::sim {

@@ -59,9 +59,9 @@ inline constexpr const char* kHolderNames[] = {"nobody", "surface", "robot", "hu
 inline constexpr const char* kPrimitiveNames[] = {"none", "box", "cylinder", "sphere"};
 inline constexpr const char* kHealthStateNames[] = {"starting", "ok", "degraded", "stopping"};
 inline constexpr const char* kSimActionNames[] = {
-    "pause",         "resume",     "reset",        "person_freeze", "person_unfreeze",     "person_dart", "person_leave",
-    "person_refuse", "robot_stop", "robot_enable", "silence_human", "silence_robot_state", "restore",
-    "human_frozen",  "human_empty", "human_late",   "human_elsewhere", "emergency_stop"};
+    "pause",        "resume",        "reset",       "person_freeze", "person_unfreeze", "person_dart",
+    "person_leave", "person_refuse", "robot_stop",  "robot_enable",  "silence_human",   "silence_robot_state",
+    "restore",      "human_frozen",  "human_empty", "human_late",    "human_elsewhere", "emergency_stop"};
 
 // clang-format off
 inline constexpr const char* kActionPhaseTexts[] = {

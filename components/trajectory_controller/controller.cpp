@@ -480,19 +480,19 @@ void Controller::resync(TimePoint now) noexcept {
   using State = RobotReference::State;
   const bool stale = robot_seen_.age(now) > settings_.timeouts.robot_state;
   if (stale) reference_.forget();
-  const bool looks = cycles_ % RobotReference::kInterval == 0 && !stale;
-  if (looks) reference_.look(state_, set_point_.position, follows());
+  const bool due = cycles_ % RobotReference::kInterval == 0 && !stale;
+  if (due) reference_.update(state_, set_point_.position, follows());
   const bool wanted = settings_.dry_run || apart();
   if (!wanted) adopted_ = false;
-  if (!wanted || !looks || arm_ != Arm::standing || !at_rest()) return;
+  if (!wanted || !due || arm_ != Arm::standing || !at_rest()) return;
   // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
   // that rest at the reference move nothing; they stay while the reference moves. Where the
   // reference is not known, or follows under a fault, set-points are taken once to the posture the
   // robot came to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
   constexpr double kRests = 0.05, kDeadBand = 0.002, kExact = 1e-12;  // [rad/s], [rad], [rad]
   const bool joins = state_.mode == DriveMode::enabled && !settings_.dry_run;
-  const bool told = state_.velocity.size() == state_.position.size();
-  const auto rests = [&](int axis) { return !told || std::abs(state_.velocity[axis]) < kRests; };
+  const bool has_velocity = state_.velocity.size() == state_.position.size();
+  const auto rests = [&](int axis) { return !has_velocity || std::abs(state_.velocity[axis]) < kRests; };
   const auto reached = [&](int axis) {
     const double target = movers_[static_cast<std::size_t>(axis)].target();
     return std::abs(inside(axis, state_.position[axis]) - target) <= kDeadBand;

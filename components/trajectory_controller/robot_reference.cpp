@@ -18,7 +18,7 @@ bool RobotReference::reported(const RobotState& state) const noexcept {
          farthest(state.reference.position, state.position) < kBent;
 }
 
-void RobotReference::look(const RobotState& state, const Vector& set_point, bool follows) noexcept {
+void RobotReference::update(const RobotState& state, const Vector& set_point, bool follows) noexcept {
   constexpr double kApart = 0.01;  // [rad] no lag of a robot side that follows is as large at rest
   if (!reported(state)) return forget();
   const bool rests = seen_ == state.reference.position;

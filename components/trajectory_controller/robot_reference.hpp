@@ -22,8 +22,8 @@ class RobotReference {
   /// `axes`: of the arm. `dof`: number of axes of the robot.
   RobotReference(std::vector<int> axes, int dof);
 
-  /// Looks at the newest state, every `kInterval` cycles. `follows`: the robot side says so.
-  void look(const RobotState& state, const Vector& set_point, bool follows) noexcept;
+  /// Evaluates the newest state, every `kInterval` cycles. `follows`: the robot side says so.
+  void update(const RobotState& state, const Vector& set_point, bool follows) noexcept;
   /// Forgets what was seen: the newest state is too old.
   void forget() noexcept { state_ = State::unknown; }
   State state() const noexcept { return state_; }

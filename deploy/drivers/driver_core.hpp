@@ -8,8 +8,8 @@
 
 #include "common/messages/robot.hpp"
 #include "common/model/robot_model.hpp"
-#include "common/trajectory/setpoint_filter.hpp"
 #include "common/robot_side/robot_side.hpp"
+#include "common/trajectory/setpoint_filter.hpp"
 
 namespace handsel::drivers {
 

@@ -18,7 +18,7 @@ struct Loop {
   ControllerBench bench;
   RobotSide side;
   bool wire_holds{true};
-  bool tells_reference{true};
+  bool reports_reference{true};
   Vector bend;      // of the measured posture from the reference, all axes
   double shaken{};  // of the fingers, by somebody who holds what is between them [rad]
   std::uint64_t sent{};
@@ -50,7 +50,7 @@ struct Loop {
       side.measured(bench.measured);
       bench.drive = side.mode();
       bench.refusal = side.refusal();
-      if (tells_reference) side.report(bench.reference);
+      if (reports_reference) side.report(bench.reference);
     }
   }
   /// Returns how far an axis of the arm has moved from where it is now, within this time [rad].
@@ -105,10 +105,10 @@ TEST(Overload, the_robot_stands_by_itself_and_goes_on_with_a_new_go) {
 /// Arm, head and hand each in the middle of a motion, and a hand bent by what it holds.
 // Set-points that followed the sagging arm let it creep by its sag ten times a second.
 TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_is) {
-  for (const bool tells : {true, false}) {
-    SCOPED_TRACE(tells ? "reference known" : "reference unknown");
+  for (const bool known : {true, false}) {
+    SCOPED_TRACE(known ? "reference known" : "reference unknown");
     Loop l;
-    l.tells_reference = tells;
+    l.reports_reference = known;
     l.bend.head(3) = Vector3(0.004, -0.003, 0.003);
     l.run(0.3);
     ASSERT_EQ(l.bench.go_to(goal(), 1), "");
@@ -120,10 +120,10 @@ TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_i
     for (const double seen : {0.1, 0.2, 0.4, 0.6}) {
       l.run(seen);
       l.bench.people.views.clear();
-      EXPECT_LT(l.creeps(1.0), tells ? 1e-9 : 0.005);
+      EXPECT_LT(l.creeps(1.0), known ? 1e-9 : 0.005);
       l.bench.people.views = {test::live_view()};
     }
-    EXPECT_LT(l.creeps(4.0), tells ? 1e-9 : 0.005) << "at most once by its sag";
+    EXPECT_LT(l.creeps(4.0), known ? 1e-9 : 0.005) << "at most once by its sag";
     l.run(1.0);
     EXPECT_LT(l.creeps(4.0), 1e-9);
     ++l.bench.go.epoch;
