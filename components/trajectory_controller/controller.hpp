@@ -261,9 +261,10 @@ class Controller {
   // Judging.
   ContactWatch contact_;
   Contact touch_{Contact::none};
-  bool yielding_{}, yield_waits_{}, held_before_{}, retreating_{};
-  double retreat_share_{};    // of its speed that the guard allows
-  Vector yield_from_, away_;  // away_: motion of the axes that leads away from the nearest person, largest 1
+  bool yielding_{}, yield_waits_{}, retreating_{};
+  std::uint32_t rest_demands_{};  // of the last cycle, to be answered by rest before giving way
+  double retreat_share_{};        // of its speed that the guard allows
+  Vector yield_from_, away_;      // away_: motion of the axes away from the nearest person, largest 1
   RobotReference reference_;
   ModeMachine modes_;
   ModeVerdict verdict_;

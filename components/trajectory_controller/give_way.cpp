@@ -33,9 +33,15 @@ void Controller::step_yield(TimePoint now) noexcept {
   const bool hands_rest = std::none_of(hands_.begin(), hands_.end(), [](const Hand& h) { return h.executor.state() == HandState::moving; });
   const bool may = arm_ == Arm::standing && !rejoin_ && !settings_.dry_run && verdict_.mode < Mode::fault && follows() &&
                    settings_.yield_speed > 0.0 && ((exchanging_.empty() && hands_rest) || touch_ == Contact::clamped);
-  // A cause of Hold or Stop is answered by rest first; who presses on then moves the arm again.
-  if (verdict_.mode >= Mode::hold && !held_before_) yield_waits_ = true;
-  held_before_ = verdict_.mode >= Mode::hold;
+  // Each new demand for rest is answered by rest first; a push that lasts then moves the arm again.
+  constexpr std::uint32_t kHeld = 1U;  // Hold or Stop itself: the bit of no cause
+  constexpr std::uint32_t kSilence = bit(Cause::robot_state_silent) | bit(Cause::human_state_silent);
+  constexpr std::uint32_t kDemands = kSilence | bit(Cause::drive_not_enabled) | bit(Cause::awaits_person);
+  // A contact ends the permission as well, so the word of the supervisor counts.
+  const std::uint32_t always = gate_.allowed() ? kHeld : kHeld | bit(Cause::no_go);
+  const std::uint32_t demands = verdict_.mode >= Mode::hold ? always | (verdict_.causes & kDemands) : 0U;
+  if ((demands & ~rest_demands_) != 0) yield_waits_ = true;
+  rest_demands_ = demands;
   if (at_rest()) yield_waits_ = false;
   const bool pushed = may && !yield_waits_ && contact_.pushed() && (verdict_.causes & (bit(Cause::robot_state_silent))) == 0;
   constexpr double kLeastShare = 0.1;  // that the guard must allow

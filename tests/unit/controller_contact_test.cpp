@@ -114,6 +114,28 @@ TEST(Controller, a_clamp_stays_a_stop_until_it_is_freed_and_the_arm_gives_way_as
   expect_smooth(b);
 }
 
+TEST(Controller, an_arm_that_gives_way_rests_first_when_the_permission_ends) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.start();
+  ASSERT_EQ(b.go_to(ControllerBench::arm(1.5, 0, 0), 1), "");
+  b.run(1.5);
+  b.external_torque[0] = -40.0;
+  b.run(1.3);
+  ASSERT_FALSE(b.at_rest()) << "the arm gives way";
+  b.go.allowed = false;
+  ++b.go.epoch;
+  bool rested = false;
+  for (int i = 0; i < 700 && !rested; ++i) {
+    b.tick();
+    rested = rested || b.at_rest();
+  }
+  EXPECT_TRUE(rested) << "a pause is answered by rest, though somebody presses";
+  b.run(0.2);
+  EXPECT_FALSE(b.at_rest()) << "a push that lasts then moves the arm again";
+  expect_smooth(b);
+}
+
 /// The hand has closed on something; anna, whose hand is at it, is being exchanged with.
 void close_for_an_exchange(ControllerBench& b) {
   b.external_torque = Vector::Zero(7);
