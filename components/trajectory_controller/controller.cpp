@@ -308,10 +308,29 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
 /// Of the arm, each axis by itself [s].
 double Controller::fastest_stop() const noexcept {
   double longest = 0.0;
+  const MotionState3& now = set_point_;
+  for (int axis : arm_axes_) longest = std::max(longest, fastest_stop(axis, now.velocity[axis], now.acceleration[axis]));
+  return longest;
+}
+
+double Controller::fastest_stop(int axis, double velocity, double acceleration) const noexcept {
   const KinematicLimits& l = robot_->stop_limits();
-  for (int axis : arm_axes_)
-    longest = std::max(longest,
-                       measure_stop(set_point_.velocity[axis], set_point_.acceleration[axis], l.acceleration[axis], l.jerk[axis]).duration);
+  return measure_stop(velocity, acceleration, l.acceleration[axis], l.jerk[axis]).duration;
+}
+
+/// Longest fastest stop of the arm from where the next cycle can bring it [s]. An axis that brakes
+/// almost too hard to stop without swinging back is much later one cycle on.
+double Controller::fastest_stop_after_a_cycle() const noexcept {
+  const double dt = settings_.period;
+  double longest = 0.0;
+  for (int axis : arm_axes_) {
+    const double jerk = robot_->stop_limits().jerk[axis];
+    for (const double j : {-jerk, jerk}) {
+      const double a = set_point_.acceleration[axis];
+      const double velocity = set_point_.velocity[axis] + a * dt + 0.5 * j * dt * dt;
+      longest = std::max(longest, fastest_stop(axis, velocity, a + j * dt));
+    }
+  }
   return longest;
 }
 
@@ -319,7 +338,8 @@ double Controller::fastest_stop() const noexcept {
 bool Controller::must_leave_path(TimePoint now) const noexcept {
   if (runner_.standing() || !(verdict_.mode == Mode::hold || too_fast())) return false;
   const double slack = verdict_.mode == Mode::hold ? kStopSlack : kGuardSlack;
-  return now + from_seconds(fastest_stop() + 3 * settings_.period) >= rest_due_ + from_seconds(slack);
+  const double needed = fastest_stop_after_a_cycle() + 3 * settings_.period;
+  return now + from_seconds(needed) >= rest_due_ + from_seconds(slack);
 }
 
 void Controller::give_up_path() noexcept {

@@ -160,6 +160,8 @@ class Controller {
   bool too_fast() const noexcept;
   bool must_leave_path(TimePoint now) const noexcept;
   double fastest_stop() const noexcept;
+  double fastest_stop(int axis, double velocity, double acceleration) const noexcept;
+  double fastest_stop_after_a_cycle() const noexcept;
   double onward_ease() const noexcept;
   void give_up_path() noexcept;
   void go_back_to_path() noexcept;

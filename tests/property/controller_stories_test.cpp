@@ -180,7 +180,7 @@ constexpr double kStopSlack = 0.05;  // [s] guarantee 2
 
 int steps_wanted() {
   const char* text = std::getenv("HANDSEL_STORY_STEPS");
-  return text ? std::atoi(text) : 100000;
+  return text ? std::atoi(text) : 1'000'000;
 }
 
 TEST(ControllerStories, every_set_point_keeps_the_guard_limits_and_is_continuous) {

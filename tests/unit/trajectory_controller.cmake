@@ -18,9 +18,9 @@ handsel_test(stop_proof SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/stop_proof
 add_test(NAME stop_proof_million COMMAND test_stop_proof)
 set_tests_properties(stop_proof_million PROPERTIES LABELS full TIMEOUT 3600 ENVIRONMENT HANDSEL_PROOF_MOTIONS=1000000)
 set_tests_properties(controller_stories separation_stories PROPERTIES TIMEOUT 300)
-add_test(NAME controller_stories_million COMMAND test_controller_stories)
-set_tests_properties(controller_stories_million PROPERTIES LABELS full TIMEOUT 900
-  ENVIRONMENT "HANDSEL_STORY_STEPS=1000000;GTEST_FILTER=ControllerStories.every_set_point*")
+add_test(NAME controller_stories_millions COMMAND test_controller_stories)
+set_tests_properties(controller_stories_millions PROPERTIES LABELS full TIMEOUT 900
+  ENVIRONMENT "HANDSEL_STORY_STEPS=4000000;GTEST_FILTER=ControllerStories.every_set_point*")
 add_test(NAME separation_stories_thousand COMMAND test_separation_stories)
 set_tests_properties(separation_stories_thousand PROPERTIES LABELS full TIMEOUT 900 ENVIRONMENT HANDSEL_SEPARATION_RUNS=1000)
 add_executable(test_realtime ${CMAKE_CURRENT_LIST_DIR}/../system/realtime_test.cpp)
