@@ -177,7 +177,8 @@ class ControllerBench {
     const bool hold = !stop && (!go_told_ || (running && since > t.forecast && silent(forecast_at_, t.forecast)));
     const double least = fastest_stop();
     stop_.look(stop, at_rest(), now, least, stops, latest_stop);
-    hold_.look(hold, at_rest(), now, least, holds, latest_hold);
+    // A stop that becomes a hold demands nothing new: an arm that has rested may give way.
+    hold_.look(stop || hold, at_rest(), now, least, holds, latest_hold);
   }
   std::deque<std::pair<TimePoint, HumanState>> seen_;
   TimePoint robot_at_{from_seconds(50.0)}, human_at_{robot_at_}, forecast_at_{robot_at_};
