@@ -13,6 +13,7 @@ namespace {
 
 constexpr Duration kCheckPeriod = std::chrono::milliseconds(100);  // that of the heartbeats
 constexpr std::uint64_t kSpeakEvery = 2;                           // checks
+constexpr Duration kLately = 5 * kCheckPeriod;
 
 std::string seconds(Duration time) {
   char text[32];
@@ -31,20 +32,31 @@ ProcessWatch::ProcessWatch(Bus& bus, Launcher& launcher, const LivenessSettings&
 void ProcessWatch::hear(const ComponentHealth& health) {
   const auto watched = watched_.find(health.component);
   if (watched == watched_.end() || static_cast<std::uint32_t>(watched->second.pid) != health.pid) return;
-  heard_ = true;
-  watched->second.job_silent = health.job_silent;
-  watched->second.liveness.beat(monotonic_now(), watched->second.job_silent);
+  Watched& process = watched->second;
+  process.last_beat = monotonic_now();
+  process.job_silent = health.job_silent;
+  process.liveness.beat(process.last_beat, process.job_silent);
 }
 
-/// Heartbeats wait while a thread of this process waits for a processor, or while nobody listens on this one. When everybody is silent at
-/// once it is the listener that is deaf.
+/// Returns whether most processes are silent at once: then the listener, the transport or the
+/// machine is at fault. A stopped process (SIGSTOP) does not count; its silence is its own.
+bool ProcessWatch::most_are_silent(TimePoint now) const {
+  std::size_t expected = 0, beating = 0;
+  for (const auto& [name, process] : watched_) {
+    if (process.last_beat == TimePoint{} || process.state == 'T') continue;
+    ++expected;
+    beating += now - process.last_beat < kLately;
+  }
+  return expected > 1 && 2 * beating < expected;
+}
+
+/// Adds the time in which heartbeats waited because this process had no processor, or received none.
 void ProcessWatch::measure_own_delay(TimePoint now) {
   const Duration passed = now - last_check_, threads = own_threads_.update(getpid());
-  const bool deaf = !heard_ && watched_.size() > 1;
-  own_delay_ += deaf ? passed : std::max({Duration{}, passed - kCheckPeriod, threads - own_threads_delay_});
+  const Duration late = std::max({Duration{}, passed - kCheckPeriod, threads - own_threads_delay_});
+  own_delay_ += most_are_silent(now) ? passed : late;
   own_threads_delay_ = threads;
   last_check_ = now;
-  heard_ = false;
 }
 
 void ProcessWatch::check() {
@@ -69,6 +81,7 @@ void ProcessWatch::judge(const ProcessStatus& process, TimePoint now) {
     return;
   }
   Watched& watched = known->second;
+  watched.state = signs.state;
   if (watched.job_silent) watched.total_delay = watched.threads.update(process.pid);
   signs.total_delay = watched.total_delay;
   if (watched.liveness.judge(signs) != Life::hung) return;

@@ -28,6 +28,8 @@ class ProcessWatch {
   struct Watched {
     pid_t pid;
     Liveness liveness;
+    char state{'S'};  // LifeSigns::state
+    TimePoint last_beat{};
     ThreadDelay threads{};
     Duration total_delay{};
     bool job_silent{};
@@ -37,6 +39,7 @@ class ProcessWatch {
   void judge(const ProcessStatus& process, TimePoint now);
   void speak_for(const ProcessStatus& process);
   void measure_own_delay(TimePoint now);
+  bool most_are_silent(TimePoint now) const;
 
   Launcher& launcher_;
   LivenessSettings settings_;
@@ -45,7 +48,6 @@ class ProcessWatch {
   ThreadDelay own_threads_;
   Duration own_threads_delay_{}, own_delay_{};
   TimePoint last_check_{};
-  bool heard_{};  // anybody, since the last check
   std::uint64_t checks_{};
 };
 

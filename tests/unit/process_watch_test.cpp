@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 
 #include "common/bus/dds_bus.hpp"
 #include "common/bus/executor.hpp"
@@ -28,6 +29,7 @@ struct Watched : testing::Test {
   std::unique_ptr<Launcher> launcher;
   std::unique_ptr<ProcessWatch> watch;
   bool silent{};
+  std::set<std::string> silent_ones;
   bool job_silent{};                    // in the heartbeats
   std::string reason;                   // in the heartbeats
   std::optional<ComponentHealth> said;  // in the name of the process
@@ -46,7 +48,7 @@ struct Watched : testing::Test {
   void beat() {
     if (silent || !launcher) return;
     for (const ProcessStatus& process : launcher->processes()) {
-      if (process.pid <= 0) continue;
+      if (process.pid <= 0 || silent_ones.count(process.name) > 0) continue;
       ComponentHealth health;
       health.component = process.name;
       health.pid = static_cast<std::uint32_t>(process.pid);
@@ -94,6 +96,17 @@ TEST_F(Watched, when_everybody_is_silent_at_once_the_listener_is_deaf_and_kills_
   silent = true;
   until(3.0, [] { return false; });
   for (const ProcessStatus& process : launcher->processes()) EXPECT_EQ(process.restarts, 0) << process.name;
+}
+
+TEST_F(Watched, when_most_are_silent_at_once_the_machine_is_at_fault_and_nobody_is_killed) {
+  start("exec sleep 1000", {}, {"box", "second", "third", "fourth", "fifth"});
+  until(0.5, [] { return false; });
+  silent_ones = {"box", "second", "third"};
+  until(3.0, [] { return false; });
+  for (const ProcessStatus& one : launcher->processes()) EXPECT_EQ(one.restarts, 0) << one.name;
+  silent_ones = {"box", "second"};
+  const auto replaced = [&] { return launcher->processes()[0].restarts == 1; };
+  EXPECT_TRUE(until(5.0, replaced)) << "two of five are replaced";
 }
 
 TEST_F(Watched, a_process_whose_job_is_silent_for_long_is_replaced_though_it_beats) {
