@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
-#include <deque>
 #include <functional>
 #include <limits>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 #include <dds/dds.h>
 
@@ -28,8 +29,9 @@ namespace handsel {
 namespace {
 
 constexpr int kDomain = 38;
-constexpr double kPlace = 0.01;  // [rad]
-constexpr double kNamed = 1.0;   // [s]
+constexpr double kPlace = 0.01;           // [rad]
+constexpr double kNamed = 1.0;            // [s]
+constexpr std::ptrdiff_t kFollowed = 50;  // set-points of which the robot follows one
 const Duration kPatience = std::chrono::seconds(30);
 
 std::uint64_t runs() {
@@ -221,8 +223,7 @@ class SecondWriterTest : public testing::Test {
     DdsBus& bus = session_.bus();
     bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt&) {
       keep(known_.set_point, m);
-      path_.push_back(m.position);
-      if (path_.size() > 50) path_.pop_front();
+      if (watching_) set_points_.push_back({m.stamp, m.position});
     });
     bus.subscribe<Go>([this](const Go& m, const Receipt&) { keep(known_.go, m); });
     bus.subscribe<Scene>([this](const Scene& m, const Receipt&) { keep(known_.scene, m); });
@@ -230,12 +231,7 @@ class SecondWriterTest : public testing::Test {
     bus.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt&) { keep(known_.action, m); });
     bus.subscribe<RobotState>([this](const RobotState& m, const Receipt&) {
       keep(known_.state, m);
-      if (!watching_) return;
-      // The robot follows the set-points of the last 50 ms, sampled with the delays of this process.
-      double off = std::numeric_limits<double>::infinity();
-      if (resting_) off = distance(m.position, place_);
-      for (const Vector& set_point : path_) off = resting_ ? off : std::min(off, distance(m.position, set_point));
-      off_ = std::max(off_, off);
+      if (watching_) states_.push_back({m.stamp, m.position});
     });
   }
   void SetUp() override {
@@ -251,6 +247,25 @@ class SecondWriterTest : public testing::Test {
     double off = 0;
     for (const int axis : arm_) off = std::max(off, std::abs(a[axis] - b[axis]));
     return off;
+  }
+  /// Returns the largest distance of an arm axis from the place it should have [rad]: `place`, or
+  /// without one the nearest of the last 50 set-points that were sent before the state.
+  double largest_distance(const Vector* place) const {
+    double largest = 0.0;
+    for (const Sent& state : states_) {
+      if (place != nullptr) {
+        largest = std::max(largest, distance(state.position, *place));
+        continue;
+      }
+      const auto later = [](Stamp stamp, const Sent& set_point) { return stamp < set_point.stamp; };
+      const auto end = std::upper_bound(set_points_.begin(), set_points_.end(), state.stamp, later);
+      if (end - set_points_.begin() < kFollowed) continue;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (auto set_point = end - kFollowed; set_point != end; ++set_point)
+        nearest = std::min(nearest, distance(state.position, set_point->position));
+      largest = std::max(largest, nearest);
+    }
+    return largest;
   }
   bool at_rest() const {
     return session_.snapshot().truth.ever && !session_.snapshot().truth.sample.robot_moving &&
@@ -296,9 +311,9 @@ class SecondWriterTest : public testing::Test {
     if (in_motion) begin_motion();
     Effect effect;
     const std::uint64_t before = session_.snapshot().truth.sample.limit_violations;
-    resting_ = !in_motion;
-    place_ = known_.state.position;
-    off_ = 0;
+    const Vector place = known_.state.position;
+    states_.clear();
+    set_points_.clear();
     watching_ = true;
     const TimePoint begin = session_.bus().now();
     auto writer = topic.make(known_, kind);
@@ -317,7 +332,9 @@ class SecondWriterTest : public testing::Test {
     const bool cleared = session_.wait(from_seconds(3), [&] { return named_by(*topic.row).empty(); });
     effect.cleared_after = cleared ? to_seconds(session_.bus().now() - gone) : -1;
     if (in_motion) end_motion();
-    effect.off = off_;
+    EXPECT_GT(states_.size(), 100u);
+    EXPECT_GT(set_points_.size(), 500u);
+    effect.off = largest_distance(in_motion ? nullptr : &place);
     effect.violations = session_.snapshot().truth.sample.limit_violations - before;
     effect.commanders = session_.snapshot().truth.sample.commanders;
     return effect;
@@ -347,10 +364,12 @@ class SecondWriterTest : public testing::Test {
   Session& session_;
   Known known_;
   std::vector<int> arm_;
-  Vector place_;
-  std::deque<Vector> path_;  // set-points accepted last
-  bool watching_{false}, resting_{true}, picks_{true};
-  double off_{};
+  struct Sent {
+    Stamp stamp;
+    Vector position;
+  };
+  std::vector<Sent> states_, set_points_;  // those accepted while a second writer was there
+  bool watching_{false}, picks_{true};
 };
 
 TEST_F(SecondWriterTest, moves_nothing_and_is_named) {
