@@ -9,7 +9,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
-#include "common/config/scenario.pb.h"
+#include "common/config/schema/scenario.pb.h"
 #include "sim/time_keeper.hpp"
 #include "sim/world.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/bus/paced_clock.hpp"
-#include "sim/settings.hpp"
+#include "sim/scene/settings.hpp"
 
 namespace handsel::sim {
 

@@ -10,13 +10,13 @@
 
 #include "common/model/manipulator.hpp"
 #include "common/model/robot_capsules.hpp"
-#include "sim/contacts.hpp"
-#include "sim/hand_measure.hpp"
-#include "sim/handover_oracle.hpp"
-#include "sim/limits_oracle.hpp"
-#include "sim/people.hpp"
-#include "sim/robot_grasp.hpp"
-#include "sim/stuck_hand.hpp"
+#include "sim/oracle/handover_oracle.hpp"
+#include "sim/oracle/limits_oracle.hpp"
+#include "sim/people/people.hpp"
+#include "sim/physics/contacts.hpp"
+#include "sim/robot/hand_measure.hpp"
+#include "sim/robot/robot_grasp.hpp"
+#include "sim/robot/stuck_hand.hpp"
 
 namespace handsel::sim {
 

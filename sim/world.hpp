@@ -8,9 +8,9 @@
 #include "common/messages/perception.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
-#include "sim/contacts.hpp"
-#include "sim/scene_setup.hpp"
-#include "sim/settings.hpp"
+#include "sim/physics/contacts.hpp"
+#include "sim/scene/scene_setup.hpp"
+#include "sim/scene/settings.hpp"
 
 namespace handsel::sim {
 

@@ -2,7 +2,7 @@
 set(HANDSEL_RUCKIG "" CACHE PATH "Sources of Ruckig, for benchmarks and tests beside it")
 if(HANDSEL_RUCKIG)
   file(GLOB ruckig_sources ${HANDSEL_RUCKIG}/src/ruckig/*_step?.cpp ${HANDSEL_RUCKIG}/src/ruckig/brake.cpp)
-  add_library(ruckig_peer STATIC ${ruckig_sources} ${CMAKE_CURRENT_LIST_DIR}/support/ruckig_peer.cpp)
+  add_library(ruckig_peer STATIC ${ruckig_sources} ${CMAKE_CURRENT_LIST_DIR}/support/oracles/ruckig_peer.cpp)
   target_include_directories(ruckig_peer SYSTEM PRIVATE ${HANDSEL_RUCKIG}/include)
   target_include_directories(ruckig_peer PRIVATE ${CMAKE_SOURCE_DIR})
   target_compile_options(ruckig_peer PRIVATE -O3 -march=native)

@@ -6,8 +6,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "common/bus/dds_defaults.hpp"
-#include "common/bus/qos.hpp"
+#include "common/bus/dds/dds_defaults.hpp"
+#include "common/bus/dds/qos.hpp"
 #include "idl/attention.h"
 #include "idl/execution.h"
 #include "idl/perception.h"

@@ -11,8 +11,8 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/errors.hpp"
-#include "common/bus/dds_bus.hpp"
-#include "common/bus/dds_defaults.hpp"
+#include "common/bus/dds/dds_bus.hpp"
+#include "common/bus/dds/dds_defaults.hpp"
 #include "common/bus/state_directory.hpp"
 #include "common/messages/system.hpp"
 #include "common/wire/interface_id.hpp"

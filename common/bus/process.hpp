@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/bus/bus.hpp"
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/bus/node_context.hpp"
 
 namespace handsel {

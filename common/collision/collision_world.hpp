@@ -12,7 +12,7 @@
 
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/object_model.hpp"
 #include "common/model/robot_model.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "common/config/people.pb.h"
+#include "common/config/schema/people.pb.h"
 
 namespace handsel {
 

@@ -2,7 +2,7 @@
 
 #include "common/config/described.hpp"
 #include "common/config/resources.hpp"
-#include "common/config/scenario.pb.h"
+#include "common/config/schema/scenario.pb.h"
 
 namespace handsel {
 

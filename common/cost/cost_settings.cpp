@@ -1,8 +1,8 @@
 #include "common/cost/cost_settings.hpp"
 
 #include "common/base/errors.hpp"
-#include "common/config/cost.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/schema/cost.pb.h"
 
 namespace handsel {
 

@@ -9,7 +9,7 @@
 #include "common/cost/person_frame.hpp"
 #include "common/cost/wide_cost.hpp"
 #include "common/messages/world.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/robot_capsules.hpp"
 
 namespace handsel {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/config/resources.hpp"
-#include "common/model/description_parts.hpp"
-#include "common/model/robot_model_builder.hpp"
+#include "common/model/description/description_parts.hpp"
+#include "common/model/description/robot_model_builder.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;

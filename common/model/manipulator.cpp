@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "common/config/resources.hpp"
-#include "common/config/robot.pb.h"
-#include "common/model/robot_model_builder.hpp"
+#include "common/config/schema/robot.pb.h"
+#include "common/model/description/robot_model_builder.hpp"
 
 namespace handsel {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "common/config/resources.hpp"
-#include "common/config/robot.pb.h"
-#include "common/model/description_parts.hpp"
+#include "common/config/schema/robot.pb.h"
+#include "common/model/description/description_parts.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/config/resources.hpp"
-#include "common/model/robot_model_builder.hpp"
+#include "common/model/description/robot_model_builder.hpp"
 
 namespace handsel {
 namespace {

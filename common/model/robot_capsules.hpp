@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "common/messages/world.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/robot_model.hpp"
 
 namespace handsel {

@@ -67,7 +67,7 @@ enum class Meshes { load, skip };
 
 class RobotModel {
  public:
-  /// Loads a robot description (Protobuf text, see common/config/robot.proto) with its URDF, SRDF and meshes.
+  /// Loads a robot description (Protobuf text, see common/config/schema/robot.proto) with its URDF, SRDF and meshes.
   /// Throws ConfigError / MissingError naming the file and what is wrong.
   static RobotModel load(const std::filesystem::path& description);
   /// Loads a bare URDF: every movable non-mimic joint is an axis, in document order; group "all" and those of the SRDF. Position and

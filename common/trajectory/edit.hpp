@@ -1,7 +1,7 @@
 // Cutting, joining and comparing trajectories.
 #pragma once
 
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 #include "common/trajectory/trajectory.hpp"
 
 namespace handsel {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/trajectory/lanes.hpp"
+#include "common/trajectory/batch/lanes.hpp"
 #include "common/trajectory/min_time.hpp"
 
 namespace handsel {

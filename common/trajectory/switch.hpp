@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/trajectory/min_time.hpp"
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 
 namespace handsel {
 

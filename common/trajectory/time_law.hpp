@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 #include "common/trajectory/switch.hpp"
 #include "common/trajectory/trajectory.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/model/body_motion.hpp"
+#include "common/model/human/body_motion.hpp"
 #include "components/attention/looks.hpp"
 #include "components/attention/watch.hpp"
 

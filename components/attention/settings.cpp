@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <span>
 
-#include "common/config/attention.pb.h"
 #include "common/config/located.hpp"
 #include "common/config/resources.hpp"
+#include "common/config/schema/attention.pb.h"
 #include "common/messages/names.hpp"
 
 namespace handsel::attention {

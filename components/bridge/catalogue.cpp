@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "common/config/resources.hpp"
-#include "common/config/robot.pb.h"
+#include "common/config/schema/robot.pb.h"
 #include "common/topics/topics.hpp"
 #include "common/wire/schema.hpp"
 #include "components/bridge/drawn_urdf.hpp"

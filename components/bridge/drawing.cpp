@@ -3,7 +3,7 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
 
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/object_extent.hpp"
 #include "components/bridge/drawing.pb.h"
 

@@ -6,8 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "common/config/bridge.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/schema/bridge.pb.h"
 #include "common/messages/system.hpp"
 #include "components/bridge/catalogue.hpp"
 

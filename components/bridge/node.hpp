@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/bus/dds/raw.hpp"
 #include "common/bus/node_context.hpp"
-#include "common/bus/raw.hpp"
 #include "components/bridge/drawing.hpp"
 #include "components/bridge/server.hpp"
 

@@ -1,7 +1,7 @@
 #include "components/collision_checker/node.hpp"
 
-#include "common/config/collision_checker.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/schema/collision_checker.pb.h"
 #include "common/cost/cost_settings.hpp"
 
 namespace handsel::collision_checker {

@@ -1,7 +1,7 @@
 #include "components/costmap/node.hpp"
 
-#include "common/config/costmap.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/schema/costmap.pb.h"
 #include "common/cost/cost_settings.hpp"
 
 namespace handsel::costmap {

@@ -9,10 +9,10 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
-#include "common/config/grasp_planner.pb.h"
-#include "components/grasp_planner/grasp_book.hpp"
-#include "components/grasp_planner/grasp_choice.hpp"
-#include "components/grasp_planner/regrasp_desk.hpp"
+#include "common/config/schema/grasp_planner.pb.h"
+#include "components/grasp_planner/choice/grasp_choice.hpp"
+#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/regrasp_desk.hpp"
 
 namespace handsel::grasp_planner {
 

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "common/cost/reach_check.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {

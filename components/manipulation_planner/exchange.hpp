@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/manipulation_planner.pb.h"
+#include "common/config/schema/manipulation_planner.pb.h"
 #include "common/cost/human_cost.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"

@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "common/collision/margins.hpp"
-#include "common/model/human_body.hpp"
-#include "common/trajectory/broken_line.hpp"
+#include "common/model/human/human_body.hpp"
+#include "common/trajectory/path/broken_line.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
 namespace handsel::manipulation_planner {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "common/messages/names.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {

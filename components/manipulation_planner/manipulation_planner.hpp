@@ -13,7 +13,7 @@
 
 #include "common/base/pace.hpp"
 #include "common/collision/collision_world.hpp"
-#include "common/config/manipulation_planner.pb.h"
+#include "common/config/schema/manipulation_planner.pb.h"
 #include "common/cost/human_cost.hpp"
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/object_extent.hpp"
 
 namespace handsel::manipulation_planner {

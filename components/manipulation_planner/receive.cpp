@@ -3,8 +3,8 @@
 #include <cmath>
 #include <set>
 
-#include "common/model/holding_hand.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/holding_hand.hpp"
+#include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
 namespace handsel::manipulation_planner {

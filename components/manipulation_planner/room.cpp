@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "components/manipulation_planner/manipulation_planner.hpp"
 
 namespace handsel::manipulation_planner {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/geometry/segments.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::manipulation_planner {
 

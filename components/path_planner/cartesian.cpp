@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "common/model/srs_arm.hpp"
-#include "components/path_planner/random.hpp"
-#include "components/path_planner/search_space.hpp"
-#include "components/path_planner/transition_test.hpp"
+#include "components/path_planner/search/random.hpp"
+#include "components/path_planner/search/search_space.hpp"
+#include "components/path_planner/search/transition_test.hpp"
 
 namespace handsel::path_planner {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::path_planner {
 

@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 
-#include "common/trajectory/broken_line.hpp"
-#include "components/path_planner/random.hpp"
-#include "components/path_planner/search.hpp"
-#include "components/path_planner/search_space.hpp"
-#include "components/path_planner/smoothing.hpp"
+#include "common/trajectory/path/broken_line.hpp"
+#include "components/path_planner/search/random.hpp"
+#include "components/path_planner/search/search.hpp"
+#include "components/path_planner/search/search_space.hpp"
+#include "components/path_planner/search/smoothing.hpp"
 
 namespace handsel::path_planner {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/path_planner.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/schema/path_planner.pb.h"
 #include "common/cost/cost_settings.hpp"
 #include "components/path_planner/cartesian.hpp"
 #include "components/path_planner/head_room.hpp"

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "components/path_planner/search.hpp"
-#include "components/path_planner/smoothing.hpp"
+#include "components/path_planner/search/search.hpp"
+#include "components/path_planner/search/smoothing.hpp"
 
 namespace handsel::path_planner {
 namespace {

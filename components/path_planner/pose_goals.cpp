@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "components/path_planner/random.hpp"
+#include "components/path_planner/search/random.hpp"
 
 namespace handsel::path_planner {
 namespace {

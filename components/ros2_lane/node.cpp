@@ -3,8 +3,8 @@
 #include <cstdio>
 
 #include "common/config/resources.hpp"
-#include "common/config/scenario.pb.h"
-#include "common/model/description_parts.hpp"
+#include "common/config/schema/scenario.pb.h"
+#include "common/model/description/description_parts.hpp"
 #include "common/wire/ros2.hpp"
 
 namespace handsel::ros2_lane {

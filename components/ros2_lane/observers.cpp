@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "common/model/description_parts.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/description/description_parts.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::ros2_lane {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/ros2_lane.pb.h"
+#include "common/config/schema/ros2_lane.pb.h"
 #include "common/messages/perception.hpp"
 #include "components/ros2_lane/tf_tree.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/ros2_lane.pb.h"
+#include "common/config/schema/ros2_lane.pb.h"
 #include "common/messages/execution.hpp"
 #include "common/messages/ros2.hpp"
 #include "common/messages/task.hpp"

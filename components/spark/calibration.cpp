@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "common/base/errors.hpp"
-#include "common/config/calibration.pb.h"
 #include "common/config/resources.hpp"
+#include "common/config/schema/calibration.pb.h"
 
 namespace handsel::spark {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/base/time.hpp"
-#include "common/config/spark.pb.h"
+#include "common/config/schema/spark.pb.h"
 
 namespace handsel::spark {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "common/messages/world.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::spark {
 

@@ -6,7 +6,7 @@
 
 #include "common/config/people.hpp"
 #include "common/config/resources.hpp"
-#include "common/config/scenario.pb.h"
+#include "common/config/schema/scenario.pb.h"
 #include "components/spark/capture_age.hpp"
 
 namespace handsel::spark {

@@ -6,13 +6,13 @@
 #include "common/base/pace.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
-#include "common/config/scenario.pb.h"
+#include "common/config/schema/scenario.pb.h"
 #include "common/messages/attention.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/task.hpp"
 #include "components/spark/calibration.hpp"
-#include "components/spark/fact_finder.hpp"
-#include "components/spark/people_tracker.hpp"
+#include "components/spark/facts/fact_finder.hpp"
+#include "components/spark/people/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
 
 namespace handsel::spark {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/spark.pb.h"
+#include "common/config/schema/spark.pb.h"
 #include "common/messages/world.hpp"
 
 namespace handsel::spark {

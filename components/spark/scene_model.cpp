@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <limits>
 
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/manipulator.hpp"
 #include "common/model/object_extent.hpp"
 #include "components/spark/directed.hpp"

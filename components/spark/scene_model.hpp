@@ -11,7 +11,7 @@
 
 #include "common/base/time.hpp"
 #include "common/collision/collision_world.hpp"
-#include "common/config/spark.pb.h"
+#include "common/config/schema/spark.pb.h"
 #include "common/messages/robot.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/robot_capsules.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/config/resources.hpp"
-#include "common/config/robot.pb.h"
+#include "common/config/schema/robot.pb.h"
 #include "common/model/manipulator.hpp"
 
 namespace handsel::supervisor {

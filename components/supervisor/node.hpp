@@ -6,7 +6,7 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/model/arm_reach.hpp"
-#include "components/supervisor/state_store.hpp"
+#include "components/supervisor/safety/state_store.hpp"
 #include "components/supervisor/supervisor.hpp"
 
 namespace handsel::supervisor {

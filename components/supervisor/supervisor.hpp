@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "common/base/time.hpp"
-#include "common/config/supervisor.pb.h"
+#include "common/config/schema/supervisor.pb.h"
 #include "common/messages/attention.hpp"
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
 #include "components/supervisor/goal_inbox.hpp"
-#include "components/supervisor/lost_people.hpp"
-#include "components/supervisor/permission.hpp"
-#include "components/supervisor/safety_latches.hpp"
-#include "components/supervisor/task_run.hpp"
+#include "components/supervisor/safety/lost_people.hpp"
+#include "components/supervisor/safety/permission.hpp"
+#include "components/supervisor/safety/safety_latches.hpp"
+#include "components/supervisor/task/task_run.hpp"
 
 namespace handsel::supervisor {
 

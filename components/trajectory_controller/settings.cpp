@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/config/resources.hpp"
-#include "common/config/trajectory_controller.pb.h"
+#include "common/config/schema/trajectory_controller.pb.h"
 
 namespace handsel::trajectory_controller {
 

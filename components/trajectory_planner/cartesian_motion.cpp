@@ -9,7 +9,7 @@
 #include "common/model/platform.hpp"
 #include "common/model/srs_arm.hpp"
 #include "common/trajectory/limits_check.hpp"
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "common/collision/collision_world.hpp"
 #include "common/model/robot_model.hpp"
-#include "common/trajectory/approximate.hpp"
-#include "common/trajectory/smooth.hpp"
+#include "common/trajectory/path/approximate.hpp"
+#include "common/trajectory/path/smooth.hpp"
 #include "components/trajectory_planner/closed_chain.hpp"
 #include "components/trajectory_planner/speed_along.hpp"
 

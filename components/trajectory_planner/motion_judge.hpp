@@ -6,7 +6,7 @@
 
 #include "common/collision/collision_world.hpp"
 #include "common/model/robot_model.hpp"
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 
 namespace handsel::trajectory_planner {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/config/resources.hpp"
-#include "common/config/trajectory_planner.pb.h"
+#include "common/config/schema/trajectory_planner.pb.h"
 #include "common/cost/cost_settings.hpp"
 #include "common/model/platform.hpp"
 

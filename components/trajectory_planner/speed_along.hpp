@@ -6,7 +6,7 @@
 
 #include "common/cost/human_cost.hpp"
 #include "common/model/robot_model.hpp"
-#include "common/trajectory/smooth.hpp"
+#include "common/trajectory/path/smooth.hpp"
 
 namespace handsel::trajectory_planner {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/trajectory/limits_check.hpp"
-#include "common/trajectory/segment_table.hpp"
-#include "common/trajectory/smooth.hpp"
+#include "common/trajectory/path/segment_table.hpp"
+#include "common/trajectory/path/smooth.hpp"
 #include "components/trajectory_planner/motion_judge.hpp"
 
 namespace handsel::trajectory_planner {

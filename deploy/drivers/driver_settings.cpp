@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "common/config/driver.pb.h"
 #include "common/config/resources.hpp"
-#include "common/config/trajectory_controller.pb.h"
+#include "common/config/schema/driver.pb.h"
+#include "common/config/schema/trajectory_controller.pb.h"
 
 namespace handsel::drivers {
 

@@ -1,4 +1,4 @@
-// Settings of the two example drivers; values and meanings as in common/config/driver.proto.
+// Settings of the two example drivers; values and meanings as in common/config/schema/driver.proto.
 #pragma once
 
 #include <filesystem>

@@ -4,7 +4,7 @@
 
 #include "common/base/errors.hpp"
 #include "common/wire/interface_id.hpp"
-#include "deploy/handsel/commands.hpp"
+#include "deploy/handsel/commands/commands.hpp"
 
 namespace {
 

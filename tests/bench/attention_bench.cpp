@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/bus/node_context.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "components/attention/settings.hpp"
 
 namespace handsel::attention {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"

@@ -12,7 +12,7 @@
 #include "common/trajectory/solve.hpp"
 #include "components/collision_checker/forecaster.hpp"
 #include "components/trajectory_controller/controller.hpp"
-#include "tests/support/live_view.hpp"
+#include "tests/support/processes/live_view.hpp"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "components/path_planner/path_planner.hpp"
-#include "components/path_planner/search.hpp"
+#include "components/path_planner/search/search.hpp"
+#include "tests/support/oracles/quantile.hpp"
 #include "tests/support/panda_problems.hpp"
-#include "tests/support/quantile.hpp"
-#include "tests/support/thread_time.hpp"
+#include "tests/support/processes/thread_time.hpp"
 
 namespace handsel::path_planner {
 namespace {

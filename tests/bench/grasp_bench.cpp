@@ -7,13 +7,13 @@
 #include <random>
 #include <thread>
 
-#include "components/grasp_planner/epsilon.hpp"
-#include "components/grasp_planner/frame_search.hpp"
-#include "components/grasp_planner/grasp_book.hpp"
-#include "components/grasp_planner/grasp_choice.hpp"
-#include "components/grasp_planner/so3_grid.hpp"
-#include "tests/support/hull_oracle.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "components/grasp_planner/choice/grasp_choice.hpp"
+#include "components/grasp_planner/list/epsilon.hpp"
+#include "components/grasp_planner/list/frame_search.hpp"
+#include "components/grasp_planner/list/so3_grid.hpp"
+#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "tests/support/oracles/hull_oracle.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::grasp_planner {
 namespace {

@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <random>
 
-#include "common/trajectory/broken_line.hpp"
+#include "common/trajectory/path/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
+#include "tests/support/processes/thread_times.hpp"
 #include "tests/support/standing_person.hpp"
-#include "tests/support/thread_times.hpp"
 
 namespace handsel::path_planner {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <functional>
 
-#include "common/model/human_body.hpp"
-#include "components/grasp_planner/grasp_choice.hpp"
+#include "common/model/human/human_body.hpp"
+#include "components/grasp_planner/choice/grasp_choice.hpp"
 #include "tests/support/duo_stage.hpp"
 
 namespace handsel::grasp_planner {

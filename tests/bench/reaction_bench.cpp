@@ -18,18 +18,18 @@
 #include <thread>
 #include <vector>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/bus/executor.hpp"
 #include "common/config/resources.hpp"
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/task.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/solve.hpp"
-#include "tests/support/live_view.hpp"
+#include "tests/support/processes/live_view.hpp"
 
 namespace handsel {
 namespace {

@@ -12,8 +12,8 @@
 #include "components/manipulation_planner/exchange.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
+#include "tests/support/processes/thread_times.hpp"
 #include "tests/support/standing_person.hpp"
-#include "tests/support/thread_times.hpp"
 
 namespace handsel {
 namespace {

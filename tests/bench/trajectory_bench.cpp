@@ -12,13 +12,13 @@
 
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/min_time.hpp"
-#include "common/trajectory/segment_table.hpp"
-#include "common/trajectory/smooth.hpp"
+#include "common/trajectory/path/segment_table.hpp"
+#include "common/trajectory/path/smooth.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/switch.hpp"
 #include "common/trajectory/time_law.hpp"
-#include "tests/support/ruckig_peer.hpp"
+#include "tests/support/oracles/ruckig_peer.hpp"
 
 namespace handsel {
 namespace {

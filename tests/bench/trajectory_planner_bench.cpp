@@ -7,9 +7,9 @@
 #include <random>
 
 #include "tests/support/broken_lines.hpp"
+#include "tests/support/oracles/quantile.hpp"
 #include "tests/support/panda_problems.hpp"
-#include "tests/support/quantile.hpp"
-#include "tests/support/thread_time.hpp"
+#include "tests/support/processes/thread_time.hpp"
 #include "tests/support/tool_motions.hpp"
 
 namespace handsel {

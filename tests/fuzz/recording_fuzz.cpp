@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/base/errors.hpp"
-#include "sim/recording.hpp"
+#include "sim/people/recording.hpp"
 
 namespace handsel {
 

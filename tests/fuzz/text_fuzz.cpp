@@ -1,5 +1,5 @@
 // Settings, scenarios and stories are texts that people write. For libFuzzer: clang++ -fsanitize=fuzzer,address with the sources of
-// common/config and deploy/handsel/story.cpp; here corpora and their seeded mutations are replayed.
+// common/config and deploy/handsel/story/story.cpp; here corpora and their seeded mutations are replayed.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -7,8 +7,8 @@
 
 #include "common/base/errors.hpp"
 #include "common/config/located.hpp"
-#include "common/config/scenario.pb.h"
-#include "deploy/handsel/story.hpp"
+#include "common/config/schema/scenario.pb.h"
+#include "deploy/handsel/story/story.hpp"
 
 namespace handsel {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/task.hpp"
 

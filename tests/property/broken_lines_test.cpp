@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "common/trajectory/limits_check.hpp"
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
 #include "tests/support/broken_lines.hpp"
 

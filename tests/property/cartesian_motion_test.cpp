@@ -11,7 +11,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "components/trajectory_planner/cartesian_motion.hpp"
 #include "tests/support/panda_problems.hpp"
-#include "tests/support/thread_time.hpp"
+#include "tests/support/processes/thread_time.hpp"
 #include "tests/support/tool_motions.hpp"
 
 namespace handsel::trajectory_planner {

@@ -8,7 +8,7 @@
 
 #include "deploy/drivers/fakes/fake_script.hpp"
 #include "tests/support/controller_bench.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

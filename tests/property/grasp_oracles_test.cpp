@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <random>
 
-#include "components/grasp_planner/epsilon.hpp"
-#include "tests/support/hull_oracle.hpp"
+#include "components/grasp_planner/list/epsilon.hpp"
 #include "tests/support/motion_draw.hpp"
+#include "tests/support/oracles/hull_oracle.hpp"
 
 namespace handsel::grasp_planner {
 namespace {

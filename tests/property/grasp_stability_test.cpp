@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "components/grasp_planner/epsilon.hpp"
-#include "tests/support/hull_oracle.hpp"
+#include "components/grasp_planner/list/epsilon.hpp"
+#include "tests/support/oracles/hull_oracle.hpp"
 
 namespace handsel::grasp_planner {
 namespace {

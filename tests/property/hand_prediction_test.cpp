@@ -6,8 +6,8 @@
 #include <random>
 
 #include "common/config/resources.hpp"
-#include "components/spark/people_tracker.hpp"
-#include "sim/recording.hpp"
+#include "components/spark/people/people_tracker.hpp"
+#include "sim/people/recording.hpp"
 #include "tests/support/recorded_handover.hpp"
 
 namespace handsel::spark {

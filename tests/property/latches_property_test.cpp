@@ -8,11 +8,11 @@
 #include <random>
 #include <string>
 
-#include "components/supervisor/permission.hpp"
-#include "components/supervisor/safety_latches.hpp"
-#include "components/supervisor/state_file.hpp"
-#include "components/trajectory_controller/go_gate.hpp"
-#include "components/trajectory_controller/mode_machine.hpp"
+#include "components/supervisor/safety/permission.hpp"
+#include "components/supervisor/safety/safety_latches.hpp"
+#include "components/supervisor/safety/state_file.hpp"
+#include "components/trajectory_controller/supervise/go_gate.hpp"
+#include "components/trajectory_controller/supervise/mode_machine.hpp"
 
 namespace handsel {
 namespace {

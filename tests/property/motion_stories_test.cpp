@@ -8,7 +8,7 @@
 #include <random>
 
 #include "common/trajectory/edit.hpp"
-#include "common/trajectory/smooth.hpp"
+#include "common/trajectory/path/smooth.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/time_law.hpp"

@@ -9,7 +9,7 @@
 
 #include "components/path_planner/path_planner.hpp"
 #include "tests/support/beside_the_table.hpp"
-#include "tests/support/thread_time.hpp"
+#include "tests/support/processes/thread_time.hpp"
 
 namespace handsel::path_planner {
 namespace {

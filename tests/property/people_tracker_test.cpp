@@ -8,7 +8,7 @@
 #include <random>
 
 #include "common/config/resources.hpp"
-#include "components/spark/people_tracker.hpp"
+#include "components/spark/people/people_tracker.hpp"
 
 namespace handsel::spark {
 namespace {

@@ -8,8 +8,8 @@
 #include <random>
 #include <vector>
 
-#include "components/trajectory_controller/axis_mover.hpp"
-#include "components/trajectory_controller/release_watch.hpp"
+#include "components/trajectory_controller/arm/axis_mover.hpp"
+#include "components/trajectory_controller/hand/release_watch.hpp"
 
 namespace handsel::trajectory_controller {
 namespace {

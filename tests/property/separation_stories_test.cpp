@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "common/trajectory/smooth.hpp"
+#include "common/trajectory/path/smooth.hpp"
 #include "common/trajectory/stop.hpp"
 #include "tests/support/controller_bench.hpp"
 

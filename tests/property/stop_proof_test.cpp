@@ -1,6 +1,6 @@
 // People move at random within their bounds, from anywhere: whoever touches the arm during a stop that was found harmless touches a link at
 // rest or slow enough for the contact. The oracle samples both stops and the people finely and knows nothing of how the proof bounds them.
-#include "components/trajectory_controller/stop_proof.hpp"
+#include "components/trajectory_controller/supervise/stop_proof.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include "common/config/resources.hpp"
 #include "common/geometry/segments.hpp"
 #include "common/trajectory/stop.hpp"
-#include "components/trajectory_controller/reach_limit.hpp"
+#include "components/trajectory_controller/supervise/reach_limit.hpp"
 
 namespace handsel::trajectory_controller {
 namespace {

@@ -9,13 +9,13 @@
 #include <cstdlib>
 
 #include "common/trajectory/edit.hpp"
-#include "common/trajectory/segment_table.hpp"
+#include "common/trajectory/path/segment_table.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/three_segment.hpp"
 #include "tests/support/allocation_counter.hpp"
 #include "tests/support/motion_cases.hpp"
-#include "tests/support/ruckig_peer.hpp"
-#include "tests/support/slow_min_time.hpp"
+#include "tests/support/oracles/ruckig_peer.hpp"
+#include "tests/support/oracles/slow_min_time.hpp"
 
 namespace handsel {
 namespace {

@@ -1,7 +1,7 @@
 // The robot with two arms before a table, and the lists of both its hands on an object.
 #pragma once
 
-#include "components/grasp_planner/regrasp.hpp"
+#include "components/grasp_planner/regrasp/regrasp.hpp"
 #include "tests/support/grasp_lists.hpp"
 
 namespace handsel::grasp_planner {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/model/robot_model.hpp"
-#include "components/trajectory_controller/hand_executor.hpp"
+#include "components/trajectory_controller/hand/hand_executor.hpp"
 
 namespace handsel::test {
 

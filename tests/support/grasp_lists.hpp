@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "components/grasp_planner/grasp_list.hpp"
+#include "components/grasp_planner/list/grasp_list.hpp"
 
 namespace handsel::grasp_planner {
 

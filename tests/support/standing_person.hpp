@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 
 namespace handsel::test {
 

@@ -1,5 +1,5 @@
 # Each row runs the command; HANDSEL_BIN names another folder of binaries, e.g. that of the preset asan.
-set(bad_files_folder ${CMAKE_CURRENT_LIST_DIR})
+set(bad_files_folder ${CMAKE_CURRENT_LIST_DIR}/bad_files)
 handsel_test(bad_files
   SOURCES ${bad_files_folder}/bad_files_test.cpp ${bad_files_folder}/bad_files_models.cpp ${bad_files_folder}/bad_files_settings.cpp ${bad_files_folder}/bad_files_scenarios.cpp
           ${bad_files_folder}/bad_files_recordings.cpp ${bad_files_folder}/bad_files_lines.cpp

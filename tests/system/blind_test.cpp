@@ -10,8 +10,8 @@
 #include <random>
 
 #include "common/messages/names.hpp"
-#include "tests/support/busy_system.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/busy_system.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "common/config/resources.hpp"
-#include "deploy/handsel/lockstep_system.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/system.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/system.hpp"
 
 namespace handsel {
 namespace {

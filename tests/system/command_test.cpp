@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "deploy/handsel/processes.hpp"
-#include "tests/support/background.hpp"
-#include "tests/support/shell.hpp"
-#include "tests/support/websocket_client.hpp"
+#include "deploy/handsel/system/processes.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/shell.hpp"
+#include "tests/support/processes/websocket_client.hpp"
 
 namespace handsel::test {
 namespace {

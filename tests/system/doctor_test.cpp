@@ -11,13 +11,13 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "common/bus/dds_bus.hpp"
-#include "common/bus/dds_configuration.hpp"
+#include "common/bus/dds/dds_bus.hpp"
+#include "common/bus/dds/dds_configuration.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
-#include "tests/support/background.hpp"
-#include "tests/support/shell.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/shell.hpp"
 
 namespace handsel::test {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 #include <sstream>
 
-#include "tests/support/shell.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/shell.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::test {
 namespace {
@@ -45,7 +45,8 @@ TEST(Eval, a_replayed_trial_is_the_same_bit_for_bit_from_another_folder_too) {
   const Json other = lines_of(shell(kHandsel + " eval --scenario give_mug --replay 6 --timeout 5").out).at(0);
   EXPECT_NE(other["output_hash"], a["output_hash"]);
   const std::string file = (root / "trial.mcap").string();
-  EXPECT_EQ(lines_of(shell(kHandsel + arguments + " --record " + file).out).at(0)["output_hash"], a["output_hash"]) << "who listens changes it";
+  EXPECT_EQ(lines_of(shell(kHandsel + arguments + " --record " + file).out).at(0)["output_hash"], a["output_hash"])
+      << "who listens changes it";
   EXPECT_GT(fs::file_size(file), 1'000'000u);
 }
 

@@ -9,10 +9,10 @@
 
 #include "common/cost/human_cost.hpp"
 #include "common/messages/names.hpp"
-#include "common/model/human_body.hpp"
-#include "components/path_planner/random.hpp"
-#include "deploy/handsel/lockstep_system.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "common/model/human/human_body.hpp"
+#include "components/path_planner/search/random.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

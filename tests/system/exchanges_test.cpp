@@ -11,10 +11,10 @@
 
 #include "common/config/resources.hpp"
 #include "common/messages/names.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/report.hpp"
-#include "deploy/handsel/system.hpp"
-#include "deploy/handsel/system_options.hpp"
+#include "deploy/handsel/eval/report.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "deploy/handsel/system/system_options.hpp"
 
 namespace handsel {
 namespace {

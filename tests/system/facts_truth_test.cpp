@@ -8,10 +8,10 @@
 
 #include "common/config/resources.hpp"
 #include "common/messages/names.hpp"
-#include "common/model/human_body.hpp"
-#include "deploy/handsel/lockstep_system.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/system.hpp"
+#include "common/model/human/human_body.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/system.hpp"
 
 namespace handsel {
 namespace {

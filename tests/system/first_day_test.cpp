@@ -5,9 +5,9 @@
 
 #include <cstdlib>
 
-#include "tests/support/first_day.hpp"
+#include "tests/support/processes/first_day.hpp"
+#include "tests/support/processes/stall_watch.hpp"
 #include "tests/support/small_robot.hpp"
-#include "tests/support/stall_watch.hpp"
 
 namespace handsel {
 namespace {

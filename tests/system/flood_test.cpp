@@ -12,12 +12,12 @@
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/task.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "components/path_planner/node.hpp"
 #include "components/spark/node.hpp"
 #include "components/supervisor/node.hpp"
 #include "components/trajectory_planner/node.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

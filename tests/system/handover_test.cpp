@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "deploy/handsel/lockstep_system.hpp"
-#include "deploy/handsel/trial.hpp"
-#include "tests/support/shell.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/eval/trial.hpp"
+#include "tests/support/processes/shell.hpp"
 
 namespace handsel {
 namespace {

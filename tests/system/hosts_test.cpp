@@ -7,13 +7,13 @@
 #include <map>
 #include <memory>
 
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/processes.hpp"
-#include "deploy/handsel/session.hpp"
-#include "deploy/handsel/system.hpp"
-#include "tests/support/background.hpp"
-#include "tests/support/compose_file.hpp"
-#include "tests/support/hosts.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/processes.hpp"
+#include "deploy/handsel/system/session.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/compose_file.hpp"
+#include "tests/support/processes/hosts.hpp"
 
 namespace handsel::test {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <filesystem>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/messages/perception.hpp"
-#include "tests/support/shell.hpp"
+#include "tests/support/processes/shell.hpp"
 
 namespace handsel::test {
 namespace {

@@ -12,10 +12,10 @@
 #include <random>
 #include <sstream>
 
-#include "tests/support/background.hpp"
-#include "tests/support/busy_system.hpp"
-#include "tests/support/shell.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/busy_system.hpp"
+#include "tests/support/processes/shell.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

@@ -17,11 +17,11 @@
 
 #include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
-#include "common/trajectory/broken_line.hpp"
+#include "common/trajectory/path/broken_line.hpp"
 #include "components/path_planner/live_path.hpp"
-#include "components/path_planner/random.hpp"
-#include "deploy/handsel/lockstep_system.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "components/path_planner/search/random.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

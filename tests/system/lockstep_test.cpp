@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "deploy/handsel/lockstep_system.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/system.hpp"
-#include "deploy/handsel/trial.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/eval/trial.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/system.hpp"
 
 namespace handsel {
 namespace {

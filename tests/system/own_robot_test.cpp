@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/resources.hpp"
-#include "deploy/handsel/lockstep_system.hpp"
-#include "deploy/handsel/trial.hpp"
-#include "tests/support/shell.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/eval/trial.hpp"
+#include "tests/support/processes/shell.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

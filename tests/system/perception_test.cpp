@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/support/background.hpp"
-#include "tests/support/shell.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/shell.hpp"
 
 namespace handsel::test {
 namespace {

@@ -4,14 +4,14 @@
 
 #include <map>
 
-#include "common/bus/cdr.hpp"
+#include "common/bus/dds/cdr.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
 #include "common/record/mcap.hpp"
-#include "deploy/handsel/system.hpp"
-#include "tests/support/background.hpp"
-#include "tests/support/shell.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/shell.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::test {
 namespace {

@@ -11,14 +11,14 @@
 #include <regex>
 #include <sstream>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/system.hpp"
 #include "common/messages/world.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "idl/ros2/ros2.h"
-#include "tests/support/background.hpp"
+#include "tests/support/processes/background.hpp"
 
 namespace handsel::test {
 namespace {

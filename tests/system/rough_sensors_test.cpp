@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/config/resources.hpp"
-#include "common/config/scenario.pb.h"
-#include "deploy/handsel/lockstep_system.hpp"
-#include "deploy/handsel/trial.hpp"
+#include "common/config/schema/scenario.pb.h"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/eval/trial.hpp"
 
 namespace handsel {
 namespace {

@@ -15,15 +15,15 @@
 
 #include <dds/dds.h>
 
-#include "common/bus/qos.hpp"
+#include "common/bus/dds/qos.hpp"
 #include "common/config/resources.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/robot_model.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/status.hpp"
-#include "deploy/handsel/system.hpp"
-#include "deploy/handsel/system_options.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/status.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "deploy/handsel/system/system_options.hpp"
 
 namespace handsel {
 namespace {

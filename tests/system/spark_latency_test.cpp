@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "common/bus/dds_bus.hpp"
+#include "common/bus/dds/dds_bus.hpp"
 #include "common/messages/perception.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/world.hpp"
-#include "common/model/human_body.hpp"
-#include "tests/support/background.hpp"
+#include "common/model/human/human_body.hpp"
+#include "tests/support/processes/background.hpp"
 
 namespace handsel {
 namespace {

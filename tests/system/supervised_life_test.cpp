@@ -12,12 +12,12 @@
 #include <sstream>
 
 #include "common/messages/names.hpp"
-#include "deploy/handsel/performer.hpp"
-#include "deploy/handsel/status.hpp"
-#include "deploy/handsel/system.hpp"
-#include "deploy/handsel/system_options.hpp"
-#include "tests/support/background.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/status.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "deploy/handsel/system/system_options.hpp"
+#include "tests/support/processes/background.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

@@ -7,4 +7,4 @@ foreach(box sim spark costmap collision_checker path_planner grasp_planner traje
   endif()
   list(APPEND every_node handsel_${box})
 endforeach()
-handsel_test(table SOURCES ${CMAKE_CURRENT_LIST_DIR}/table_test.cpp LINK ${every_node} LABEL unit)
+handsel_test(table SOURCES ${CMAKE_CURRENT_LIST_DIR}/grasps/table_test.cpp LINK ${every_node} LABEL unit)

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "tests/support/shell.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/shell.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::test {
 namespace {

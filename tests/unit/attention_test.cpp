@@ -9,8 +9,8 @@
 #include "common/base/pace.hpp"
 #include "common/config/resources.hpp"
 #include "components/attention/settings.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 #include "tests/support/small_robot.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 namespace handsel::attention {
 namespace {

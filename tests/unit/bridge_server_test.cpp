@@ -10,8 +10,8 @@
 
 #include "common/config/resources.hpp"
 #include "components/bridge/catalogue.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/support/websocket_client.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
+#include "tests/support/processes/websocket_client.hpp"
 
 namespace handsel::bridge {
 namespace {

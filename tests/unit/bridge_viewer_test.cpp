@@ -7,7 +7,7 @@
 #include <random>
 
 #include "common/config/resources.hpp"
-#include "common/model/human_body.hpp"
+#include "common/model/human/human_body.hpp"
 #include "common/wire/schema.hpp"
 #include "components/bridge/catalogue.hpp"
 #include "components/bridge/drawing.hpp"
@@ -15,7 +15,7 @@
 #include "components/bridge/drawn_urdf.hpp"
 #include "components/bridge/foxglove.hpp"
 #include "components/bridge/site.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::bridge {
 namespace {

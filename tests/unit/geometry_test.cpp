@@ -8,7 +8,7 @@
 #include "common/base/errors.hpp"
 #include "common/geometry/segments.hpp"
 #include "common/geometry/shape.hpp"
-#include "tests/support/temporary_folder.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel {
 namespace {

@@ -1,13 +1,13 @@
-handsel_test(guard SOURCES ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
-handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_queue_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/controller_speed_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_contact_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/controller_silence_test.cpp ${CMAKE_CURRENT_LIST_DIR}/gaze_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/contact_watch_test.cpp ${CMAKE_CURRENT_LIST_DIR}/hand_executor_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/controller_overload_test.cpp ${CMAKE_CURRENT_LIST_DIR}/controller_blind_test.cpp
-             ${CMAKE_CURRENT_LIST_DIR}/observed_space_test.cpp ${CMAKE_CURRENT_LIST_DIR}/path_runner_test.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/mode_machine_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
-handsel_test(finger_limit SOURCES ${CMAKE_CURRENT_LIST_DIR}/finger_limit_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
-handsel_test(go_gate SOURCES ${CMAKE_CURRENT_LIST_DIR}/go_gate_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
+handsel_test(guard SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/guard_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
+handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_queue_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_speed_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_contact_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_silence_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/gaze_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/contact_watch_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/hand_executor_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_overload_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_blind_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/observed_space_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/path_runner_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/mode_machine_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
+handsel_test(finger_limit SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/finger_limit_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
+handsel_test(go_gate SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/go_gate_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 # Latches over supervisor and controller.
 handsel_test(latches_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/latches_property_test.cpp
              LINK handsel_supervisor_core handsel_trajectory_controller_core LABEL property)
@@ -30,9 +30,9 @@ add_dependencies(test_realtime handsel_trajectory_controller_process)
 add_test(NAME realtime COMMAND test_realtime)
 set_tests_properties(realtime PROPERTIES LABELS system RUN_SERIAL TRUE TIMEOUT 60)
 # Every branch of the guard is taken by its test: the same sources, compiled for counting.
-set(guard_source ${CMAKE_SOURCE_DIR}/components/trajectory_controller/guard.cpp)
+set(guard_source ${CMAKE_SOURCE_DIR}/components/trajectory_controller/supervise/guard.cpp)
 set_source_files_properties(${guard_source} PROPERTIES COMPILE_OPTIONS "--coverage;-O0;-fno-exceptions;-fno-inline")
-add_executable(guard_coverage ${CMAKE_CURRENT_LIST_DIR}/guard_test.cpp ${guard_source})
+add_executable(guard_coverage ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/guard_test.cpp ${guard_source})
 target_link_libraries(guard_coverage PRIVATE handsel_trajectory_controller_core GTest::gtest_main)
 target_link_options(guard_coverage PRIVATE --coverage)
 add_test(NAME guard_branches COMMAND ${CMAKE_SOURCE_DIR}/cmake/branch_coverage.sh $<TARGET_FILE:guard_coverage>

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/dds_bus.hpp"
-#include "tests/support/wire_leaves.hpp"
+#include "common/bus/dds/dds_bus.hpp"
+#include "tests/support/oracles/wire_leaves.hpp"
 
 namespace {
 

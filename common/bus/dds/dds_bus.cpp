@@ -1,0 +1,515 @@
+#include "common/bus/dds/dds_bus.hpp"
+
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <random>
+#include <vector>
+
+#include <dds/ddsi/ddsi_serdata.h>
+
+#include "common/base/errors.hpp"
+#include "common/bus/dds/dds_configuration.hpp"
+#include "common/bus/dds/dds_defaults.hpp"
+#include "common/bus/dds/look_around.hpp"
+#include "common/bus/dds/qos.hpp"
+#include "common/bus/dds/writer_discovery.hpp"
+#include "common/bus/executor.hpp"
+#include "common/bus/foreign.hpp"
+#include "common/bus/intake.hpp"
+#include "common/bus/left_out.hpp"
+#include "common/bus/writer_gate.hpp"
+#include "common/config/resources.hpp"
+#include "common/messages/system.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
+constexpr Duration kRetryPeriod = std::chrono::milliseconds(5);
+constexpr std::size_t kQueueBound = 64;  // requests and replies that wait for room in the transport
+constexpr int kSamplesPerTurn = 64;      // then other topics have their turn
+
+Stamp system_now() {
+  timespec t{};
+  clock_gettime(CLOCK_REALTIME, &t);
+  return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
+}
+
+double resident_mb() {
+  std::ifstream statm("/proc/self/statm");
+  double total = 0, resident = 0;
+  statm >> total >> resident;
+  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+dds_entity_t need(dds_entity_t entity, const std::string& what) {
+  if (entity < 0) throw MissingError("DDS: " + what + ": " + dds_strretcode(-entity));
+  return entity;
+}
+
+}  // namespace
+
+void use_default_dds_configuration() { use_dds_configuration(resource("dds")); }
+
+struct Reader {
+  Reader(DdsBus::Impl& owner, const MessageType& type, Intake::Callback callback, Duration period, Intake::Log log)
+      : bus(owner), intake(type, std::move(callback), period, std::move(log)), sample(type.new_wire()) {}
+  DdsBus::Impl& bus;
+  Intake intake;
+  std::shared_ptr<void> sample;
+  WriterGate gate;
+  dds_entity_t entity{0};
+  std::atomic<std::int64_t> arrival{0};
+  std::atomic<bool> pending{false};
+  std::atomic<bool> matching_changed{false};
+};
+
+struct DdsBus::Impl {
+  explicit Impl(const DdsBusSettings& s) : settings(s), executor([this](const std::string& what) { log(what); }), start(monotonic_now()) {
+    incarnation = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
+  }
+  ~Impl() {
+    if (participant > 0) dds_delete(participant);
+  }
+
+  DdsBusSettings settings;
+  Executor executor;
+  TimePoint start;
+  dds_entity_t participant{0};
+  dds_entity_t topic_entities[std::size(kTopics)]{};
+  std::map<const MessageType*, dds_entity_t> foreign_topics;
+  std::vector<std::unique_ptr<Reader>> readers;
+  std::mutex pending_mutex;
+  std::vector<Reader*> pending, draining;
+  std::uint64_t simulator{};                   // that gives the pace, its incarnation
+  Reader* pace{};                              // of sim_clock, where that is followed
+  std::unique_ptr<WriterDiscovery> discovery;  // from the first reader of a topic with one writer on
+  std::atomic<bool> discovery_news{false};
+  std::uint64_t incarnation{};
+  HealthState state{HealthState::starting};
+  std::string degraded, refusal, realtime_note;
+  double last_cpu{0};
+  TimePoint last_health{};
+  LeftOutCounts left_out;
+  ComponentHealth health_message;
+  std::unique_ptr<Publisher<ComponentHealth>> health;
+  std::unique_ptr<Publisher<ClockReached>> reached;
+  ClockReached reached_message;
+
+  void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", settings.component.c_str(), what.c_str()); }
+  /// The system clock, standing still while this component's time does.
+  Stamp stamp_now() { return system_now() - (monotonic_now() - executor.now()).count(); }
+  dds_entity_t new_topic(const MessageType& type) const {
+    const Qos qos = topic_qos(type.row());
+    return need(
+        dds_create_topic(participant, static_cast<const dds_topic_descriptor_t*>(type.descriptor()), type.row().topic, qos.get(), nullptr),
+        std::string("topic ") + type.row().topic);
+  }
+  dds_entity_t topic(const MessageType& type) {
+    dds_entity_t& entity = in_table(type.row()) ? topic_entities[&type.row() - kTopics] : foreign_topics[&type];
+    if (entity == 0) entity = new_topic(type);
+    return entity;
+  }
+  /// A topic entity of the reader's own whose filter is the reader's gate.
+  dds_entity_t gated_topic(Reader& reader) {
+    const dds_entity_t entity = new_topic(reader.intake.type());
+    reader.gate.filter(entity, [this, &reader] { mark(reader); });
+    return entity;
+  }
+  void mark(Reader& reader);
+  void drain();
+  bool knows_time();
+  void take(Reader& reader);
+  void look_at_matching(Reader& reader);
+  void discover_writers();
+  void follow_writers(Reader& reader);
+  void publish_health(TimePoint wall);
+  void follow_pace(const SimClock& clock);
+  void enter_realtime();
+};
+
+namespace {
+
+void on_data(dds_entity_t, void* arg) {
+  Reader& reader = *static_cast<Reader*>(arg);
+  reader.arrival.store(monotonic_now().time_since_epoch().count(), std::memory_order_relaxed);
+  reader.bus.mark(reader);
+}
+
+void on_matching(Reader& reader) {
+  reader.matching_changed.store(true, std::memory_order_release);
+  reader.bus.mark(reader);
+}
+
+class DdsPublisher final : public AnyPublisher {
+ public:
+  DdsPublisher(DdsBus::Impl& bus, const MessageType& type) : bus_(bus), type_(type), sample_(type.new_wire()) {
+    const Qos qos = writer_qos(type.row());
+    writer_ = need(dds_create_writer(bus.participant, bus.topic(type), qos.get(), nullptr), std::string("writer of ") + type.row().topic);
+  }
+  ~DdsPublisher() override {
+    alive_->store(false);
+    dds_delete(writer_);
+  }
+
+  bool publish(const void* message) override {
+    std::string why;
+    if (!type_.to_wire(message, bus_.stamp_now(), sample_.get(), why)) return refuse(why);
+    if (!queue_.empty()) return enqueue();
+    const dds_return_t result = dds_write(writer_, sample_.get());
+    if (result == DDS_RETCODE_OK) return true;
+    const bool queued = type_.row().profile == Profile::request || type_.row().profile == Profile::reply;
+    if (result == DDS_RETCODE_TIMEOUT && queued) return enqueue();
+    return refuse(std::string(type_.row().topic) + " has no room: " + dds_strretcode(-result));
+  }
+  int readers() const override {
+    dds_publication_matched_status_t status{};
+    return dds_get_publication_matched_status(writer_, &status) == DDS_RETCODE_OK ? static_cast<int>(status.current_count) : 0;
+  }
+
+ private:
+  bool refuse(const std::string& why) {
+    if (bus_.refusal.empty()) bus_.log("refused to send: " + why);
+    bus_.refusal = why;
+    return false;
+  }
+  bool enqueue() {
+    if (queue_.size() >= kQueueBound) return refuse(std::string(type_.row().topic) + " has no room: its queue is full");
+    queue_.push_back(std::move(sample_));
+    sample_ = type_.new_wire();
+    if (queue_.size() == 1) retry_later();
+    return true;
+  }
+  void retry_later() {
+    bus_.executor.after(kRetryPeriod, [this, alive = alive_](TimePoint) {
+      if (alive->load()) retry();
+    });
+  }
+  void retry() {
+    while (!queue_.empty() && dds_write(writer_, queue_.front().get()) == DDS_RETCODE_OK) queue_.pop_front();
+    if (!queue_.empty()) retry_later();
+  }
+
+  DdsBus::Impl& bus_;
+  const MessageType& type_;
+  std::shared_ptr<void> sample_;
+  std::deque<std::shared_ptr<void>> queue_;
+  std::shared_ptr<std::atomic<bool>> alive_ = std::make_shared<std::atomic<bool>>(true);
+  dds_entity_t writer_{0};
+};
+
+class DdsRawReader final : public RawReader {
+ public:
+  explicit DdsRawReader(dds_entity_t reader) : reader_(reader) {}
+  ~DdsRawReader() override { dds_delete(reader_); }
+
+  bool take(RawSample& out) override {
+    ddsi_serdata* data = nullptr;
+    dds_sample_info_t info{};
+    if (dds_takecdr(reader_, &data, 1, &info, DDS_ANY_STATE) <= 0) return false;
+    out.stamp = info.source_timestamp;
+    out.instance = info.instance_handle;
+    out.gone = !info.valid_data;
+    out.cdr.resize(info.valid_data ? ddsi_serdata_size(data) : 0);
+    if (info.valid_data) ddsi_serdata_to_ser(data, 0, out.cdr.size(), out.cdr.data());
+    ddsi_serdata_unref(data);
+    return true;
+  }
+
+ private:
+  dds_entity_t reader_;
+};
+
+}  // namespace
+
+void DdsBus::Impl::mark(Reader& reader) {
+  if (reader.pending.exchange(true, std::memory_order_acq_rel)) return;
+  {
+    const std::lock_guard lock(pending_mutex);
+    pending.push_back(&reader);
+  }
+  executor.wake();
+}
+
+/// Takes the news of who writes the topics with one writer to their readers.
+void DdsBus::Impl::discover_writers() {
+  if (!discovery) return;
+  discovery->take([this](std::uint64_t writer, const TopicRow& row, const WriterDiscovery::Found* found) {
+    for (const auto& reader : readers) {
+      if (&reader->intake.type().row() != &row) continue;
+      if (found != nullptr)
+        reader->intake.writer_appeared(writer, found->identity, executor.now());
+      else
+        reader->intake.writer_left(writer, executor.now());
+      reader->gate.open_for(reader->intake.pinned());
+    }
+  });
+}
+
+/// Tells a new reader who writes its topic.
+void DdsBus::Impl::follow_writers(Reader& reader) {
+  if (!has_one_writer(reader.intake.type().row())) return;
+  if (!discovery) {
+    discovery = std::make_unique<WriterDiscovery>(participant, [this] {
+      discovery_news.store(true, std::memory_order_release);
+      executor.wake();
+    });
+  }
+  discover_writers();
+  for (const auto& [writer, found] : discovery->writers())
+    if (found.row == &reader.intake.type().row()) reader.intake.writer_appeared(writer, found.identity, executor.now());
+  reader.gate.open_for(reader.intake.pinned());
+}
+
+/// Returns whether this component knows how far time has advanced. A process that has been stopped does so with the next grant; what has
+/// arrived is not taken before: it would have arrived in the past, and everything later would count as late.
+bool DdsBus::Impl::knows_time() {
+  if (pace == nullptr || !executor.stale()) return true;
+  pace->pending.store(false, std::memory_order_release);
+  take(*pace);
+  return !executor.stale();
+}
+
+void DdsBus::Impl::drain() {
+  if (!knows_time()) return;  // the grant wakes this executor
+  if (discovery_news.exchange(false, std::memory_order_acq_rel)) discover_writers();
+  {
+    const std::lock_guard lock(pending_mutex);
+    draining.swap(pending);
+  }
+  for (Reader* reader : draining) {
+    reader->pending.store(false, std::memory_order_release);
+    if (reader->matching_changed.exchange(false, std::memory_order_acq_rel)) look_at_matching(*reader);
+    reader->gate.hear(reader->intake, executor.now());
+    take(*reader);
+  }
+  draining.clear();
+}
+
+void DdsBus::Impl::take(Reader& reader) {
+  for (int i = 0; i < kSamplesPerTurn; ++i) {
+    void* samples[1] = {reader.sample.get()};
+    dds_sample_info_t info{};
+    const dds_return_t n = dds_take(reader.entity, samples, &info, 1, 1);
+    if (n <= 0) return;
+    if (!info.valid_data) continue;
+    const std::int64_t arrival = reader.arrival.load(std::memory_order_relaxed);
+    const TimePoint at = arrival > 0 ? executor.past(TimePoint(Duration(arrival))) : executor.now();
+    if (!reader.intake.knows(info.publication_handle)) discover_writers();
+    reader.intake.deliver(reader.sample.get(), info.publication_handle, at);
+  }
+  mark(reader);
+}
+
+void DdsBus::Impl::look_at_matching(Reader& reader) {
+  dds_liveliness_changed_status_t liveliness{};
+  if (dds_get_liveliness_changed_status(reader.entity, &liveliness) != DDS_RETCODE_OK) return;
+  SubscriptionStatus& status = reader.intake.status();
+  const int alive = static_cast<int>(liveliness.alive_count);
+  if (alive < status.writers) {
+    status.writers_lost += static_cast<std::uint64_t>(status.writers - alive);
+    reader.intake.writer_gone(liveliness.last_publication_handle);
+  }
+  status.writers = alive;
+}
+
+/// Answers every grant, so that the simulator knows this component has had its turn.
+void DdsBus::Impl::follow_pace(const SimClock& clock) {
+  if (!executor.grant({clock.incarnation, TimePoint(from_seconds(clock.granted_until)), from_seconds(clock.waited)})) return;
+  if (clock.incarnation != simulator) {
+    simulator = clock.incarnation;
+    for (const auto& reader : readers) reader->intake.forget_ages();
+  }
+  reached_message.component = settings.component;
+  reached_message.incarnation = static_cast<std::uint64_t>(getpid());
+  reached_message.sequence = clock.sequence;
+  reached->publish(reached_message);
+}
+
+/// Heartbeats say that the process lives: they come in real time.
+void DdsBus::Impl::publish_health(TimePoint wall) {
+  const TimePoint now = executor.now();
+  ComponentHealth& m = health_message;
+  m.stamp = system_now();
+  m.component = settings.component;
+  m.incarnation = incarnation;
+  m.pid = static_cast<std::uint32_t>(getpid());
+  m.uptime = to_seconds(wall - start);
+  m.memory_mb = resident_mb();
+  const double cpu = cpu_seconds();
+  if (last_health != TimePoint{} && wall > last_health) m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(wall - last_health));
+  last_cpu = cpu;
+  last_health = wall;
+  SecondWriters others;
+  for (const auto& reader : readers) {
+    reader->gate.hear(reader->intake, now);
+    reader->intake.watch(now);
+    reader->gate.open_for(reader->intake.pinned());
+    others.add(reader->intake);
+  }
+  m.job_silent = executor.job_silent(wall);
+  m.reason = m.job_silent ? "a job has given no sign of life for two seconds" : "";
+  for (const std::string& reason : {others.reason(), degraded})
+    if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
+  if (m.reason.empty() && !refusal.empty()) m.reason = "refused to send: " + refusal;
+  m.state = state != HealthState::ok ? state : m.reason.empty() ? HealthState::ok : HealthState::degraded;
+  m.topics.clear();
+  m.left_out = left_out.counts();
+  for (const auto& reader : readers) {
+    add_left_out(reader->intake, m.left_out);
+    if (m.topics.size() < 64) m.topics.push_back(reader->intake.health(now));
+  }
+  if (health) health->publish(m);
+}
+
+void DdsBus::Impl::enter_realtime() {
+  if (settings.cpu >= 0) {
+    cpu_set_t cpus;
+    CPU_ZERO(&cpus);
+    CPU_SET(static_cast<std::size_t>(settings.cpu), &cpus);
+    if (sched_setaffinity(0, sizeof cpus, &cpus) != 0)
+      throw ConfigError("--cpu-affinity " + std::to_string(settings.cpu) + ": " + std::strerror(errno));
+  }
+  if (!settings.realtime) {
+    realtime_note = "not asked for";
+    return;
+  }
+  sched_param parameter{};
+  parameter.sched_priority = static_cast<int>(settings.urgency);
+  if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0)
+    realtime_note = std::string("SCHED_FIFO is not permitted: ") + std::strerror(errno);
+  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)
+    realtime_note += (realtime_note.empty() ? "" : "; ") + std::string("memory cannot be locked: ") + std::strerror(errno);
+}
+
+DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
+  use_default_dds_configuration();
+  impl_->enter_realtime();  // first: the transport's own threads inherit the priority
+  Qos qos(dds_create_qos(), &dds_delete_qos);
+  dds_qset_entity_name(qos.get(), settings.component.c_str());
+  impl_->participant = need(create_participant(settings.domain, qos.get()), "domain " + std::to_string(settings.domain));
+  impl_->executor.on_wake([this] { impl_->drain(); });
+  if (settings.health) {
+    impl_->health = advertise<ComponentHealth>();
+    impl_->executor.every_real(kHealthPeriod, [this](TimePoint wall) {
+      impl_->publish_health(wall);
+      impl_->executor.wake();  // samples may wait for a grant of a simulator that has ended
+    });
+  }
+  if (settings.sim_time) {
+    impl_->reached = advertise<ClockReached>();
+    subscribe<SimClock>([this](const SimClock& clock, const Receipt&) { impl_->follow_pace(clock); });
+    impl_->pace = impl_->readers.back().get();
+  }
+}
+
+DdsBus::~DdsBus() {
+  impl_->reached.reset();
+  impl_->health.reset();
+  for (const auto& reader : impl_->readers) dds_delete(reader->entity);
+}
+
+void DdsBus::run() { impl_->executor.run(); }
+void DdsBus::stop() noexcept { impl_->executor.stop(); }
+bool DdsBus::end_jobs(Duration limit) { return impl_->executor.end_jobs(limit); }
+bool DdsBus::run_until(const std::function<bool()>& done, Duration limit) { return impl_->executor.run_until(done, limit); }
+const std::string& DdsBus::realtime_note() const { return impl_->realtime_note; }
+DomainView DdsBus::look_around() const { return handsel::look_around(impl_->participant); }
+std::uint64_t DdsBus::incarnation() const { return impl_->incarnation; }
+
+void DdsBus::set_ready() {
+  impl_->state = HealthState::ok;
+  impl_->publish_health(monotonic_now());
+}
+
+void DdsBus::set_stopping() {
+  impl_->state = HealthState::stopping;
+  impl_->publish_health(monotonic_now());
+}
+
+bool DdsBus::has_twin(Duration wait) {
+  bool twin = false;
+  subscribe<ComponentHealth>([&](const ComponentHealth& health, const Receipt&) {
+    if (health.component != component() || health.incarnation == incarnation() || health.state == HealthState::stopping) return;
+    twin = twin || health.state != HealthState::starting || health.incarnation < incarnation();
+  });
+  const std::unique_ptr<Reader> reader = std::move(impl_->readers.back());
+  impl_->readers.pop_back();
+  impl_->executor.run_until([&] { return twin; }, wait);
+  dds_delete(reader->entity);
+  const std::lock_guard lock(impl_->pending_mutex);
+  std::erase(impl_->pending, reader.get());
+  return twin;
+}
+
+std::unique_ptr<AnyPublisher> DdsBus::advertise_any(const MessageType& type, int) { return std::make_unique<DdsPublisher>(*impl_, type); }
+
+const SubscriptionStatus& DdsBus::subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,
+                                                const SubscribeOptions& options) {
+  impl_->readers.push_back(std::make_unique<Reader>(*impl_, type, std::move(on_sample), options.period,
+                                                    [impl = impl_.get()](const std::string& what) { impl->log(what); }));
+  Reader* reader = impl_->readers.back().get();
+  const bool polled = options.period > Duration::zero();
+  dds_listener_t* listener = dds_create_listener(reader);
+  if (!polled) dds_lset_data_available(listener, &on_data);
+  dds_lset_liveliness_changed(
+      listener, [](dds_entity_t, const dds_liveliness_changed_status_t, void* arg) { on_matching(*static_cast<Reader*>(arg)); });
+  const Qos qos = reader_qos(type.row());
+  const dds_entity_t topic = has_one_writer(type.row()) ? impl_->gated_topic(*reader) : impl_->topic(type);
+  reader->entity = dds_create_reader(impl_->participant, topic, qos.get(), nullptr);
+  need(reader->entity, std::string("reader of ") + type.row().topic);
+  dds_set_listener(reader->entity, listener);
+  dds_delete_listener(listener);
+  if (polled) impl_->executor.every(options.period, [impl = impl_.get(), reader](TimePoint) { impl->take(*reader); });
+  reader->matching_changed.store(true);
+  impl_->follow_writers(*reader);
+  impl_->mark(*reader);
+  return reader->intake.status();
+}
+
+std::unique_ptr<RawReader> DdsBus::read_raw(const MessageType& type, RawDepth depth) {
+  const Qos qos = depth == RawDepth::many ? recorder_qos(type.row()) : observer_qos(type.row());
+  return std::make_unique<DdsRawReader>(
+      need(dds_create_reader(impl_->participant, impl_->topic(type), qos.get(), nullptr), std::string("reader of ") + type.row().topic));
+}
+
+std::uint32_t DdsBus::domain() const { return impl_->settings.domain; }
+
+Duration DdsBus::lag_any(const MessageType& type) const {
+  Duration least = Duration::max();
+  for (const auto& reader : impl_->readers)
+    if (&reader->intake.type() == &type) least = std::min(least, reader->intake.status().age(now()));
+  return least;
+}
+
+const TimerStatus& DdsBus::every(Duration period, std::function<void(TimePoint)> on_tick) {
+  return impl_->executor.every(period, std::move(on_tick));
+}
+void DdsBus::after(Duration delay, std::function<void(TimePoint)> on_time) { impl_->executor.after(delay, std::move(on_time)); }
+CancelToken DdsBus::run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) {
+  return impl_->executor.run_job(std::move(work), std::move(done));
+}
+TimePoint DdsBus::now() const { return impl_->executor.now(); }
+Stamp DdsBus::stamp_now() const { return impl_->stamp_now(); }
+void DdsBus::set_degraded(const std::string& reason) { impl_->degraded = reason; }
+void DdsBus::count_left_out(const std::string& what, std::uint64_t more) { impl_->left_out.add(what, more); }
+const std::string& DdsBus::component() const { return impl_->settings.component; }
+
+}  // namespace handsel

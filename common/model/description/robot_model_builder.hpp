@@ -1,0 +1,74 @@
+// How a RobotModel is put together: URDF tree, SRDF, axes and limits. Used by the loaders of this folder only.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/config/described.hpp"
+#include "common/config/resources.hpp"
+#include "common/config/schema/robot.pb.h"
+#include "common/model/robot_model.hpp"
+
+namespace handsel {
+
+/// What a description says about reading its URDF.
+struct UrdfOptions {
+  std::vector<std::filesystem::path> packages;  ///< folders that hold what package:// names
+  std::vector<std::string> without;             ///< links left out, with all they carry
+};
+
+class RobotModelBuilder {
+ public:
+  /// Reads links and joints; no axes yet. Throws ConfigError / MissingError with file and line.
+  RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes, const UrdfOptions& options = {});
+
+  /// Joins another tree to a link, rigidly; before the axes are set. Throws ConfigError when a name is in both.
+  void mount(RobotModelBuilder other, const config::HandMount& at, const std::filesystem::path& source);
+
+  /// Actuated joints in document order.
+  std::vector<std::string> actuated() const;
+  /// Makes these joints the axes. The other actuated joints are held at `held` (0 if not named). `source` is the file the names stand in.
+  void set_axes(const std::vector<std::string>& joints, const std::map<std::string, double>& held, const std::filesystem::path& source);
+  void add_group(const std::string& name, const std::vector<std::string>& joints, const std::string& tip,
+                 const std::filesystem::path& source);
+  /// Groups (when wanted) and disabled pairs. Unknown names are errors when strict, else passed over.
+  void read_srdf(const std::filesystem::path& srdf, bool groups, bool strict);
+  void apply(const config::RobotDescription& description, const std::filesystem::path& file);
+  void default_limits();
+  /// Every body that moves needs a mass. Throws ConfigError.
+  void require_masses() const;
+  RobotModel finish();
+
+  /// on_platform of common/model/platform.hpp.
+  static RobotModel on_platform(const RobotModel& robot, double speed, double turn_speed);
+
+ private:
+  friend class SrdfReader;
+  int joint_index(const std::string& name) const;
+  int axis_of(const std::string& joint) const;
+  int require_link(const std::string& name, const std::string& field, const std::filesystem::path& source) const;
+  KinematicLimits limits(const google::protobuf::RepeatedPtrField<config::AxisLimits>& entries, const std::string& field,
+                         const std::filesystem::path& source) const;
+  void disable(int a, int b);
+
+  std::filesystem::path urdf_;
+  RobotModel model_;
+  std::vector<int> document_order_;  // joints as they stand in the URDF
+};
+
+/// The builder of the URDF that a description of a robot or hand names.
+template <class Description>
+RobotModelBuilder described_urdf(const std::filesystem::path& file, const Description& text,
+                                 const google::protobuf::RepeatedPtrField<std::string>& without) {
+  if (text.urdf().empty()) throw ConfigError(file.string() + ": urdf is missing");
+  const std::filesystem::path urdf = described_path(file, text.urdf());
+  if (!std::filesystem::exists(urdf)) throw MissingError(locate(file, text.urdf()) + ": no file " + urdf.string());
+  UrdfOptions options;
+  for (const std::string& folder : text.packages()) options.packages.push_back(described_path(file, folder));
+  options.without.assign(without.begin(), without.end());
+  return {urdf, Meshes::load, options};
+}
+
+}  // namespace handsel

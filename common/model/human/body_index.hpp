@@ -1,0 +1,33 @@
+// The joints of a body by number, in the order of kBodyJoints. For the implementation of human_body.hpp only.
+#pragma once
+
+#include <array>
+
+#include "common/model/human/human_body.hpp"
+
+namespace handsel::body {
+
+enum Index {
+  head,
+  neck,
+  torso,
+  waist,
+  l_shoulder,
+  l_elbow,
+  l_wrist,
+  l_hand,
+  r_shoulder,
+  r_elbow,
+  r_wrist,
+  r_hand,
+  l_hip,
+  l_knee,
+  l_ankle,
+  r_hip,
+  r_knee,
+  r_ankle
+};
+
+using Points = std::array<Vector3, kBodyJoints.size()>;
+
+}  // namespace handsel::body

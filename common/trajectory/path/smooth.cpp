@@ -1,0 +1,225 @@
+#include "common/trajectory/path/smooth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "common/trajectory/limits_check.hpp"
+#include "common/trajectory/path/corner.hpp"
+#include "common/trajectory/path/leg.hpp"
+
+namespace handsel {
+
+namespace {
+
+using detail::Corner;
+using detail::Leg;
+
+constexpr double kLeastSaving = 1e-4;  // [s]
+constexpr double kFarthest = 1e9;
+constexpr double kRounding = 1e-9;
+constexpr std::array<double, 4> kReaches{1.0, 0.7, 0.45, 0.25};
+
+struct Candidate {
+  CornerMethod method{CornerMethod::stop};
+  double before{}, after{}, duration{}, excess{};
+  double saved() const { return before + after - duration; }
+};
+
+std::string percent(double x) {
+  std::ostringstream out;
+  out.precision(0);
+  out << std::fixed << 100 * x << " %";
+  return out.str();
+}
+
+/// Every transition worth trying at a corner, best first; `why` says what stood against the others.
+std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, const SmoothSettings& settings, bool only_best,
+                                  std::string& why) {
+  std::vector<Candidate> found;
+  double best = kLeastSaving, first_excess = 0;
+  const auto keep = [&](const Candidate& c) {
+    found.push_back(c);
+    best = std::max(best, c.saved());
+  };
+  const double most = !settings.overlapping ? 0.0 : std::min({a.duration / 2, b.duration / 2, settings.tau.value_or(a.duration)});
+  double good = 0, bad = most;
+  for (int k = 10; k >= 1 && good == 0; --k) {
+    const double shared = most * k / 10;
+    (corner.overlap_excess(shared, kRounding) <= kRounding ? good : bad) = shared;
+  }
+  for (int k = 0; k < 6 && good > 0 && good < most; ++k) {
+    const double shared = 0.5 * (bad + good);
+    (corner.overlap_excess(shared, kRounding) <= kRounding ? good : bad) = shared;
+  }
+  if (good > kLeastSaving) keep({CornerMethod::overlap, good, good, good, 0});
+  if (!only_best) best = kLeastSaving;
+  const double reach_a = std::min(settings.tau.value_or(a.slowing), a.duration / 2);
+  const double reach_b = std::min(settings.tau.value_or(b.starting), b.duration / 2);
+  for (const double reach : kReaches) {
+    if (!settings.three_segments && !settings.stretching) break;
+    const double before = reach * reach_a, after = reach * reach_b, stop = before + after;
+    if (stop <= best) break;
+    corner.place(before, after);
+    const auto fits = [&](double T) { return corner.three_excess(T, settings.allowed_excess) <= settings.allowed_excess; };
+    if (best > kLeastSaving && !fits(stop - best)) continue;
+    const double least = corner.least_duration();
+    if (least <= 0 || stop - least <= best) continue;
+    const double excess = corner.three_excess(least, kFarthest);
+    if (reach == kReaches.front()) first_excess = excess;
+    if (excess <= settings.allowed_excess && settings.three_segments) {
+      keep({CornerMethod::three_segment, before, after, least, std::max(0.0, excess)});
+      continue;
+    }
+    if (!settings.stretching) continue;
+    double short_of = least, fitting = 0;
+    for (int k = 1; k <= 10 && fitting == 0; ++k) {
+      const double T = least + (stop - best - least) * k / 10;
+      (fits(T) ? fitting : short_of) = T;
+    }
+    if (fitting == 0) continue;
+    for (int k = 0; k < 6; ++k) {
+      const double T = 0.5 * (short_of + fitting);
+      (fits(T) ? fitting : short_of) = T;
+    }
+    if (stop - fitting <= kLeastSaving) continue;
+    keep({CornerMethod::stretched, before, after, fitting, std::max(0.0, corner.three_excess(fitting, kFarthest))});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const Candidate& x, const Candidate& y) { return x.saved() > y.saved(); });
+  if (found.empty()) {
+    why = std::min(reach_a, reach_b) <= kLeastSaving
+              ? "tau leaves no room"
+              : "no transition keeps the limits; three segments exceed them by " + percent(first_excess);
+  }
+  return found;
+}
+
+/// Looks at a candidate once more, so that the corner holds its segments.
+void settle(Corner& corner, const Candidate& c) {
+  if (c.method == CornerMethod::overlap) {
+    corner.overlap_excess(c.before, kFarthest);
+  } else {
+    corner.place(c.before, c.after);
+    corner.three_excess(c.duration, kFarthest);
+  }
+}
+
+void add_leg(const Leg& leg, double begin, double end, Trajectory& out) {
+  for (std::size_t k = 0; k < leg.knots.size(); ++k) {
+    const double ends = k + 1 < leg.knots.size() ? leg.knots[k + 1].time : leg.duration;
+    const double lasts = std::min(end, ends) - std::max(begin, leg.knots[k].time);
+    if (!(lasts > 0)) continue;
+    for (std::size_t i = 0; i < out.axes.size(); ++i)
+      out.axes[i].segments.push_back({lasts, leg.step[static_cast<Eigen::Index>(i)] * leg.knots[k].segment.jerk});
+  }
+}
+
+std::string why_bad_speeds(const std::vector<SpeedZones>& speeds, std::size_t nodes) {
+  if (!speeds.empty() && speeds.size() + 1 != nodes)
+    return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " + std::to_string(nodes - 1);
+  for (const SpeedZones& leg : speeds)
+    for (const SpeedZone& zone : leg)
+      if (!(zone.share > 0 && zone.share <= 1 && std::isfinite(zone.end))) return "a share of the velocity limits must be in (0, 1]";
+  return {};
+}
+
+std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes, const SmoothSettings& settings) {
+  if (nodes.empty()) return "there are no nodes";
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (nodes[k].size() != nodes[0].size()) {
+      return "node " + std::to_string(k) + " has " + std::to_string(nodes[k].size()) + " axes, node 0 " + std::to_string(nodes[0].size());
+    }
+    if (!nodes[k].allFinite()) return "node " + std::to_string(k) + " has a number that is not finite";
+    if (nodes[k].lpNorm<Eigen::Infinity>() > kFarthest) return "node " + std::to_string(k) + " has a number that is too large";
+  }
+  if (settings.tau && !(*settings.tau >= 0)) return "tau must be a number that is not negative";
+  if (nodes[0].size() == 0) return "the nodes have no axes";
+  return {};
+}
+
+}  // namespace
+
+const char* name(CornerMethod method) {
+  switch (method) {
+    case CornerMethod::three_segment:
+      return "three_segment";
+    case CornerMethod::stretched:
+      return "stretched";
+    case CornerMethod::overlap:
+      return "overlap";
+    case CornerMethod::stop:
+      return "stop";
+  }
+  return "";
+}
+
+Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, const KinematicLimits& limits,
+                           const SpeedZones& speeds) {
+  Trajectory out;
+  for (const double x : from) out.axes.push_back({{x, 0, 0}, {}});
+  if (from != to) {
+    const Leg leg(from, to, limits, speeds);
+    add_leg(leg, 0, leg.duration, out);
+  }
+  return out;
+}
+
+SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits, const SmoothSettings& settings,
+                    const CornerIsFree& is_free, const std::vector<SpeedZones>& speeds) {
+  SmoothResult out;
+  if (!(out.reason = why_bad_nodes(nodes, settings)).empty()) return out;
+  if (!(out.reason = why_bad_speeds(speeds, nodes.size())).empty()) return out;
+  if (!(out.reason = why_bad_limits(limits, static_cast<int>(nodes[0].size()))).empty()) return out;
+  std::vector<Leg> legs;
+  std::vector<int> node_of;
+  legs.reserve(nodes.size());
+  out.legs.assign(nodes.size() - 1, 0.0);
+  const Eigen::VectorXd* last = &nodes[0];
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    if ((nodes[k] - *last).lpNorm<Eigen::Infinity>() < 1e-12) continue;
+    legs.emplace_back(*last, nodes[k], limits, speeds.empty() ? SpeedZones{} : speeds[k - 1]);
+    node_of.push_back(static_cast<int>(k));
+    last = &nodes[k];
+    out.duration_ptp += out.legs[k - 1] = legs.back().duration;
+    if (!(legs.back().duration > 0) || !std::isfinite(legs.back().duration)) {
+      out.reason = "the way to node " + std::to_string(k) + " cannot be computed with such limits";
+      return out;
+    }
+  }
+  for (const double x : nodes[0]) {
+    out.trajectory.axes.push_back({{x, 0, 0}, {}});
+    out.trajectory.axes.back().segments.reserve(10 * legs.size());
+  }
+  const detail::CornerLanes lanes(legs, limits);
+  double begin = 0;
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    if (k + 1 == legs.size()) {
+      add_leg(legs[k], begin, legs[k].duration, out.trajectory);
+      break;
+    }
+    CornerReport report;
+    report.node = node_of[k];
+    Corner corner(legs, k, lanes, limits);
+    Candidate taken;
+    for (const Candidate& c : candidates(corner, legs[k], legs[k + 1], settings, !is_free, report.reason)) {
+      settle(corner, c);
+      if (is_free && !is_free(corner.piece())) {
+        report.reason = std::string(name(c.method)) + " collides";
+        continue;
+      }
+      taken = c;
+      report.method = c.method;
+      report.excess = c.excess;
+      report.saved = c.saved();
+      report.reason.clear();
+      break;
+    }
+    out.corners.push_back(std::move(report));
+    add_leg(legs[k], begin, legs[k].duration - taken.before, out.trajectory);
+    if (taken.method != CornerMethod::stop) corner.add_to(out.trajectory);
+    begin = taken.after;
+  }
+  return out;
+}
+
+}  // namespace handsel

@@ -1,0 +1,222 @@
+#include "components/grasp_planner/choice/grasp_choice.hpp"
+
+#include <algorithm>
+
+#include "components/grasp_planner/choice/grasp_search.hpp"
+#include "components/grasp_planner/choice/platform_places.hpp"
+#include "components/grasp_planner/pair/retreat.hpp"
+
+namespace handsel::grasp_planner {
+namespace {
+
+constexpr std::uint64_t kTransferBudget = 600;  // inverse kinematics tried for places to hand over, for each tilt
+constexpr std::size_t kTransferTries = 12;      // grasps looked at for a place to hand over, for each that is wanted
+constexpr double kSameDistance = 0.02;          // [m] grasps nearer than this ...
+constexpr double kSameAngle = 0.35;             // [rad] ... and less turned count as one variant
+constexpr std::size_t kShortList = 40;          // grasps, clearly different ones, tried at each place of the platform
+constexpr std::size_t kPlacesServed = 3;        // places of the platform with grasps, then the search ends
+
+bool alike(const Pose& a, const Pose& b) {
+  return (a.translation() - b.translation()).norm() < kSameDistance &&
+         Eigen::AngleAxisd(Eigen::Matrix3d(a.linear().transpose() * b.linear())).angle() < kSameAngle;
+}
+
+}  // namespace
+
+const char* reason_text(ChoiceReason reason) {
+  switch (reason) {
+    case ChoiceReason::chosen:
+      return "chosen";
+    case ChoiceReason::below_support:
+      return "the hand would be in or under what the object stands on";
+    case ChoiceReason::out_of_reach:
+      return "no posture of the arm reaches it";
+    case ChoiceReason::collision:
+      return "arm or hand would collide at the grasp";
+    case ChoiceReason::cannot_lift:
+      return "the arm could not lift the object straight up";
+    case ChoiceReason::no_approach:
+      return "no straight approach is free";
+    case ChoiceReason::near_giver:
+      return "the arm would come too near to the body of who holds it";
+    case ChoiceReason::goal_support:
+      return "the hand would be in or under what the object is to be put on";
+    case ChoiceReason::goal_taken:
+      return "the object would touch something where it is to be put";
+    case ChoiceReason::goal_out_of_reach:
+      return "no posture of the arm reaches the place where the object is to be put";
+    case ChoiceReason::goal_collision:
+      return "arm or hand would collide where the object is to be put";
+    case ChoiceReason::goal_lowering:
+      return "the arm could not lower the object straight to where it is to be put";
+    case ChoiceReason::goal_leaving:
+      return "no straight way off the object is free where it is to be put";
+    case ChoiceReason::hidden:
+      return "too little of the object would be seen past the hand";
+    case ChoiceReason::not_considered:
+      return "not considered: enough better ones were found, or the budget was used up";
+    case ChoiceReason::count:
+      break;
+  }
+  return "unknown";
+}
+
+Refusals Choice::refusals() const {
+  Refusals out;
+  for (std::size_t r = 1; r < reasons.size(); ++r) {
+    if (reasons[r] > 0) out.push_back({std::to_string(reasons[r]) + " grasps", reason_text(static_cast<ChoiceReason>(r))});
+  }
+  const auto places = [&](std::uint64_t count, const char* why) {
+    if (count > 0) out.push_back({std::to_string(count) + " places of the platform", why});
+  };
+  places(platform.blocked, "the robot would collide there");
+  places(platform.near_person, "too near to a person");
+  places(platform.useless, "no grasp serves from there");
+  if (platform.none) out.push_back({"places of the platform", "the robot's description tells of no platform"});
+  return out;
+}
+
+std::string Choice::why_none(const GraspList& list) const {
+  if (list.grasps.empty()) {
+    const auto most = std::max_element(list.reasons.begin() + 1, list.reasons.end());
+    return "no stable grasp of hand " + list.hand + " on object " + list.object + " in " + std::to_string(list.frames) +
+           " frames; mostly " + reason_text(static_cast<FrameReason>(most - list.reasons.begin()));
+  }
+  const auto most = [&](ChoiceReason first, ChoiceReason last) {
+    const auto begin = reasons.begin() + static_cast<std::ptrdiff_t>(first), end = reasons.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+    return std::max_element(begin, end) - reasons.begin();
+  };
+  const auto first = most(ChoiceReason::below_support, ChoiceReason::not_considered);
+  std::string why = "none of " + std::to_string(list.grasps.size()) + " stable grasps serves here; mostly " +
+                    reason_text(static_cast<ChoiceReason>(first));
+  const auto later = most(ChoiceReason::goal_support, ChoiceReason::hidden);
+  const auto count = reasons[static_cast<std::size_t>(later)];
+  if (count > 0 && later != first) why += "; and with " + std::to_string(count) + ", " + reason_text(static_cast<ChoiceReason>(later));
+  if (platform.none) why += "; the robot's description tells of no platform that could drive elsewhere";
+  if (platform.places > 0) why += "; nor does one from " + std::to_string(platform.places) + " other places of the platform";
+  return why;
+}
+
+GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
+                           const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
+    : robot_(std::move(robot)), mobile_(std::move(mobile)), kit_(std::move(kit)), library_(std::move(library)), settings_(settings) {
+  arm_ = &robot_->require_group("arm");
+  hand_ = &robot_->require_group("hand");
+  if (arm_->tip < 0 || arm_->tip != robot_->tool_link()) {
+    throw ConfigError("robot " + robot_->name() + ": the arm's tip_link must be the tool_link, the palm of the hand");
+  }
+  const std::vector<Axis>& axes = kit_->hand.model().axes();
+  bool same = axes.size() == hand_->axes.size();
+  for (std::size_t i = 0; same && i < axes.size(); ++i)
+    same = robot_->axes()[static_cast<std::size_t>(hand_->axes[i])].name == axes[i].name;
+  if (!same) {
+    throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + kit_->hand.name() +
+                      " in the order of its fingers");
+  }
+  retreats_ = retreat_ways(kit_->hand);
+}
+
+Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene,
+                            const HumanState& people, const std::function<bool()>& cancelled, const TransferTable* pairs) const {
+  Search search(*this, request, object, scene, people, pairs);
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < list.grasps.size(); ++i) order.emplace_back(search.rank(list.grasps[i], i), i);
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Found> found;
+  // Twice as many as asked for, so that the arm's posture has a say.
+  const std::size_t enough = 2 * static_cast<std::size_t>(std::max(1U, request.max_grasps));
+  const std::uint64_t budget = (request.has_goal ? 2 : 1) * static_cast<std::uint64_t>(settings_.reach_budget);
+  const auto consider = [&](double rank, std::size_t index, std::optional<TransferPose> transfer) {
+    const bool stop = found.size() >= enough || search.out.reaches >= budget || (cancelled && cancelled());
+    Found one{rank, {}, std::move(transfer), {}};
+    const ChoiceReason reason = stop ? ChoiceReason::not_considered : search.consider(list.grasps[index].grasp, one);
+    ++search.out.reasons[static_cast<std::size_t>(reason)];
+    if (reason == ChoiceReason::chosen) found.push_back(std::move(one));
+  };
+  // For a person, those that can be handed over come first, upright before tilted; the others only when too few of them can be picked up.
+  std::vector<std::pair<double, std::size_t>> others = order;
+  const auto levels = search.places ? tilt_levels(pairs->settings()) : std::vector<double>{};
+  for (const double tilt : levels) {
+    search.transfer_budget = search.out.transfer_reaches + kTransferBudget;
+    std::size_t tries = 0;
+    std::vector<std::pair<double, std::size_t>> left;
+    for (const auto& [rank, index] : others) {
+      const Grasp& g = list.grasps[index].grasp;
+      std::optional<TransferPose> transfer;
+      const bool try_it = found.size() < enough && tries < kTransferTries * enough && !pairs->partners(index).empty();
+      if (try_it && !search.below_support(g)) {
+        ++tries;
+        transfer = search.transfer(index, g, tilt);
+      }
+      if (transfer) {
+        consider(rank, index, std::move(transfer));
+      } else {
+        left.emplace_back(rank, index);
+      }
+    }
+    others = std::move(left);
+  }
+  for (const auto& [rank, index] : others) consider(rank, index, {});
+  if (found.empty() && request.move_platform) search_places(search, list, order, cancelled, found);
+  std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) { return a.rank > b.rank; });
+  // One of each kind first: when the best fails, the next should be different.
+  const auto known = [&](const Found& f, const std::vector<Found>& among) {
+    return std::any_of(among.begin(), among.end(), [&](const Found& g) { return alike(g.grasp.T_object_hand, f.grasp.T_object_hand); });
+  };
+  std::vector<Found> ordered, again;
+  for (Found& f : found) (known(f, ordered) ? again : ordered).push_back(std::move(f));
+  std::move(again.begin(), again.end(), std::back_inserter(ordered));
+  if (ordered.size() > request.max_grasps) ordered.resize(request.max_grasps);
+  for (Found& f : ordered) {
+    search.out.grasps.push_back(std::move(f.grasp));
+    if (request.has_goal) search.out.goals.push_back(std::move(f.goal));
+    if (search.places) search.out.transfers.push_back(std::move(f.transfer));
+  }
+  return search.out;
+}
+
+void GraspChooser::search_places(Search& search, const GraspList& list, const std::vector<std::pair<double, std::size_t>>& order,
+                                 const std::function<bool()>& cancelled, std::vector<Found>& found) const {
+  PlatformSearch& counts = search.out.platform;
+  counts.asked = true;
+  counts.none = mobile_ == nullptr;
+  if (counts.none) return;
+  std::vector<std::pair<double, std::size_t>> tried;
+  for (const auto& [rank, index] : order) {
+    const Grasp& g = list.grasps[index].grasp;
+    if (tried.size() >= kShortList) break;
+    const bool again = std::any_of(tried.begin(), tried.end(),
+                                   [&](const auto& t) { return alike(list.grasps[t.second].grasp.T_object_hand, g.T_object_hand); });
+    if (!again && !search.below_support(g)) tried.emplace_back(rank, index);
+  }
+  const Pose T_world_now = search.scene.T_world_base;
+  PlatformFloor floor(*mobile_, library_, search.scene, search.people, settings_.platform_room);
+  const std::uint64_t budget = search.out.reaches + settings_.platform_reaches;
+  const std::size_t enough = std::max(1U, search.request.max_grasps);
+  std::size_t served = 0;
+  for (const PlatformPlace& place :
+       places_around(*robot_, *arm_, search.request.start, T_world_now, search.start.T_world_object.translation())) {
+    if (served >= kPlacesServed || found.size() >= enough || search.out.reaches >= budget || (cancelled && cancelled())) break;
+    ++counts.places;
+    const Pose T_world_base = standing_at(place, T_world_now);
+    const PlatformFloor::Verdict verdict = floor.judge(search.request.start, T_world_base);
+    if (verdict != PlatformFloor::Verdict::free) {
+      ++(verdict == PlatformFloor::Verdict::blocked ? counts.blocked : counts.near_person);
+      continue;
+    }
+    search.stand(T_world_base);
+    const std::size_t before = found.size();
+    for (const auto& [rank, index] : tried) {
+      if (found.size() >= enough || search.out.reaches >= budget) break;
+      Found one{rank - settings_.rank_drive * place.way, {}, {}, {}};
+      if (search.consider(list.grasps[index].grasp, one) != ChoiceReason::chosen) continue;
+      one.grasp.has_platform = true;
+      one.grasp.platform = place.pose;
+      found.push_back(std::move(one));
+    }
+    ++(found.size() > before ? served : counts.useless);
+  }
+  search.stand(T_world_now);
+}
+
+}  // namespace handsel::grasp_planner

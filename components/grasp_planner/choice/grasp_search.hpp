@@ -1,0 +1,92 @@
+// The work of one choice: grasps judged one by one at the places the object is taken from and put to.
+#pragma once
+
+#include <optional>
+
+#include "components/grasp_planner/choice/grasp_choice.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Weighed and judged: a grasp that serves.
+struct GraspChooser::Found {
+  double rank{};
+  Grasp grasp;
+  std::optional<TransferPose> transfer;
+  PuttingDown goal;
+};
+
+struct GraspChooser::Search {
+  Search(const GraspChooser& chooser, const GraspRequest& request, const Graspable& object, const Scene& scene, const HumanState& people,
+         const TransferTable* pairs);
+
+  /// The robot stands elsewhere from now on.
+  void stand(const Pose& T_world_base);
+
+  /// What can be said of a grasp before the arm is looked at.
+  double rank(const ListedGrasp& listed, std::size_t index) const;
+  bool below_support(const Grasp& g);
+  /// Where and how the object, tilted by that much, can be handed over in this grasp, the robot free of everything but the person's arms.
+  std::optional<TransferPose> transfer(std::size_t index, const Grasp& g, double tilt);
+  /// Whether the grasp serves; writes the rest of `out`, whose rank and transfer are set.
+  ChoiceReason consider(const Grasp& listed, Found& out);
+
+  /// The object standing somewhere, the hand not closed on it.
+  struct Site {
+    Pose T_world_object{Pose::Identity()};
+    CollisionWorld world;
+  };
+  /// The middle place for the exchange, and how the object is held there.
+  struct Exchange {
+    double behind{-1};  ///< how well the hand stays behind the object, [0, 1], in the best heading; -1: the arm gets to none
+    Pose T_world_object{Pose::Identity()};
+  };
+
+  const RobotModel& robot() const { return *self.robot_; }
+  const ChoiceSettings& settings() const { return self.settings_; }
+  void plan_exchange();
+  Exchange exchange(const Grasp& g, const Vector& arm_q);
+  double visible(const Grasp& g, const Pose& T_world_object);
+  bool below_support(const Pose& T_world_object, const Grasp& g);
+  Vector whole(const Vector& arm_q, const Vector& hand_q) const;
+  std::optional<Vector> reach(const Pose& T_world_hand, const Vector& seed, int restarts);
+  std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const;
+  bool free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q);
+  bool way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
+  double stand_off() const;  ///< before the object, where the straight way in begins [m]
+  std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
+  bool something_at_goal() const;
+  ChoiceReason pick_up(Grasp& g);
+  bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
+  /// How far on the robot's side of the object the hand is, [0, 1]: the person who holds it is on the other.
+  double on_our_side(const Grasp& g) const;
+  /// Whether the object can be stood on a surface in this grasp: the open hand is nowhere below its foot.
+  bool stands_in(const Grasp& g) const;
+  /// Far enough from head, torso, upper arms and legs of who holds it, the hand open.
+  bool off_giver(const Vector& arm_q, const Grasp& g);
+  ChoiceReason put_down(const Grasp& g, PuttingDown& down);
+
+  const GraspChooser& self;
+  const GraspRequest& request;
+  const Graspable& object;
+  const HumanState& people;
+  const TransferTable* pairs;
+  const Person* person{};
+  std::string holder;  // person in whose hand it is; empty: nobody
+  Scene scene;
+  Site start;
+  std::optional<Site> goal;
+  std::optional<CollisionWorld> giver;     // who holds it, but for forearms and hands
+  std::optional<CollisionWorld> carrying;  // about the goal, with the object in the hand
+  std::optional<CollisionWorld> held;      // likewise, at the exchange: the person's arms are no obstacle
+  bool goal_is_taken{};
+  Pose T_root_world{Pose::Identity()};
+  std::optional<Vector3> eye;  // world: of the person, else of the robot
+  Vector3 to_person{Vector3::Zero()}, exchange_place{Vector3::Zero()};
+  bool exchange_known{};
+  std::optional<TransferPlaces> places;
+  std::uint64_t transfer_budget{};  // of transfer_reaches
+  std::vector<std::vector<Pose>> T_closed, T_open;
+  Choice out;
+};
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,86 @@
+// The hand's own solids for touch tests: slender cylinders, capsules and spheres as capsules (closed forms), the rest through
+// common/collision.
+#pragma once
+
+#include <vector>
+
+#include "common/collision/collision_shape.hpp"
+#include "common/collision/gjk.hpp"
+#include "components/grasp_planner/hand/finger_chain.hpp"
+#include "components/grasp_planner/object/graspable.hpp"
+
+namespace handsel::grasp_planner {
+
+class HandShape {
+ public:
+  HandShape(const HandModel& hand, const std::vector<FingerChain>& chains);
+
+  /// Links that no finger moves. `clearance` [m] is kept from the surface (capsules only).
+  bool palm_touches(const Graspable& object, const Pose& T_object_hand, double clearance = 0.0) const;
+  /// All links of a finger, its solids grown by `clearance` [m]; negative shrinks: a fingertip in contact must not count as a collision.
+  bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+                      double clearance) const;
+  bool finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const;
+  bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const;
+  /// The whole hand, palm and fingers.
+  bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+               double clearance) const;
+  /// Each solid's middle and lowest height in the world.
+  struct Low {
+    Vector3 middle{Vector3::Zero()};
+    double height{};
+  };
+  std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const;
+  /// The whole hand placed in some frame, for tests of hands against each other.
+  struct Placed {
+    bool capsule{}, palm{};
+    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  // capsules
+    double radius{};
+    CollisionShapePtr shape;  // the others
+    Pose T_frame_shape{Pose::Identity()};
+    ConvexCore core;  // but meshes
+    Vector3 middle{Vector3::Zero()};
+    double bound{};  // all of it is this near to its middle
+  };
+  struct PlacedHand {
+    std::vector<Placed> solids;
+    Eigen::AlignedBox3d box;
+  };
+  PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
+  /// Nearer than `clearance` [m], or a palm nearer to the other hand than `palm_clearance`.
+  static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance, double palm_clearance = 0.0);
+  /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
+  struct Round {
+    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};
+    double radius{};
+  };
+  std::vector<Round> rounds(const std::vector<std::vector<Pose>>& T_hand_step) const;
+
+ private:
+  static bool nearer(const Placed& s, const Placed& t, double clearance);
+  struct Solid {
+    int link{};
+    int step{-1};  // -1: palm
+    bool capsule{};
+    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};
+    double radius{};
+    Pose T_step_shape{Pose::Identity()};
+    CollisionShapePtr shape, shrunk;
+  };
+  static Solid make_solid(int link, int step, const Pose& T_step_link, const PlacedShape& placed);
+  bool solid_touches(const Solid& s, const Pose& T_hand_step, const Graspable& object, const Pose& T_object_hand, double clearance) const;
+  static bool solids_touch(const Solid& s, const Pose& T_hand_s, const Solid& t, const Pose& T_hand_t);
+  bool groups_touch(const std::vector<Solid>& a, const std::vector<Pose>& T_a, const std::vector<Solid>& b,
+                    const std::vector<Pose>& T_b) const;
+  std::size_t pair(int link_a, int link_b) const {
+    return static_cast<std::size_t>(link_a) * static_cast<std::size_t>(links_) + static_cast<std::size_t>(link_b);
+  }
+  bool disabled(int link_a, int link_b) const { return disabled_[pair(link_a, link_b)]; }
+
+  std::vector<Solid> palm_;
+  std::vector<std::vector<Solid>> fingers_;
+  int links_{};
+  std::vector<bool> disabled_;  // adjacent, excluded by the model, or touching in the hand's own rest and pre-grasp postures
+};
+
+}  // namespace handsel::grasp_planner

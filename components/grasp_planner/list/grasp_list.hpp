@@ -1,0 +1,121 @@
+// The list of grasps of one hand on one object (chapter sections 3.2.1 - 3.2.7): deterministic, unbiased, resumable.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/grasp/grip_force.hpp"
+#include "common/messages/planning.hpp"
+#include "components/grasp_planner/hand/hand_kit.hpp"
+#include "components/grasp_planner/object/graspable.hpp"
+
+namespace handsel::grasp_planner {
+
+struct QualityWeights {
+  double stability{0.45};  ///< epsilon
+  double centre{0.2};      ///< distance of the contacts' mean to the mass centre
+  double force{0.15};      ///< contact normals along the main axes of the force ellipsoids
+  double curvature{0.2};   ///< 1 - normalised mean curvature at the contacts
+};
+
+struct GraspListSettings {
+  std::uint32_t positions{60};      ///< of the grasp frame in the object's box, uniform
+  double spacing{0.04};             ///< in a large box as many more as make them about this far apart [m]; 0: never more
+  std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
+  double step_share{0.6};           ///< distance of contact points / fingertip radius
+  double friction{0};               ///< Coulomb coefficient; 0: the object's
+  int cone_edges{8};                ///< of a linearised friction cone, >= 6
+  double full_epsilon{0.25};        ///< an epsilon from which on the stability counts as 1
+  QualityWeights weights;
+  std::uint32_t contacts_per_finger{4};  ///< alternatives kept for each finger of a frame
+  std::uint32_t tries_per_finger{24};    ///< candidates judged for them
+  double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
+  double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
+  GripForceSettings grip;                ///< how hard it is held, and what it must bear
+  double free_distance{0.03};            ///< surface this far from the hand counts as room for another hand [m]
+  std::uint64_t seed{1};
+};
+
+/// Why frames were given up; each frame that gave no grasp counts once.
+enum class FrameReason : std::uint8_t {
+  grasped,
+  thumb_out_of_reach,    ///< no contact point in the thumb's workspace
+  fingers_out_of_reach,  ///< in those of fewer than two other fingers
+  palm_in_object,
+  thumb_without_contact,  ///< inverse kinematics, direction of the push, collision or opening
+  fingers_without_contact,
+  fingers_collide,
+  not_closed,        ///< no combination is force-closed
+  nothing_opposite,  ///< a pinching hand: no surface opposite within its opening
+  pad_off_surface,   ///< a pinching hand: a pad does not lie on the surface
+  count
+};
+const char* reason_text(FrameReason);
+
+struct GraspScores {
+  double stability{}, centre{}, force{}, curvature{};  ///< each [0, 1]
+};
+
+struct ListedGrasp {
+  Grasp grasp;  ///< id = number of its frame; contacts in the order of the fingers
+  GraspScores scores;
+  double room{};  ///< share of the surface that is free for another hand, [0, 1]
+};
+
+struct GraspList {
+  std::string hand, object;
+  std::vector<ListedGrasp> grasps;  ///< best quality first; ties by id
+  std::uint64_t frames{};           ///< tested
+  std::array<std::uint64_t, static_cast<std::size_t>(FrameReason::count)> reasons{};
+  std::uint64_t finger_solutions{}, touch_tests{}, closure_tests{};  ///< work done
+
+  /// Counts per reason of the frames without a grasp, e.g. {"113 frames", "..."}.
+  Refusals refusals() const;
+};
+
+/// Positions of the grasp frame: cell centres of a uniform grid over the box, about `count` of them.
+std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count);
+
+/// How many positions the settings want in a box.
+std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings);
+
+/// Frames of a hand on an object with these settings.
+std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
+
+/// Lists of different frames as one.
+GraspList merged(std::vector<GraspList> parts);
+
+class GraspLister {
+ public:
+  /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is gone on with. Empty: from the first frame.
+  GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+              std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun = {});
+  ~GraspLister();
+  GraspLister(GraspLister&&) noexcept;
+
+  std::uint64_t frames() const;  ///< in all
+  std::size_t found() const;     ///< grasps so far
+  /// Tests these frames, each independent of all others: several listers may share the work, their lists are merged afterwards.
+  void test(std::uint64_t first, std::uint64_t count);
+  /// Tests at most `count` more frames; false when there are none left. Frames go through all positions of an orientation before the next,
+  /// so that more orientations only extend the list.
+  bool advance(std::uint64_t count);
+  /// The list so far, sorted.
+  GraspList list() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// All frames at once; `cancelled` is asked now and then.
+GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+                      std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
+                      const std::function<bool()>& cancelled = {}, GraspList begun = {});
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,65 @@
+// Grasps of a hand of two pads: a place of the surface for the first pad, the surface opposite for the second, patches of contact on both
+// (ours). The pads' areas hold what two points could not.
+#pragma once
+
+#include <optional>
+
+#include "components/grasp_planner/list/grasp_list.hpp"
+
+namespace handsel::grasp_planner {
+
+/// How the two pads of a hand close: all its axes together, from the widest opening (0) to the narrowest (1).
+class PinchMotion {
+ public:
+  explicit PinchMotion(const HandKit& kit);
+
+  Vector posture(double closed) const { return open_ + closed * (closed_ - open_); }  ///< all hand axes
+  /// Distance of the pads along the way the first one presses [m].
+  double gap(const Vector& q) const;
+  double widest() const { return widest_; }
+  /// The posture whose gap this is; nothing when there is none.
+  std::optional<Vector> at_gap(double gap) const;
+  /// Frame of a finger's pad in the hand.
+  Pose T_hand_pad(std::size_t finger, const std::vector<Pose>& T_hand_step) const;
+
+ private:
+  const HandKit& kit_;
+  Vector open_, closed_;
+  double widest_{};
+};
+
+class PinchSearch {
+ public:
+  PinchSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
+
+  /// Places of the surface times turns of the hand about the surface's normal; as many as the settings' positions and orientations, or
+  /// fewer.
+  std::uint64_t frames() const { return places_ * kTurns; }
+
+  /// A grasp without its quality. Its contacts are the corners of the patches, in the order of the fingers.
+  struct Found {
+    Grasp grasp;
+    std::vector<PointContact> contacts;
+    double force{};  ///< mean cosine between the surface and the pads
+  };
+  /// `counters`: work done is added. `why` says what was wrong when there is none.
+  std::optional<Found> frame(std::uint64_t id, GraspList& counters, FrameReason& why);
+
+ private:
+  static constexpr std::uint64_t kTurns = 16;
+  std::optional<Found> across(const SurfacePoint& place, const Vector3& along, double thickness, GraspList& counters, FrameReason& why);
+  bool touch(std::uint32_t finger, const Pose& T_object_pad, Found& found);
+  bool fingers_touch(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_object_hand, double clearance,
+                     GraspList& counters) const;
+  void squeeze(Found& found, std::size_t most_on_a_pad) const;
+
+  const HandKit& kit_;
+  const Graspable& object_;
+  const GraspListSettings& settings_;
+  PinchMotion motion_;
+  std::uint64_t places_{}, stride_{1};
+  std::vector<SurfaceHit> hits_;
+  std::vector<std::vector<Pose>> T_closed_, T_open_;
+};
+
+}  // namespace handsel::grasp_planner

@@ -1,0 +1,32 @@
+#include "components/grasp_planner/pair/retreat.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace handsel::grasp_planner {
+
+std::vector<Vector3> retreat_ways(const HandModel& hand) {
+  const Vector3 away = -hand.T_hand_grasp().translation().normalized();
+  const Vector3 side = away.unitOrthogonal(), other = away.cross(side);
+  std::vector<Vector3> ways{away};
+  for (const double tilt : {0.45, 0.9}) {
+    for (int k = 0; k < 6; ++k) {
+      const double turn = std::numbers::pi / 3 * k;
+      ways.push_back(std::cos(tilt) * away + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
+    }
+  }
+  return ways;
+}
+
+bool retreat_free(const HandKit& kit, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
+                  const Vector3& way, double length, double clearance, std::uint64_t* tests) {
+  for (double s = length; s > 0; s -= 2 * kSweepStep) {
+    Pose T = T_object_hand;
+    T.translate(Vector3(s * way));
+    if (tests != nullptr) ++*tests;
+    if (kit.shape.touches(T_hand_step, object, T, clearance)) return false;
+  }
+  return true;
+}
+
+}  // namespace handsel::grasp_planner

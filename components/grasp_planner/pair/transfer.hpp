@@ -1,0 +1,87 @@
+// Grasps that leave a person a good one (chapter section 3.2.9): which grasps of the person's hand go with each of the robot's, and where
+// and how the object is best held out for them.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "components/grasp_planner/pair/double_grasp.hpp"
+#include "components/grasp_planner/pair/human_wrist.hpp"
+
+namespace handsel::grasp_planner {
+
+struct TransferSettings {
+  double clearance{0.004};        ///< between the two hands [m]
+  double palm_clearance{0.01};    ///< between either palm and the other hand [m]
+  double least_opposition{2.1};   ///< angle of the wrists, more than 120 degrees [rad]
+  std::size_t most_of_each{400};  ///< best grasps taken from each list
+  std::size_t partners{10};       ///< grasps of the person kept for each of the robot, clearly different ones
+  double most_strain{kComfortableStrain};
+  double most_aim{1.05};  ///< angle between the person's hand and the level way from their body to the object [rad]
+  int headings{24};       ///< of the object
+  double most_tilt{0};    ///< it may be tilted by up to this [rad]; upright is better
+};
+
+/// What a person's hand could do with the object in one grasp of the robot.
+struct TransferPartner {
+  std::size_t human{};                    ///< index into the person's list
+  Pose T_object_wrist{Pose::Identity()};  ///< of the person's hand
+  double opposition{};                    ///< [rad]
+  double quality{};                       ///< the smaller of the two
+};
+
+/// All double grasps of robot and person on one object; made once for an object and kept.
+class TransferTable {
+ public:
+  TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object, const TransferSettings& settings = {});
+
+  /// Of grasp `robot_grasp` of the robot's list, best first; empty: nothing is left for the person.
+  const std::vector<TransferPartner>& partners(std::size_t robot_grasp) const;
+  /// How good the best partner is, [0, 1]: opposition and quality; 0 when there is none. What can be said before anybody's place is known.
+  double promise(std::size_t robot_grasp) const;
+  const DoubleList& doubles() const { return doubles_; }
+  const TransferSettings& settings() const { return settings_; }
+
+ private:
+  TransferSettings settings_;
+  DoubleList doubles_;  // without their grasps: those are in partners_
+  std::vector<std::vector<TransferPartner>> partners_;
+};
+
+/// A place to hold the object out.
+struct TransferPose {
+  Pose T_world_object{Pose::Identity()};
+  Vector arm_joints;  ///< of the robot
+  TransferPartner partner;
+  WristPosture wrist;  ///< of the person
+  double aim{};        ///< angle between the person's hand and the way from their body to the object [rad]
+  double tilt{};       ///< of the object, against how it is held now [rad]
+  double score{};      ///< [0, 1]: legibility (opposition), comfort (strain), aim, little tilt
+};
+
+/// How far the object may be tilted, in steps, upright first [rad].
+std::vector<double> tilt_levels(const TransferSettings& settings);
+
+/// Exchange poses for one person: places before their chest and headings of the object.
+class TransferPlaces {
+ public:
+  /// `p_object_middle`: of the object's box, object frame. `R_world_object`: how it is held now.
+  TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot, const Eigen::Matrix3d& R_world_object,
+                 const Vector3& p_object_middle);
+
+  /// The best place for a grasp of the robot, the object tilted by `tilt` [rad] some way, at which `reach` finds an arm posture for the
+  /// robot's hand. `reach` is asked `most_reaches` times at most, best score first.
+  std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
+                                   const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach,
+                                   int most_reaches) const;
+
+ private:
+  HumanArm arm_;
+  Eigen::Matrix3d R_world_object_;
+  Vector3 p_object_middle_;
+  Vector3 chest_, to_robot_;
+  std::vector<Vector3> places_;  // of the object's middle, world
+};
+
+}  // namespace handsel::grasp_planner

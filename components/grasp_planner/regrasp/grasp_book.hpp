@@ -1,0 +1,54 @@
+// The lists of one hand, made when first asked for, then remembered, and kept on disk when there is a store. For one thread at a time.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "components/grasp_planner/list/grasp_store.hpp"
+#include "components/grasp_planner/pair/transfer.hpp"
+
+namespace handsel::grasp_planner {
+
+/// An object with its list.
+struct GraspPage {
+  std::shared_ptr<const Graspable> object;
+  GraspList list;
+};
+
+class GraspBook {
+ public:
+  GraspBook(std::shared_ptr<const HandKit> kit, const GraspListSettings& settings, GraspStore store);
+
+  /// nullptr when cancelled. Throws ConfigError when the object cannot be grasped by any hand (its mesh).
+  std::shared_ptr<const GraspPage> page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
+
+ private:
+  std::shared_ptr<const HandKit> kit_;
+  GraspListSettings settings_;
+  GraspStore store_;
+  std::shared_ptr<const FingerWorkspaces> workspaces_;
+  std::map<std::uint64_t, std::shared_ptr<const GraspPage>> pages_;
+};
+
+/// Which grasps of a person's hand go with those of the robot's, by object; made when first asked for. For one thread at a time.
+class TransferBook {
+ public:
+  TransferBook(std::shared_ptr<const HandKit> robot, std::shared_ptr<const HandKit> taker, const GraspListSettings& taker_settings,
+               GraspStore store);
+
+  /// `page`: of the robot's hand. nullptr when cancelled.
+  std::shared_ptr<const TransferTable> table(const ObjectModel& object, const GraspPage& page, const std::function<bool()>& cancelled = {});
+  /// The table when it was made already.
+  std::shared_ptr<const TransferTable> known(const std::string& object) const;
+  /// Of the taker's list; nullptr when cancelled.
+  std::shared_ptr<const GraspPage> taker_page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
+
+ private:
+  std::shared_ptr<const HandKit> robot_, taker_;
+  GraspBook book_;
+  std::map<std::string, std::shared_ptr<const TransferTable>> tables_;
+};
+
+}  // namespace handsel::grasp_planner

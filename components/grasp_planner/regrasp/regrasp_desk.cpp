@@ -1,0 +1,118 @@
+#include "components/grasp_planner/regrasp/regrasp_desk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+
+namespace handsel::grasp_planner {
+namespace {
+
+// [N] of Grasp::margin: weaker grasps are taken only where firmer ones lead nowhere.
+constexpr std::array kLeastMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
+constexpr std::size_t kFewest = 3;  // steps from one hand by the other to its place
+
+RegraspKind kind_of(RegraspStepKind kind) {
+  switch (kind) {
+    case RegraspStepKind::pick:
+      return RegraspKind::pick;
+    case RegraspStepKind::pass:
+      return RegraspKind::pass;
+    case RegraspStepKind::join:
+      return RegraspKind::join;
+    case RegraspStepKind::place:
+      break;
+  }
+  return RegraspKind::place;
+}
+
+handsel::RegraspStep told(const RegraspStep& step, const std::vector<RegraspArm>& arms) {
+  handsel::RegraspStep out;
+  out.kind = kind_of(step.kind);
+  const auto name_of = [&](int arm) { return arm < 0 ? std::string() : arms[static_cast<std::size_t>(arm)].arm.name; };
+  out.from = name_of(step.from);
+  out.to = name_of(step.to);
+  out.T_world_object = step.T_world_object;
+  out.q = step.q;
+  out.before = step.before;
+  out.after = step.after;
+  const bool comes = step.to >= 0;
+  const RegraspArm& arm = arms[static_cast<std::size_t>(comes ? step.to : step.from)];
+  out.grasp = arm.list->grasps[comes ? step.grasp_to : step.grasp_from].grasp;
+  out.grasp.arm_joints = RobotModel::part(step.q, *arm.arm.arm);
+  out.grasp.approach_joints = RobotModel::part(comes ? step.before : step.after, *arm.arm.arm);
+  return out;
+}
+
+void tell(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, RegraspReply& reply) {
+  reply.solved = plan.solved;
+  reply.reason = plan.reason;
+  reply.rejected = plan.rejected;
+  reply.steps.clear();
+  for (const RegraspStep& step : plan.steps) reply.steps.push_back(told(step, arms));
+}
+
+}  // namespace
+
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& robot, const std::vector<ArmBook>& arms,
+                             const ObjectModel& model, const ObjectLibrary& library, const Scene& scene, const RegraspSettings& settings,
+                             const std::function<bool()>& cancelled) {
+  RegraspAnswer answer;
+  answer.reply.id = request.id;
+  const auto object =
+      std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
+  if (object == scene.objects.end()) {
+    answer.reply.reason = "object " + request.object + " is not in the scene";
+    return answer;
+  }
+  std::vector<std::shared_ptr<const GraspPage>> pages;
+  std::vector<GraspList> whole(arms.size());
+  for (std::size_t a = 0; a < arms.size(); ++a) {
+    pages.push_back(arms[a].book->page(model, cancelled));
+    if (!pages.back()) {
+      answer.reply.reason = "cancelled";
+      return answer;
+    }
+    whole[a].grasps = pages.back()->list.grasps;
+    answer.listed += whole[a].grasps.size();
+  }
+  RegraspTask task;
+  task.start.T_world_object = object->T_world_object;
+  task.goal.T_world_object = request.T_world_goal;
+  if (request.both) {
+    std::vector<RegraspArm> sides;
+    for (std::size_t a = 0; a < arms.size(); ++a) sides.push_back({arms[a].arm, arms[a].kit.get(), &whole[a]});
+    RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
+    const RegraspPlan plan = planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
+    answer.judged = plan.judged;
+    tell(plan, sides, answer.reply);
+    for (std::size_t a = 0; a < plan.shares.size(); ++a) {
+      answer.reply.steps[a].grasp.hand_effort = plan.shares[a].effort;
+      answer.reply.steps[a].grasp.margin = plan.shares[a].margin;
+    }
+    return answer;
+  }
+  for (const double least : kLeastMargins) {
+    std::vector<GraspList> firm(arms.size());
+    std::vector<RegraspArm> sides;
+    for (std::size_t a = 0; a < arms.size(); ++a) {
+      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(), std::back_inserter(firm[a].grasps),
+                   [least](const ListedGrasp& g) { return g.grasp.margin >= least; });
+      sides.push_back({arms[a].arm, arms[a].kit.get(), &firm[a]});
+    }
+    const bool any = std::all_of(firm.begin(), firm.end(), [](const GraspList& list) { return !list.grasps.empty(); });
+    if (!any && least != kLeastMargins.back()) continue;
+    RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
+    const RegraspPlan plan = planner.plan(task, cancelled);
+    answer.judged += plan.judged;
+    // A firm grip is not worth handing the object to and fro.
+    if (!plan.solved ? !answer.reply.solved : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
+      tell(plan, sides, answer.reply);
+    }
+    const bool better_by_weaker = least >= 0 && answer.reply.steps.size() > kFewest;
+    if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;
+  }
+  return answer;
+}
+
+}  // namespace handsel::grasp_planner

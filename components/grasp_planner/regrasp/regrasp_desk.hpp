@@ -1,0 +1,33 @@
+// Answers which hands to take an object with: the planner's steps with the grasps as messages have them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "common/messages/planning.hpp"
+#include "common/messages/world.hpp"
+#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/regrasp.hpp"
+
+namespace handsel::grasp_planner {
+
+/// An arm, the kit of its hand and the lists of that hand.
+struct ArmBook {
+  Manipulator arm;
+  std::shared_ptr<const HandKit> kit;
+  std::shared_ptr<GraspBook> book;
+};
+
+struct RegraspAnswer {
+  RegraspReply reply;
+  std::uint64_t judged{};  ///< steps
+  std::uint64_t listed{};  ///< grasps that were listed for it
+};
+
+/// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no sequence.
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& robot, const std::vector<ArmBook>& arms,
+                             const ObjectModel& model, const ObjectLibrary& library, const Scene& scene, const RegraspSettings& settings,
+                             const std::function<bool()>& cancelled = {});
+
+}  // namespace handsel::grasp_planner

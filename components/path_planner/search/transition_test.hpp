@@ -1,0 +1,40 @@
+// The transition test of T-RRT (chapter section 4.1.1): downhill always, uphill by chance, the less likely the steeper; warmer after
+// refusals, cooler after each rise let pass.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "components/path_planner/search/random.hpp"
+
+namespace handsel::path_planner {
+
+class TransitionTest {
+ public:
+  /// Temperature in units of cost.
+  TransitionTest(double temperature, Random& random) : temperature_(temperature), random_(random) {}
+  bool operator()(double from, double to) {
+    if (to <= from) return true;
+    if (random_.unit() < std::exp(-(to - from) / temperature_)) {
+      temperature_ = std::max(kLeastTemperature, temperature_ / kTemperatureFactor);
+      refusals_ = 0;
+      return true;
+    }
+    if (++refusals_ > kMostRefusals) {
+      temperature_ *= kTemperatureFactor;
+      refusals_ = 0;
+    }
+    return false;
+  }
+
+ private:
+  static constexpr double kTemperatureFactor = 1.5;
+  static constexpr int kMostRefusals = 3;
+  static constexpr double kLeastTemperature = 1e-6;
+
+  double temperature_;
+  Random& random_;
+  int refusals_{0};
+};
+
+}  // namespace handsel::path_planner

@@ -1,0 +1,50 @@
+// Who holds, offers, waits for, takes back and lets go of what: the facts of an exchange between any two, person or robot. Pure.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/config/schema/spark.pb.h"
+#include "common/messages/world.hpp"
+#include "components/spark/facts/fact_memory.hpp"
+
+namespace handsel::spark {
+
+/// The robot as a partner.
+struct RobotPartner {
+  Vector3 body{Vector3::Zero()};  ///< world [m]
+  Vector3 tool{Vector3::Zero()};  ///< world [m]
+};
+
+class ExchangeFacts {
+ public:
+  explicit ExchangeFacts(const config::SparkSettings& settings) : settings_(settings) {}
+
+  /// Adds the candidates of this look. An object with force sensors is held by everybody whose grip exceeds `grip_force` until it falls
+  /// below `grip_lost`, so that both have it while it goes over; any other by its one holder. Letting go of something that nobody else
+  /// holds is no release.
+  void find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
+
+ private:
+  using Pair = std::pair<std::string, std::string>;
+  struct Moment {
+    TimePoint at;
+    std::string evidence;
+  };
+  std::set<std::string> holders(const SceneObject& object);
+  void held_and_released(const SceneObject& object, TimePoint now, std::vector<Candidate>& out);
+  void offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
+  void reached_for(const Person& person, const std::string& target, const Vector3& where, TimePoint now, std::vector<Candidate>& out);
+  void forget(const Scene& scene, const HumanState& people, TimePoint now);
+  void waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out);
+
+  config::SparkSettings settings_;
+  std::map<std::string, std::set<std::string>> holders_;  // of each object
+  std::map<Pair, Moment> released_, withdrawn_;           // object and who let go; person and what they drew back from
+  std::map<Pair, TimePoint> offering_, reaching_;         // person and thing, when last so
+};
+
+}  // namespace handsel::spark

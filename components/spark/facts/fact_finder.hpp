@@ -1,0 +1,60 @@
+// From geometry to facts: zones, who moves, looks, sees and reaches, what is on, in and next to what, and the exchange. Pure.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/collision/collision_world.hpp"
+#include "common/config/schema/spark.pb.h"
+#include "common/geometry/line_of_sight.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/arm_reach.hpp"
+#include "common/model/robot_capsules.hpp"
+#include "components/spark/facts/exchange_facts.hpp"
+#include "components/spark/facts/fact_memory.hpp"
+
+namespace handsel::spark {
+
+class FactFinder {
+ public:
+  FactFinder(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects);
+
+  /// The facts that hold now, with how long they have held and what they rest on. Those of the robot need its state to be known.
+  Facts find(const Scene& scene, const HumanState& people, TimePoint now);
+
+ private:
+  struct Zone {
+    int level{4};             // 0 contact ... 4 far
+    TimePoint last_inside{};  // when the distance last confirmed this level
+  };
+  struct Extent {
+    Eigen::AlignedBox3d box;  // world
+    double radius{};          // around its centre
+  };
+  int zone_level(Zone& zone, double distance, TimePoint now) const;
+  void robot_facts(const Scene& scene, const Person& person, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
+  void gaze_facts(const Scene& scene, const HumanState& people, const Person& person, const RobotPartner& robot,
+                  std::vector<Candidate>& out) const;
+  void hand_facts(const Scene& scene, const Person& person, std::vector<Candidate>& out) const;
+  void thing_facts(const Scene& scene, const HumanState& people, std::vector<Candidate>& out) const;
+  void pair_facts(const Scene& scene, std::size_t i, std::size_t k, std::vector<Candidate>& out) const;
+  Extent extent(const SceneObject& object) const;
+  RobotPartner partner(const Scene& scene) const;
+
+  config::SparkSettings settings_;
+  std::shared_ptr<const RobotModel> robot_;
+  ObjectLibrary library_;
+  std::vector<LinkCapsule> capsules_;
+  std::vector<Pose> links_;
+  std::vector<Extent> extents_;  // of the scene's objects
+  ArmReach reach_;
+  std::map<std::string, Zone> zones_;
+  ExchangeFacts exchange_;
+  FactMemory lasting_, instant_;  // what is judged here; what was judged with a memory of its own
+};
+
+}  // namespace handsel::spark

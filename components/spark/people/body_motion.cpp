@@ -1,0 +1,51 @@
+#include "components/spark/people/body_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handsel::spark {
+namespace {
+
+constexpr double kGap = 0.5;  // beyond this a velocity is found anew [s]
+
+std::array<std::size_t, 7> trunk_joints() {
+  std::array<std::size_t, 7> out{};
+  std::size_t n = 0;
+  for (const char* name : {"neck", "torso", "waist", "l_shoulder", "r_shoulder", "l_hip", "r_hip"})
+    out[n++] = static_cast<std::size_t>(body_joint_index(name));
+  return out;
+}
+
+const std::array<std::size_t, 7> kTrunkJoints = trunk_joints();
+
+}  // namespace
+
+bool of_trunk(std::size_t joint) { return std::find(kTrunkJoints.begin(), kTrunkJoints.end(), joint) != kTrunkJoints.end(); }
+
+void BodyMotion::Point::look(const Vector3& position, double noise, TimePoint at) {
+  const double since = told ? to_seconds(at - *told) : 2 * kGap;
+  if (since > kGap)
+    motion.reset(position, noise);
+  else if (since > 1e-4)
+    motion.update(position, since, noise);
+  told = at;
+}
+
+void BodyMotion::update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise, TimePoint at) {
+  constexpr double kCount = static_cast<double>(kTrunkJoints.size());
+  Vector3 middle = Vector3::Zero();
+  double noisiest = 0, variance = 0;
+  for (const std::size_t i : kTrunkJoints) {
+    middle += body[i].position / kCount;
+    noisiest = std::max(noisiest, noise[i]);
+  }
+  for (const std::size_t i : kTrunkJoints) variance += std::pow(noise[i] > 0 ? noise[i] : noisiest, 2);
+  const double of_middle = std::sqrt(variance) / kCount;
+  if (noisiest > 0) trunk_.look(middle, of_middle, at);
+  for (std::size_t i = 0; i < body.size(); ++i) {
+    if (noise[i] > 0) joints_[i].look(body[i].position - middle, std::hypot(noise[i], of_middle), at);
+    body[i].velocity = trunk_.motion.velocity() + joints_[i].motion.velocity();
+  }
+}
+
+}  // namespace handsel::spark

@@ -1,0 +1,69 @@
+// Hierarchical task network planning: a task is decomposed by its methods down to actions; of all ways the cheapest. Pure.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "components/supervisor/task/domain.hpp"
+
+namespace handsel::supervisor {
+
+/// An action with its arguments.
+struct PlannedAction {
+  ActionKind kind{};
+  std::string object, human, surface;
+  int action{-1};                 ///< index in the domain
+  std::vector<std::string> args;  ///< of the domain's action
+  double cost{};
+  std::string text() const;  ///< "give mug to anna"
+  friend bool operator==(const PlannedAction& a, const PlannedAction& b) { return a.action == b.action && a.args == b.args; }
+};
+
+/// A line of the tree: a task, or one of the actions.
+struct PlanLine {
+  std::string text;
+  std::uint32_t depth{};
+  int action{-1};       ///< index into Plan::actions; -1: a task
+  bool skipped{false};  ///< nothing is planned for it, and why
+  std::string reason;
+};
+
+struct Plan {
+  bool found{false};
+  std::vector<PlannedAction> actions;
+  std::vector<PlanLine> tree;  ///< depth first; the first line is the goal
+  double cost{};
+  bool proven{false};     ///< nothing cheaper exists; else the search was cut short
+  std::uint64_t nodes{};  ///< states looked at
+  std::string reason;     ///< why there is none, one sentence for people
+};
+
+/// What it leaves out, and why: "clear box away: box is out of the robot's reach; ..."; empty: nothing.
+std::string left_out(const Plan& plan);
+
+struct PlanLimits {
+  std::uint64_t nodes{4000};
+  std::uint32_t depth{64};
+};
+
+/// What an action must not be tried again for, by its text.
+using Forbidden = std::map<std::string, std::string>;
+
+/// Branch and bound: methods and bindings cheapest first, by their cost and a bound from below on what they lead to; a way that costs as
+/// much as the best one found is left. The same question has the same answer. `args`: of the task, "-" = left out.
+Plan make_plan(const Domain& domain, const World& world, int task, const std::vector<std::string>& args, const Forbidden& forbidden,
+               const PlanLimits& limits);
+
+/// Why an action cannot be done in this state; empty: it can.
+std::string why_not(const Domain& domain, World& world, const PlannedAction& action, const State& state);
+void apply(const Domain& domain, World& world, const PlannedAction& action, State& state);
+/// Does all that it adds hold already?
+bool shows(const Domain& domain, World& world, const PlannedAction& action, const State& state);
+/// Which condition that must hold while it runs does not; empty: all do.
+std::string broken(const Domain& domain, World& world, const PlannedAction& action, const State& state);
+/// Which condition of a task that was done does not hold; empty: all do.
+std::string unachieved(const Domain& domain, World& world, int task, const std::vector<std::string>& args, const State& state);
+
+}  // namespace handsel::supervisor

@@ -1,0 +1,57 @@
+// How far a plan has been carried out, and what became of the plans before it. Pure.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/messages/task.hpp"
+#include "components/supervisor/task/htn.hpp"
+
+namespace handsel::supervisor {
+
+/// What one TaskStatus has room for (idl/task.idl).
+inline constexpr std::size_t kMostSteps = 64, kMostLines = 128, kMostText = 128, kMostReason = 256, kMostPhase = 64;
+std::string cut(const std::string& text, std::size_t most);
+
+class Progress {
+ public:
+  /// Goes on with another plan. What is left of the old one and not in the new one was dropped, `why` says for what reason.
+  void adopt(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
+  /// The running action stays the first of the new plan.
+  void adopt_after_running(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
+
+  const PlannedAction* current() const { return next_ < plan_.actions.size() ? &plan_.actions[next_] : nullptr; }
+  /// Actions from the current one on, or after it.
+  std::vector<PlannedAction> left(bool after = false) const;
+  const Plan& plan() const { return plan_; }
+  const std::vector<std::string>& dropped() const { return dropped_; }  ///< reasons, in order, each once
+
+  void begin() { mark(StepState::running, ""); }
+  void done();
+  void failed(const std::string& reason) { mark(StepState::failed, reason); }
+  void drop(const std::string& reason);
+  /// It will be tried again.
+  void again(const std::string& reason) { mark(StepState::waiting, reason); }
+
+  /// Plan, step, tree and cost; `goal` is the first line of the tree.
+  void write(const std::string& goal, TaskStatus& out) const;
+
+ private:
+  struct Mark {
+    StepState state{StepState::waiting};
+    std::string reason;
+  };
+  void mark(StepState state, const std::string& reason);
+  void note_dropped(const std::string& reason);
+  void put_away();
+
+  std::vector<PlanStep> past_;
+  std::vector<std::string> past_plan_;
+  std::vector<std::string> dropped_;
+  Plan plan_;
+  std::vector<Mark> marks_;
+  std::size_t next_{0};
+};
+
+}  // namespace handsel::supervisor

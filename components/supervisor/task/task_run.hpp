@@ -1,0 +1,90 @@
+// One task from its goal to its end: planned, carried out, watched, planned anew. Pure.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/schema/supervisor.pb.h"
+#include "components/supervisor/situation.hpp"
+#include "components/supervisor/task/progress.hpp"
+#include "components/supervisor/task/task_planner.hpp"
+
+namespace handsel::supervisor {
+
+/// What a task wants of its surroundings in one step.
+struct TaskWishes {
+  std::vector<ActionGoal> action_goals;
+  bool changed{false};  ///< the status is worth telling
+};
+
+class TaskRun {
+ public:
+  TaskRun(const config::SupervisorSettings& settings, const Domain& domain, Situation& situation, const TaskGoal& goal, TimePoint now);
+
+  enum class Start { begun, refused, unsure };
+  /// First look at the goal. `unsure`: what is named is not seen yet, or not as it would have to be; `status().reason` says what.
+  Start start(TimePoint now);
+
+  /// `may_begin`: a new action may be sent; `next_id` makes ids of actions.
+  void step(TimePoint now, const std::vector<std::string>& missing, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
+  void pause(bool paused);
+  void cancel(TaskWishes& wishes);
+  /// Ends in order: what is in the hand is put back.
+  void abort(const std::string& reason, TimePoint now, TaskWishes& wishes);
+  /// What is in the hand goes to a person instead; false: nothing is, or that is being done.
+  bool give_instead(const std::string& person, TimePoint now, TaskWishes& wishes);
+
+  bool over() const { return over_; }
+  const TaskStatus& status();
+  const TaskGoal& goal() const { return goal_; }
+
+ private:
+  void look_for_somebody(TimePoint now, TaskWishes& wishes);
+  void take_up(Plan plan);
+  State believed(TimePoint now);
+  Plan plan_from(const State& state);
+  bool replan(TimePoint now);
+  std::string why_impossible(std::vector<PlannedAction> actions, State state);
+  void send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
+  void watch(TimePoint now, TaskWishes& wishes);
+  void stop_action(TaskWishes& wishes);
+  void ended(TimePoint now);
+  void answer_failure(ActionFailure failure, const std::string& reason, TimePoint now);
+  void give_up(const std::string& reason, TimePoint now);
+  void all_done(TimePoint now);
+  void finish(TaskState state, const std::string& reason);
+  void say(const std::string& phase, TaskWishes& wishes);
+  bool is_stranded(TimePoint now, const std::vector<std::string>& missing);
+  bool lasts(std::optional<TimePoint>& since, bool is, TimePoint now, double time) const;
+  std::string held_for(const PlannedAction& action);
+
+  const config::SupervisorSettings& settings_;
+  const Domain& domain_;
+  Situation& situation_;
+  TaskGoal goal_;
+  TimePoint accepted_;
+  std::string text_;
+  TaskQuery query_;
+  TaskStatus status_;
+  Progress progress_;
+  bool planned_{false}, over_{false};
+
+  bool begun_{false}, stopping_{false}, moved_{false};
+  std::uint64_t action_{};
+  TimePoint sent_{}, not_before_{}, ended_at_{};
+  std::string stop_reason_;
+  std::optional<PlannedAction> last_;  // succeeded; the facts may not show it yet
+  std::optional<TimePoint> broken_, obsolete_, hopeless_, missing_;
+
+  Forbidden forbidden_;
+  std::map<std::string, std::uint32_t> tries_;
+  std::map<std::string, std::string> homes_;  // object: surface it came from
+  std::string failure_;                       // set once it is given up; what is left only recovers
+  std::string first_failure_;
+  std::uint32_t replans_{0}, failed_recoveries_{0};
+};
+
+}  // namespace handsel::supervisor

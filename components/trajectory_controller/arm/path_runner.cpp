@@ -1,0 +1,151 @@
+#include "components/trajectory_controller/arm/path_runner.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "common/trajectory/edit.hpp"
+#include "common/trajectory/limits_check.hpp"
+#include "components/trajectory_controller/output/setpoint_check.hpp"
+
+namespace handsel::trajectory_controller {
+
+namespace {
+
+constexpr double kSlack = 1e-6;  // [rad] beyond a bound by rounding
+
+constexpr double kTogether = 0.5;  // [s] of a trajectory that begins nearly as the arm moves
+
+double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+/// Whether a trajectory begins as `from` moves: then all of it is run, but for what brings the two together.
+bool begins_alike(const MotionState3& from, const MotionState3& first, const KinematicLimits& limits) {
+  constexpr double kNear = 0.02, kShare = 0.1;
+  return apart(from.position, first.position) <= kNear &&
+         ((from.velocity - first.velocity).cwiseAbs().array() <= kShare * limits.velocity.array()).all() &&
+         ((from.acceleration - first.acceleration).cwiseAbs().array() <= kShare * limits.acceleration.array()).all();
+}
+
+}  // namespace
+
+std::string PathRunner::start(const Trajectory& trajectory, const PathLimits& limits) {
+  if (std::string why = law_.init(trajectory, limits.motion, dt_); !why.empty()) return why;
+  limits_ = limits;
+  path_ = trajectory;
+  stale_ = false;
+  cursor_ = 0;
+  finished_ = law_.finished();
+  state_ = law_.state();
+  return {};
+}
+
+const Trajectory& PathRunner::path() const {
+  if (stale_) path_ = to_trajectory(law_.path());
+  stale_ = false;
+  return path_;
+}
+
+bool PathRunner::rejoin(const MotionState3& state) noexcept {
+  constexpr double kWithin = 0.4;  // [s] of the path, about what the axes need to get under way: farther on, the way there cuts corners
+  constexpr int kTries = 10;       // in this short a window; the time of a cycle goes with them
+  if (finished_) return false;
+  SwitchSettings settings;
+  settings.first = std::max(0.0, law_.time());
+  settings.last = settings.first + kWithin;
+  settings.tries = kTries;
+  if (law_.start_from(state, law_.path(), settings) != SwitchOutcome::ok) return false;
+  shift_ = this->offset();
+  state_ = state;
+  stale_ = true;
+  cursor_ = 0;
+  return true;
+}
+
+std::string PathRunner::why_out_of_bounds() const {
+  const SegmentTable& path = law_.path();
+  MotionState3 at = rest_state(Eigen::VectorXd::Zero(axes()));
+  const double joins = offset() + law_.joined_at();
+  for (int k = path.find(law_.left_at(), 0), cursor = k; k < path.segments() && path.knot(k) < joins; ++k) {
+    path.evaluate(path.knot(k), cursor = k, at);
+    for (Eigen::Index i = 0; i < axes(); ++i) {
+      if (!(limits_.lower[i] < limits_.upper[i])) continue;
+      const Segment piece{path.knot(k + 1) - path.knot(k), path.jerks(cursor)[i]};
+      const AxisExtremes reached = extremes({at.position[i], at.velocity[i], at.acceleration[i]}, &piece, 1);
+      if (reached.lowest >= limits_.lower[i] - kSlack && reached.highest <= limits_.upper[i] + kSlack) continue;
+      return "the motion that leads over to it would take axis " + std::to_string(i) + " to [" + std::to_string(reached.lowest) + ", " +
+             std::to_string(reached.highest) + "] rad, outside its bounds";
+    }
+  }
+  return {};
+}
+
+template <class Switch>
+std::string PathRunner::go_over(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go) {
+  if (std::string why = why_not_runnable(next, limits_.motion); !why.empty()) return why;
+  SwitchSettings settings;
+  MotionState3 there = next.at(0.0);
+  if (begins_alike(from, there, limits_.motion)) {
+    settings.last = from_rest || same_motion(from, there) ? 0.0 : std::min(kTogether, next.duration());
+  } else {
+    constexpr int kLooks = 200;
+    double nearest = std::numeric_limits<double>::infinity();
+    settings.first = -1.0;
+    for (int k = 0; k <= (from_rest ? 0 : kLooks); ++k) {
+      const double t = next.duration() * k / kLooks;
+      next.sample(t, there);
+      const double off = apart(there.position, from.position);
+      nearest = std::min(nearest, off);
+      if (off > reach && settings.first >= 0) break;
+      if (off > reach) continue;
+      if (settings.first < 0) settings.first = t;
+      settings.last = t;
+    }
+    if (settings.first < 0) return "it comes no nearer than " + std::to_string(nearest) + " rad to where the motion before it is left";
+  }
+  if (const SwitchOutcome outcome = go(SegmentTable(next), settings); outcome != SwitchOutcome::ok) return reason(outcome);
+  if (std::string why = why_out_of_bounds(); !why.empty()) {
+    law_.undo_switch();
+    return why;
+  }
+  stale_ = true;
+  cursor_ = 0;
+  finished_ = law_.finished();
+  return {};
+}
+
+std::string PathRunner::switch_at(double leave, const Trajectory& next, double reach) {
+  if (next.size() != axes()) return reason(SwitchOutcome::wrong_size);
+  MotionState3 from = law_.state();
+  law_.path().evaluate(std::max(leave, law_.time()), cursor_, from);
+  if (!(leave > law_.time())) {
+    if (law_.standing()) from.velocity.setZero();
+    if (law_.standing()) from.acceleration.setZero();
+    if (law_.alpha() < 0) from.velocity = -from.velocity;
+  }
+  return go_over(from, next, reach, leave >= law_.duration(),
+                 [&](const SegmentTable& table, const SwitchSettings& settings) { return law_.switch_at(leave, table, settings); });
+}
+
+std::string PathRunner::start_from(const MotionState3& state, const Trajectory& next, double reach) {
+  if (next.size() != axes()) return reason(SwitchOutcome::wrong_size);
+  if (std::string why =
+          go_over(state, next, reach, false,
+                  [&](const SegmentTable& table, const SwitchSettings& settings) { return law_.start_from(state, table, settings); });
+      !why.empty())
+    return why;
+  state_ = state;
+  return {};
+}
+
+bool PathRunner::step(double wanted) noexcept {
+  if (finished_) return true;
+  law_.set_target(law_.time() <= 0.0 ? std::max(0.0, wanted) : wanted);
+  law_.advance(dt_);
+  const MotionState3& next = law_.state();
+  for (Eigen::Index i = 0; i < next.position.size(); ++i)
+    if (!acceptable(state_, next, i, limits_.motion, dt_)) return false;
+  state_ = next;
+  finished_ = law_.finished();
+  return true;
+}
+
+}  // namespace handsel::trajectory_controller

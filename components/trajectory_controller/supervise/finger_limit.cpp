@@ -1,0 +1,53 @@
+#include "components/trajectory_controller/supervise/finger_limit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/geometry/segments.hpp"
+#include "common/trajectory/stop.hpp"
+
+namespace handsel::trajectory_controller {
+
+FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot)
+    : proof_(proof),
+      comfort_speeds_(static_cast<std::size_t>(robot.dof()), 0.0),
+      all_frames_(proof.chain().frames().size(), 1),
+      motions_(all_frames_.size()),
+      at_rest_(Vector::Zero(robot.dof())) {
+  const KinematicLimits &comfort = robot.comfort_limits(), &stop = robot.stop_limits();
+  for (const ChainCapsule& hand : proof.chain().capsules())
+    for (const std::vector<Lever>& finger : hand.fingers)
+      for (const Lever& lever : finger) {
+        const double speed = comfort.velocity[lever.axis];
+        comfort_speeds_[static_cast<std::size_t>(lever.axis)] = speed;
+        stop_time_ = std::max(stop_time_, measure_stop(speed, 0.0, stop.acceleration[lever.axis], stop.jerk[lever.axis]).duration);
+      }
+}
+
+double FingerLimit::factor(const Vector& position, const Pose& T_world_base, double age, double payload, const Crowd& people) noexcept {
+  const StopProofSettings& s = proof_.settings();
+  double limit = 1.0;
+  if (!s.enabled || people.capsules.empty() || stop_time_ == 0.0) return limit;
+  proof_.chain().move(position, at_rest_, all_frames_, motions_);
+  const double reaction = s.latency + s.robot_side_delay + age;
+  for (const ChainCapsule& hand : proof_.chain().capsules()) {
+    if (hand.fingers.empty()) continue;
+    const double speed = hand.inner_bound(comfort_speeds_);
+    const FrameMotion& frame = motions_[static_cast<std::size_t>(hand.frame)];
+    const Vector3 a = T_world_base * (frame.p + frame.R * hand.a), b = T_world_base * (frame.p + frame.R * hand.b);
+    for (const CrowdCapsule& part : people.capsules) {
+      const double fits =
+          s.finger_ratio * proof_.max_speed_at(part.region, payload) / (proof_.finger_ratio_at(part.region, payload) * speed);
+      if (fits >= limit) continue;
+      const RegionMotion& bounds = s.people[static_cast<std::size_t>(part.region)];
+      const double reached = reach_after(reaction + part.age + stop_time_, start_speed(part, s.speed_error, bounds), bounds) +
+                             speed * (reaction + 0.5 * stop_time_) + s.tracker_error + s.robot_error + s.limit_margin;
+      Vector3 on_robot, on_person;
+      const double distance = std::sqrt(nearest_points(a, b, part.a, part.b, on_robot, on_person)) - hand.radius - part.radius;
+      if (distance <= reached) limit = fits;
+    }
+  }
+  return limit;
+}
+
+}  // namespace handsel::trajectory_controller

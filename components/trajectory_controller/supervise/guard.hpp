@@ -1,0 +1,58 @@
+// The guard: decides last how fast the running trajectory may go on, from the robot's motion, the people around it and the walls it must
+// not pass. One pure function, no state. Speed and separation after ISO/TS 15066 with the jerk-limited minimum-time stop (ours where it
+// differs).
+#pragma once
+
+#include <vector>
+
+#include "common/trajectory/trajectory.hpp"
+#include "components/trajectory_controller/input/crowd.hpp"
+#include "components/trajectory_controller/supervise/path_motion.hpp"
+
+namespace handsel::trajectory_controller {
+
+struct GuardSettings {
+  double speed_floor{0.10};        ///< least v_h assumed of a tracked person [m/s]
+  double speed_uncertainty{0.05};  ///< added to the measured directed speed [m/s]
+  double speed_unknown{1.6};       ///< v_h of a person not seen just now [m/s]
+  double speed_max{2.2};           ///< largest v_h [m/s]
+  double unknown_after{0.25};      ///< a person not seen for longer moves at speed_unknown [s]
+  double reaction{0.06};           ///< T_r without the age of the data: cycle, transport, drive [s]
+  double intrusion{0.03};          ///< C [m]
+  double uncertainty_human{0.03};  ///< Z_d [m]
+  double uncertainty_robot{0.01};  ///< Z_r [m]
+  double uncovered_factor{0.3};    ///< speed factor while "nobody" is not a fact
+  double exchange_speed{0.25};     ///< largest speed toward an excepted forearm or hand [m/s]
+  double exchange_range{0.30};     ///< within this distance [m]
+  double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
+};
+
+/// A half space the moving links stay in: normal . p >= offset.
+struct Wall {
+  Vector3 normal{Vector3::UnitX()};  ///< unit, pointing inward, world axes
+  double offset{};                   ///< [m]
+};
+
+struct GuardVerdict {
+  double forward{1.0};                                            ///< largest allowed time-law factor, [0, 1]
+  double backward{-1.0};                                          ///< least allowed (running back), [-1, 0]
+  double distance{1e9};                                           ///< to the nearest person, excepted parts left out [m]
+  double needed{};                                                ///< distance the rule asks for there at the present factor [m]
+  int link{-1};                                                   ///< of the robot, that is nearest; -1: nobody
+  Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< on the axes of the two nearest capsules, world [m]
+  double view{1.0};                                               ///< largest factor at which a stop stays where a live source looks
+  bool separation{};                                              ///< the separation rule made it less than 1
+  bool wall{};                                                    ///< a wall made it less than 1
+  bool uncovered{};                                               ///< nobody seen, but nobody is not a fact
+  bool too_near{};                                                ///< nearer than the stop needs at the present factor, still closing in
+  bool exchange_clear{true};                                      ///< no excepted part within exchange_range
+};
+
+/// `stop`: of `motion`. `factor`: time-law factor in force. `age`: of the human data [s]. Allocates nothing.
+GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
+                   const StopTable& stop, const Crowd& crowd, const std::vector<Wall>& walls, double age, double factor) noexcept;
+
+/// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not the rule used [m/s].
+double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept;
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,35 @@
+// Where parts of people can be by a given time: their measured state as start, speed and acceleration bounded. Pure.
+#pragma once
+
+#include <array>
+
+#include "components/trajectory_controller/input/crowd.hpp"
+#include "components/trajectory_controller/supervise/contact_budget.hpp"
+
+namespace handsel::trajectory_controller {
+
+/// Largest speed and acceleration of one body region.
+struct RegionMotion {
+  double speed{};         ///< [m/s]
+  double acceleration{};  ///< [m/s^2]
+};
+using RegionMotions = std::array<RegionMotion, kBodyRegions>;
+
+/// Returns how far a point that moves with `speed` [m/s] in an unknown direction can be from its place after `time` [s], when the bounds
+/// hold [m]. A speed above the bound stays as measured.
+double reach_after(double time, double speed, const RegionMotion& bounds) noexcept;
+
+/// Returns the speed from which a part starts: as measured with `uncertainty` [m/s] added, or the largest of its region when it was not
+/// measured just now [m/s].
+double start_speed(const CrowdCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept;
+
+/// How far each part of everybody can be from where it was measured. HumanState carries at most 16 people.
+struct PartReaches {
+  std::array<double, 16 * kBodyCapsules> distance;  ///< [m], the first `count`
+  std::size_t count{};
+};
+
+/// Computes the reaches `time` [s] after now. Allocates nothing.
+void reach_of_parts(const Crowd& people, double time, double uncertainty, const RegionMotions& bounds, PartReaches& out) noexcept;
+
+}  // namespace handsel::trajectory_controller

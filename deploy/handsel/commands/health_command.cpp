@@ -1,0 +1,58 @@
+#include <cstdio>
+
+#include "common/base/errors.hpp"
+#include "common/bus/dds/dds_bus.hpp"
+#include "deploy/handsel/cli/above_zero.hpp"
+#include "deploy/handsel/commands/commands.hpp"
+#include "deploy/handsel/system/processes.hpp"
+#include "deploy/handsel/system/session.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "deploy/handsel/system/system_options.hpp"
+
+namespace handsel {
+namespace {
+
+struct HealthOptions {
+  int domain{0};
+  double within{2.0};
+  std::string component;
+};
+
+/// Listens to nothing but health: this runs beside every process of a deployment, again and again.
+int ask(const HealthOptions& options) {
+  catch_interrupts();
+  DdsBus bus({.component = "handsel", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
+  Snapshot heard;
+  bus.subscribe<ComponentHealth>([&](const ComponentHealth& health, const Receipt& receipt) {
+    heard.health[health.component] = {.ever = true, .sample = health, .arrival = receipt.arrival};
+  });
+  bus.every(from_seconds(0.02), [](TimePoint) {});
+  const auto lacking = [&] {
+    if (options.component.empty()) return not_ready(heard);
+    const std::string why = why_not_ready(heard, options.component);
+    return why.empty() ? std::vector<std::string>{} : std::vector<std::string>{options.component + " (" + why + ")"};
+  };
+  const bool ready = bus.run_until([&] { return interrupted() || lacking().empty(); }, from_seconds(options.within));
+  if (ready && !interrupted()) {
+    std::printf("%s\n", options.component.empty() ? "every process is ok" : (options.component + " is ok").c_str());
+    return 0;
+  }
+  std::string text;
+  for (const std::string& one : lacking()) text += (text.empty() ? "" : ", ") + one;
+  std::printf("not ready on DDS domain %d: %s\n", options.domain, text.c_str());
+  return heard.health.empty() ? 3 : 1;
+}
+
+}  // namespace
+
+void add_health_command(CLI::App& app, int& exit_code) {
+  auto options = std::make_shared<HealthOptions>();
+  CLI::App* command =
+      app.add_subcommand("health", "is a process, or without a name the whole system, there and ok? 0 yes, 1 no, 3 nobody is heard");
+  add_domain_option(*command, options->domain);
+  command->add_option("--within", options->within, "[s] wait so long for a yes")->capture_default_str()->check(kAboveZero);
+  command->add_option("component", options->component, "as `handsel status` names it: spark, supervisor, ...");
+  command->callback([options, &exit_code] { exit_code = ask(*options); });
+}
+
+}  // namespace handsel

@@ -1,0 +1,171 @@
+#include "deploy/handsel/eval/criteria.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/cost/human_cost.hpp"
+#include "common/messages/attention.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr double kNear = 0.40;      // [m] a person nearer than this is to be reacted to
+constexpr double kCarried = 0.05;   // [m] a shorter way says nothing
+constexpr double kToward = 0.1;     // [m/s]
+constexpr double kSlower = 0.9;     // of the speed factor before
+constexpr double kLate = 0.2;       // [s]
+constexpr double kGivenUp = 1.0;    // [s] no reaction: counts as this
+constexpr double kStill = 0.05;     // [m/s] a joint slower than this does not move
+constexpr double kTruthStep = 0.1;  // [s] a longer silence of the truth counts as no more
+constexpr double kClose = 0.5;      // [m] within which closing speeds count
+constexpr double kJump = 0.1;       // [m] between two truths: what is excepted has changed, nobody moved so far
+constexpr Duration kBefore = std::chrono::milliseconds(500);
+
+constexpr const char* kWorks[] = {"people", "objects", "forecast", "cost_map", "replan"};
+constexpr const char* kChain[] = {"spark",        "costmap",       "collision_checker",  "attention",
+                                  "path_planner", "grasp_planner", "trajectory_planner", "manipulation_planner"};
+constexpr const char* kRuns[][2] = {{"Facts", "facts"},        {"Scene", "scene"},       {"TrajectoryForecast", "forecast"},
+                                    {"Costmap", "cost_map"},   {"PathRequest", "paths"}, {"TrajectoryRequest", "trajectories"},
+                                    {"GraspRequest", "grasps"}};
+
+constexpr std::uint32_t kForPeople =
+    bit(Cause::attention_slow) | bit(Cause::separation) | bit(Cause::forecast_collision) | bit(Cause::cost_ahead);
+
+double quantile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))) - 1];
+}
+
+/// Of the person: how fast their fastest joint is, and how fast the nearest to `p` comes nearer to it [m/s].
+struct PersonMotion {
+  double fastest{}, toward{};
+};
+
+PersonMotion motion(const std::vector<BodyJoint>& before, const std::vector<BodyJoint>& now, const Vector3& p, double step) {
+  PersonMotion motion;
+  if (before.size() != now.size() || step <= 0) return motion;
+  double nearest = 1e9;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    motion.fastest = std::max(motion.fastest, (now[i].position - before[i].position).norm() / step);
+    const double distance = (now[i].position - p).norm();
+    if (distance > nearest) continue;
+    nearest = distance;
+    motion.toward = ((before[i].position - p).norm() - distance) / step;
+  }
+  return motion;
+}
+
+}  // namespace
+
+Criteria::Criteria(Bus& seat, LocalNetwork& network) : network_(network) {
+  network.meter({std::begin(kChain), std::end(kChain)});
+  seat.subscribe<GroundTruth>([this](const GroundTruth& truth, const Receipt& r) { on(truth, r.arrival); });
+  seat.subscribe<ExecutionStatus>([this](const ExecutionStatus& status, const Receipt& r) { on(status, r.arrival); });
+  seat.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt& r) {
+    running_ = active.trajectory != 0;
+    speed_factor_ = running_ ? active.speed_factor : 0.0;
+    std::erase_if(looks_, [&](const Look& look) { return r.arrival - look.at > kBefore; });
+    looks_.push_back({r.arrival, speed_factor_});
+    settle(r.arrival);
+  });
+  seat.subscribe<AttentionAdvice>([this](const AttentionAdvice& a, const Receipt&) {
+    const std::array<double, 5> periods{a.people_period, a.objects_period, a.forecast_period, a.cost_map_period, a.replan_period};
+    for (std::size_t i = 0; i < periods.size(); ++i) rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
+    ++advices_;
+  });
+}
+
+void Criteria::settle(TimePoint now) {
+  if (!waiting_) return;
+  const double since = to_seconds(now - waiting_->since);
+  if (speed_factor_ > kSlower * waiting_->before && since < kGivenUp) return;
+  reactions_.push_back(since);
+  waiting_.reset();
+}
+
+void Criteria::on(const ExecutionStatus& status, TimePoint) {
+  const bool limits = (status.causes & bit(Cause::separation)) != 0 && running_;
+  interventions_ += limits && !limited_;
+  limited_ = limits;
+  status_ = status;
+}
+
+void Criteria::on(const GroundTruth& truth, TimePoint now) {
+  if (last_) {
+    const double step = std::clamp(truth.sim_time - last_->sim_time, 0.0, kTruthStep);
+    const PersonMotion person = motion(last_->person, truth.person, status_.nearest_on_robot, step);
+    const bool moves = person.fastest > kStill;
+    if (!truth.robot_moving) robot_idle_ += step;
+    if (!moves) person_idle_ += step;
+    if (moves && truth.robot_moving) concurrent_ += step;
+    if (!moves && !truth.robot_moving) both_idle_ += step;
+    if (limited_) limited_for_ += step;
+    if (truth.robot_moving && status_.separation < status_.separation_limit) below_for_ += step;
+    const double nearer = last_->separation - truth.separation;
+    if (step > 0 && last_->separation < kClose && nearer < kJump) closing_speed_ = std::max(closing_speed_, nearer / step);
+    const bool entered = truth.separation < kNear && last_->separation >= kNear;
+    if (entered && !waiting_ && running_ && truth.robot_moving && person.toward > kToward) {
+      double most = (status_.causes & kForPeople) != 0 ? 1.0 : speed_factor_;  // that it would have with nobody there
+      for (const Look& look : looks_) most = std::max(most, look.speed_factor);
+      if (most > 0.1) waiting_ = Reaction{now, most};
+      settle(now);
+    }
+  }
+  watch_exchange(truth);
+  last_ = truth;
+}
+
+void Criteria::watch_exchange(const GroundTruth& truth) {
+  const Vector3 p = truth.T_world_object.translation();
+  const std::string before = last_ ? last_->carrier : "";
+  if (truth.carrier == "robot") {
+    if (before == "robot" && carried_from_)
+      carried_ += (p - last_->T_world_object.translation()).norm();
+    else if (before != "both")
+      carried_from_ = p, carried_ = 0;
+  }
+  if (truth.carrier != "both" || (before != "robot" && before != "human") || truth.person.size() != kBodyJoints.size()) return;
+  Person person;
+  person.joints = truth.person;
+  discomfort_ = arm_comfort_cost(person, p);
+  legibility_.reset();
+  if (before == "robot" && carried_from_ && carried_ > kCarried) legibility_ = std::min(1.0, (p - *carried_from_).norm() / carried_);
+}
+
+nlohmann::json Criteria::fields() const {
+  using Json = nlohmann::json;
+  std::vector<double> reactions = reactions_;
+  if (waiting_) reactions.push_back(kGivenUp);
+  Json cpu = Json::object(), runs = Json::object(), periods = Json::object();
+  double chain = 0;
+  for (const char* component : kChain) {
+    cpu[component] = network_.cpu(component);
+    chain += network_.cpu(component);
+  }
+  for (const auto& [type, run] : kRuns) runs[run] = 0;
+  for (const LocalNetwork::Endpoint& end : network_.endpoints())
+    for (const auto& [type, run] : kRuns)
+      if (end.writes && end.type == type) runs[run] = runs[run].get<std::uint64_t>() + end.samples;
+  for (std::size_t i = 0; i < rates_.size(); ++i)
+    periods[kWorks[i]] = rates_[i] > 0 ? Json(static_cast<double>(advices_) / rates_[i]) : Json(nullptr);
+  return {{"reactions_s", reactions},
+          {"reaction_p50_s", reactions.empty() ? Json(nullptr) : Json(quantile(reactions, 0.5))},
+          {"reaction_p99_s", reactions.empty() ? Json(nullptr) : Json(quantile(reactions, 0.99))},
+          {"late_reactions", std::count_if(reactions.begin(), reactions.end(), [](double r) { return r > kLate; })},
+          {"interventions", interventions_},
+          {"intervention_s", limited_for_},
+          {"below_separation_s", below_for_},
+          {"closing_speed_m_s", closing_speed_},
+          {"robot_idle_s", robot_idle_},
+          {"person_idle_s", person_idle_},
+          {"concurrent_s", concurrent_},
+          {"functional_delay_s", both_idle_},
+          {"discomfort", discomfort_ ? Json(*discomfort_) : Json(nullptr)},
+          {"legibility", legibility_ ? Json(*legibility_) : Json(nullptr)},
+          {"cpu_s", cpu},
+          {"cpu_chain_s", chain},
+          {"runs", runs},
+          {"work_period_s", periods}};
+}
+
+}  // namespace handsel

@@ -1,0 +1,45 @@
+#include "deploy/handsel/eval/lockstep_system.hpp"
+
+#include "components/attention/node.hpp"
+#include "components/collision_checker/node.hpp"
+#include "components/costmap/node.hpp"
+#include "components/grasp_planner/node.hpp"
+#include "components/manipulation_planner/node.hpp"
+#include "components/path_planner/node.hpp"
+#include "components/spark/node.hpp"
+#include "components/supervisor/node.hpp"
+#include "components/trajectory_controller/node.hpp"
+#include "components/trajectory_planner/node.hpp"
+#include "deploy/handsel/system/processes.hpp"
+#include "sim/node.hpp"
+
+namespace handsel {
+
+NodeContext system_context(const std::string& scenario, const std::string& robot, std::uint64_t seed,
+                           const std::filesystem::path& settings) {
+  return load_context(robot_of({.robot = robot, .scenario = scenario}), scenario, settings, seed);
+}
+
+template <class Node>
+void LockstepSystem::add(const std::string& component, const NodeContext& context) {
+  nodes_.push_back(std::make_shared<Node>(network_.add(component), context));
+}
+
+LockstepSystem::LockstepSystem(const NodeContext& context) : network_(context.seed), seat_(network_.add("handsel")), observer_(seat_) {
+  add<sim::Node>("sim", context);
+  add<spark::Node>("spark", context);
+  add<costmap::Node>("costmap", context);
+  add<collision_checker::Node>("collision_checker", context);
+  add<trajectory_controller::Node>("trajectory_controller", context);
+  add<attention::Node>("attention", context);
+  add<path_planner::Node>("path_planner", context);
+  add<grasp_planner::Node>("grasp_planner", context);
+  add<trajectory_planner::Node>("trajectory_planner", context);
+  add<manipulation_planner::Node>("manipulation_planner", context);
+  add<supervisor::Node>("supervisor", context);
+}
+
+LockstepSystem::LockstepSystem(const std::string& scenario, const std::string& robot, std::uint64_t seed)
+    : LockstepSystem(system_context(scenario, robot, seed)) {}
+
+}  // namespace handsel

@@ -1,0 +1,41 @@
+// The whole system in one process and virtual time: every box and the simulator on a LocalNetwork, and a seat to watch from. The bridge is
+// left out: it shows, and nothing listens to it.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/bus/local_bus.hpp"
+#include "common/bus/node_context.hpp"
+#include "deploy/handsel/system/observer.hpp"
+
+namespace handsel {
+
+class LockstepSystem {
+ public:
+  /// Throws ConfigError / MissingError as the processes would.
+  explicit LockstepSystem(const NodeContext& context);
+  LockstepSystem(const std::string& scenario, const std::string& robot, std::uint64_t seed);
+
+  LocalNetwork& network() { return network_; }
+  Bus& seat() { return seat_; }  ///< of the component "handsel"
+  Observer& observer() { return observer_; }
+  const Snapshot& snapshot() const { return observer_.snapshot(); }
+  TimePoint now() const { return network_.now(); }
+
+ private:
+  template <class Node>
+  void add(const std::string& component, const NodeContext& context);
+
+  LocalNetwork network_;
+  Bus& seat_;
+  Observer observer_;
+  std::vector<std::shared_ptr<void>> nodes_;
+};
+
+/// What load_context() would give the processes of this scenario; the robot is the scenario's when `robot` is empty.
+NodeContext system_context(const std::string& scenario, const std::string& robot, std::uint64_t seed,
+                           const std::filesystem::path& settings = {});
+
+}  // namespace handsel

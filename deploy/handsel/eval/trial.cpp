@@ -1,0 +1,210 @@
+#include "deploy/handsel/eval/trial.hpp"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "common/base/errors.hpp"
+#include "common/config/resources.hpp"
+#include "deploy/handsel/eval/criteria.hpp"
+#include "deploy/handsel/eval/lockstep_system.hpp"
+#include "deploy/handsel/eval/report.hpp"
+#include "deploy/handsel/recording/recorder.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/system.hpp"
+
+namespace handsel {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kReadyPatience = 10.0;  // [s]
+
+std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
+  if (truth.dropped) return "dropped";
+  if (performer.succeeded()) return "";
+  if (!performer.started()) return "not_ready";
+  const TaskOutcome& last = performer.outcomes().back();
+  if (last.timed_out) return "timeout";
+  if (last.state == name(TaskState::succeeded)) return "no_handover";
+  return "task_" + last.state;
+}
+
+Json base_line(const NodeContext& context, const TrialOptions& options) {
+  Json line{{"scenario", options.scenario}, {"seed", context.seed}, {"attention", options.attention}, {"law", options.law}};
+  line["condition"] = options.condition.empty() ? options.attention : options.condition;
+  if (!options.participant.empty()) line["participant"] = options.participant;
+  if (options.order > 0) line["order"] = options.order;
+  return line;
+}
+
+struct Worker {
+  std::size_t trial{};
+  pid_t pid{-1};
+  int fd{-1};
+  std::string text;
+};
+
+Worker start_worker(const std::vector<Trial>& trials, std::size_t index) {
+  int channel[2];
+  if (pipe(channel) != 0) throw MissingError(std::string("cannot make a pipe: ") + std::strerror(errno));
+  const pid_t parent = getpid();
+  const pid_t pid = fork();
+  if (pid < 0) throw MissingError(std::string("cannot start a worker: ") + std::strerror(errno));
+  if (pid > 0) {
+    close(channel[1]);
+    return {.trial = index, .pid = pid, .fd = channel[0]};
+  }
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(3);
+  close(channel[0]);
+  std::string line;
+  try {
+    line = run_trial(trials[index].context, trials[index].options).dump();
+  } catch (const std::exception& error) {
+    Json failed = base_line(trials[index].context, trials[index].options);
+    failed.update({{"success", false}, {"failure", "error"}, {"reason", error.what()}});
+    line = failed.dump();
+  }
+  for (std::size_t sent = 0; sent < line.size();) {
+    const ssize_t n = write(channel[1], line.data() + sent, line.size() - sent);
+    if (n <= 0) _exit(1);
+    sent += static_cast<std::size_t>(n);
+  }
+  _exit(0);
+}
+
+Json finish_worker(const Worker& worker, const std::vector<Trial>& trials, bool& crashed) {
+  close(worker.fd);
+  int status = 0;
+  waitpid(worker.pid, &status, 0);
+  Json line = Json::parse(worker.text, nullptr, false);
+  if (!line.is_discarded() && WIFEXITED(status) && WEXITSTATUS(status) == 0) return line;
+  crashed = true;
+  line = base_line(trials[worker.trial].context, trials[worker.trial].options);
+  line.update({{"success", false},
+               {"failure", "crash"},
+               {"reason", WIFSIGNALED(status) ? strsignal(WTERMSIG(status)) : "ended without an answer"}});
+  return line;
+}
+
+}  // namespace
+
+nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options) {
+  config::Scenario scenario;
+  load_text_proto(context.scenario, scenario);
+  LockstepSystem system(context);
+  const Criteria criteria(system.seat(), system.network());
+  if (options.hash_outputs) system.network().hash_outputs();
+  std::unique_ptr<LocalRecording> recording;
+  if (!options.record.empty()) {
+    recording = std::make_unique<LocalRecording>(system.network(), options.record,
+                                                 mcap::Metadata{{"robot", context.robot->name()},
+                                                                {"scenario", options.scenario},
+                                                                {"seed", std::to_string(context.seed)},
+                                                                {"attention", options.attention}});
+  }
+  bool is_ready = false;
+  const auto ready = [&] {
+    is_ready = is_ready || not_ready(system.snapshot(), false).empty();
+    return is_ready;
+  };
+  Performer performer(system.seat(), system.observer(), scenario, options.timeout, ready);
+  system.observer().on_event([&](const TimelineEvent& event) {
+    if (options.on_event) options.on_event(to_seconds(event.at.time_since_epoch()), event.text);
+  });
+  const TimePoint start = system.now();
+  system.network().run_until([&] { return performer.started(); }, start + from_seconds(kReadyPatience));
+  if (performer.started()) system.network().run_until([&] { return performer.finished(); }, start + std::chrono::hours(1));
+  system.observer().on_event({});
+  if (!performer.finished()) performer.abort("not ready");
+
+  const ReportInputs inputs{.scenario = options.scenario, .robot = context.robot->name(), .seed = context.seed};
+  const Json report = make_report(inputs, performer, system.observer());
+  const GroundTruth& truth = system.snapshot().truth.sample;
+  std::uint64_t activations = 0, fastest = 0;
+  Json activations_of = Json::object();
+  for (const BehaviourState& behaviour : system.snapshot().attention.sample.behaviours) {
+    activations += behaviour.activations;
+    activations_of[behaviour.name] = behaviour.activations;
+    fastest += behaviour.activations_at_fastest;
+  }
+  char hash[32];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(truth.hash));
+  Json line = base_line(context, options);
+  line.update(
+      {{"success", report["success"].get<bool>() && !truth.dropped},
+       {"failure", failure_kind(performer, truth)},
+       {"reason", truth.dropped && report["success"].get<bool>() ? Json(truth.object + " was dropped afterwards") : report["failure"]},
+       {"duration_s", report["duration_s"]},
+       {"least_separation_m", report["least_separation_m"]},
+       {"ssm_violations", report["ssm_violations"]},
+       {"limit_share", report["limit_share"]},
+       {"limit_violations", truth.limit_violations},
+       {"collisions", truth.self_or_scene_collisions},
+       {"contact_force_n", truth.contact_force},
+       {"peak_closing_speed_m_s", truth.peak_closing_speed},
+       {"drops", truth.dropped ? 1 : 0},
+       {"lifted_m", truth.max_lifted},
+       {"contact_share", report["oracle"]["contact_share"]},
+       {"activations", activations},
+       {"activations_of", activations_of},
+       {"activations_at_pmin", fastest},
+       {"tasks", report["tasks"]},
+       {"events", system.network().events()},
+       {"hash", hash}});
+  line.update(criteria.fields());
+  if (recording) recording->close();
+  if (options.hash_outputs) {
+    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(system.network().output_hash()));
+    line["output_hash"] = hash;
+  }
+  return line;
+}
+
+bool run_trials(const std::vector<Trial>& trials, int jobs, const std::function<void(const nlohmann::json&)>& on_line) {
+  std::vector<Worker> running;
+  std::map<std::size_t, Json> done;
+  std::size_t next = 0, told = 0;
+  bool crashed = false;
+  while (told < trials.size()) {
+    while (next < trials.size() && running.size() < static_cast<std::size_t>(jobs)) running.push_back(start_worker(trials, next++));
+    std::vector<pollfd> fds;
+    for (const Worker& worker : running) fds.push_back({worker.fd, POLLIN, 0});
+    poll(fds.data(), fds.size(), -1);
+    for (std::size_t i = running.size(); i-- > 0;) {
+      if (!fds[i].revents) continue;
+      char bytes[65536];
+      const ssize_t n = read(running[i].fd, bytes, sizeof bytes);
+      if (n > 0) {
+        running[i].text.append(bytes, static_cast<std::size_t>(n));
+        continue;
+      }
+      if (n < 0 && errno == EINTR) continue;
+      done[running[i].trial] = finish_worker(running[i], trials, crashed);
+      running.erase(running.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    for (auto line = done.find(told); line != done.end(); line = done.find(told)) {
+      on_line(line->second);
+      done.erase(line);
+      ++told;
+    }
+  }
+  return !crashed;
+}
+
+std::pair<double, double> wilson_interval(int successes, int trials) {
+  if (trials <= 0) return {0.0, 1.0};
+  const double z = 1.959963984540054, n = trials, p = successes / n;
+  const double centre = (p + z * z / (2 * n)) / (1 + z * z / n);
+  const double half = z / (1 + z * z / n) * std::sqrt(p * (1 - p) / n + z * z / (4 * n * n));
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+}  // namespace handsel

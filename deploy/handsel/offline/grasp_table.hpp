@@ -1,0 +1,34 @@
+// Hands against objects: how many grasps, how good, how long it took, and why the other frames gave none.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "deploy/handsel/offline/grasp_input.hpp"
+
+namespace handsel {
+
+struct TableRow {
+  std::string hand, object;
+  double scale{1};  ///< what the object was multiplied by
+  double size{};    ///< its largest extent then [m]
+  std::size_t triangles{}, grasps{};
+  std::uint64_t frames{};
+  double best{};         ///< quality
+  double seconds{};      ///< for the list
+  std::string findings;  ///< of the mesh
+  std::string reason;    ///< why most frames gave none, or why there is no list
+};
+
+/// Factor that makes an object of these extents one for this hand: 1 when its middle extent is between 0.15 and 0.75 of the hand's opening,
+/// else what makes it half the opening.
+double fitting_scale(const Vector3& extents, double opening);
+/// Between thumb and the farthest other fingertip, ready to enclose; of two pads their widest gap [m].
+double opening_of(const grasp_planner::HandKit& kit);
+
+/// `options.object` is the object; with `fit` it is scaled for the hand.
+TableRow table_row(const std::string& hand, const ListOptions& options, bool fit);
+std::string table_head();
+std::string table_line(const TableRow& row);
+
+}  // namespace handsel

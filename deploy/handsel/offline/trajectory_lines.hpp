@@ -1,0 +1,20 @@
+// What `handsel trajectory` answers to a line, and trajectories as JSON. LineError says what is wrong with a line.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "common/trajectory/trajectory.hpp"
+#include "deploy/handsel/cli/json_lines.hpp"
+
+namespace handsel::command {
+
+/// [{"p0", "v0", "a0", "segments": [[duration, jerk], ...]}, ...], an object an axis.
+nlohmann::json axes_of(const Trajectory&);
+/// The trajectory in the field "axes".
+Trajectory trajectory_in(const nlohmann::json& line);
+
+nlohmann::json solve_line(const nlohmann::json& line);
+nlohmann::json smooth_line(const nlohmann::json& line);
+nlohmann::json sample_line(const nlohmann::json& line, double period);
+
+}  // namespace handsel::command

@@ -1,0 +1,29 @@
+// Pictures of two hands on one object, of handing over, and of regrasp sequences. Frame of all: the world.
+#pragma once
+
+#include "components/grasp_planner/pair/transfer.hpp"
+#include "components/grasp_planner/regrasp/regrasp.hpp"
+#include "deploy/handsel/pictures/grasp_picture.hpp"
+
+namespace handsel {
+
+/// All links of the robot. `q`: all axes.
+void draw_robot(Canvas& canvas, const RobotModel& robot, const Vector& q, const Pose& T_world_base, Colour colour, double opacity = 1);
+/// The body without the arm that takes; that arm as the posture of its wrist says, with the hand on the object.
+void draw_taker(Canvas& canvas, const Person& person, const grasp_planner::TransferPose& transfer, const grasp_planner::HandKit& hand,
+                const Grasp& grasp);
+
+/// Both hands with their contacts from three sides.
+Picture double_grasp_picture(const grasp_planner::Graspable& object, const grasp_planner::HandKit& a, const Grasp& first,
+                             const grasp_planner::HandKit& b, const Grasp& second, int size);
+
+/// Robot and person at the exchange, and both hands close by.
+Picture transfer_picture(const RobotModel& robot, const Scene& scene, const Vector& q, const Person& person,
+                         const grasp_planner::Graspable& object, const grasp_planner::TransferPose& transfer,
+                         const grasp_planner::HandKit& hand, const Grasp& taken, int size);
+
+/// One picture a step, from the left to the right: the robot with the object in the hands that hold it; below, the hands close by.
+Picture regrasp_picture(const RobotModel& robot, const Scene& scene, const grasp_planner::Graspable& object,
+                        const grasp_planner::RegraspPlan& plan, int size);
+
+}  // namespace handsel

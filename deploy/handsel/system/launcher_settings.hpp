@@ -1,0 +1,18 @@
+// How the launcher judges processes and starts them again: deploy/config/launcher.txtpb.
+#pragma once
+
+#include <filesystem>
+
+#include "deploy/handsel/system/liveness.hpp"
+
+namespace handsel {
+
+struct LauncherSettings {
+  LivenessSettings liveness;
+  BackoffSettings backoff;
+};
+
+/// Throws ConfigError "file:line: key ..." for a value that is missing, not a number or out of range.
+LauncherSettings load_launcher_settings(const std::filesystem::path& file);
+
+}  // namespace handsel

@@ -1,0 +1,111 @@
+#include "deploy/handsel/system/observer.hpp"
+
+#include "common/messages/names.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr std::size_t kMaxTimeline = 20000;
+constexpr std::size_t kMaxTasks = 4096, kMaxComponents = 64;
+
+std::string with_reason(std::string text, const std::string& reason) { return reason.empty() ? text : text + ": " + reason; }
+
+}  // namespace
+
+std::string cause_names(std::uint32_t causes) {
+  std::string names;
+  for (std::uint8_t value = 1; value < std::size(kCauseNames); ++value) {
+    if (causes & (1u << value)) names += (names.empty() ? "" : ", ") + std::string(name(static_cast<Cause>(value)));
+  }
+  return names;
+}
+
+template <class M, class Store>
+void Observer::watch(Bus& bus, Store store) {
+  bus.subscribe<M>([this, store](const M& sample, const Receipt& receipt) {
+    store(sample, receipt.arrival);
+    if (on_sample_) on_sample_(snapshot_, receipt.arrival);
+  });
+}
+
+Observer::Observer(Bus& bus) {
+  const auto keep = [](auto& seen, const auto& sample, TimePoint at) {
+    seen.ever = true;
+    seen.sample = sample;
+    seen.arrival = at;
+  };
+  watch<ComponentHealth>(bus, [this, keep](const ComponentHealth& health, TimePoint at) {
+    if (snapshot_.health.size() >= kMaxComponents && !snapshot_.health.contains(health.component)) return;
+    auto& seen = snapshot_.health[health.component];
+    const bool is_new = !seen.ever || seen.sample.incarnation != health.incarnation;
+    if (is_new || seen.sample.state != health.state || seen.sample.reason != health.reason) {
+      note(at, with_reason(health.component + " " + (is_new && seen.ever && health.state != HealthState::stopping ? "back, " : "") +
+                               name(health.state),
+                           health.reason));
+    }
+    keep(seen, health, at);
+  });
+  watch<TaskStatus>(bus, [this, keep](const TaskStatus& task, TimePoint at) {
+    const auto& seen = snapshot_.task;
+    if (!seen.ever || seen.sample.id != task.id || seen.sample.state != task.state || seen.sample.step != task.step) {
+      const std::string step = task.step < task.plan.size() ? ", step " + task.plan[task.step] : "";
+      note(at, with_reason("task " + std::string(name(task.state)) + step, task.reason));
+    }
+    snapshot_.tasks[task.id] = task;
+    if (snapshot_.tasks.size() > kMaxTasks) snapshot_.tasks.erase(snapshot_.tasks.begin());
+    keep(snapshot_.task, task, at);
+  });
+  watch<ActionStatus>(bus, [this, keep](const ActionStatus& action, TimePoint at) {
+    const auto& seen = snapshot_.action;
+    if (!seen.ever || seen.sample.id != action.id || seen.sample.phase != action.phase || seen.sample.state != action.state) {
+      const std::string phase = action.phase == ActionPhase::none ? "" : " " + phase_text(action);
+      if (action.state != ActionState::idle) note(at, with_reason("action " + std::string(name(action.kind)) + phase, action.reason));
+    }
+    if (!action.human.empty()) snapshot_.partner = action.human;
+    keep(snapshot_.action, action, at);
+  });
+  watch<ExecutionStatus>(bus, [this, keep](const ExecutionStatus& execution, TimePoint at) {
+    const auto& seen = snapshot_.execution;
+    if (!seen.ever || seen.sample.mode != execution.mode || seen.sample.causes != execution.causes) {
+      const std::string causes = cause_names(execution.causes);
+      note(at, "mode " + std::string(name(execution.mode)) + (causes.empty() ? "" : " (" + causes + ")"));
+    }
+    keep(snapshot_.execution, execution, at);
+  });
+  watch<SafetyState>(bus, [this, keep](const SafetyState& safety, TimePoint at) {
+    const auto& seen = snapshot_.safety;
+    if (!seen.ever || seen.sample.reason != safety.reason)
+      if (seen.ever || !safety.reason.empty()) note(at, safety.reason.empty() ? "released by a person" : "held: " + safety.reason);
+    keep(snapshot_.safety, safety, at);
+  });
+  watch<AttentionAdvice>(bus, [this, keep](const AttentionAdvice& advice, TimePoint at) { keep(snapshot_.advice, advice, at); });
+  watch<AttentionState>(bus, [this, keep](const AttentionState& state, TimePoint at) { keep(snapshot_.attention, state, at); });
+  watch<TrajectoryForecast>(bus,
+                            [this, keep](const TrajectoryForecast& forecast, TimePoint at) { keep(snapshot_.forecast, forecast, at); });
+  watch<ActiveTrajectory>(bus, [this](const ActiveTrajectory& active, TimePoint at) {
+    snapshot_.active.ever = true;
+    snapshot_.active.arrival = at;
+    snapshot_.active.sample.trajectory = active.trajectory;
+    snapshot_.active.sample.time = active.time;
+    snapshot_.active.sample.speed_factor = active.speed_factor;
+  });
+  watch<GroundTruth>(bus, [this, keep](const GroundTruth& truth, TimePoint at) {
+    const auto& seen = snapshot_.truth;
+    if (!seen.ever || seen.sample.carrier != truth.carrier)
+      note(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
+    if (truth.hold == "constraint" && !(seen.ever && seen.sample.hold == truth.hold))
+      note(at, truth.object + " held by the constraint more than by contact");
+    if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
+    if (truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, truth.object + " dropped");
+    if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");
+    keep(snapshot_.truth, truth, at);
+  });
+}
+
+void Observer::note(TimePoint at, const std::string& text) {
+  if (timeline_.size() >= kMaxTimeline) return;
+  timeline_.push_back({at, text});
+  if (on_event_) on_event_(timeline_.back());
+}
+
+}  // namespace handsel

@@ -1,0 +1,77 @@
+// Performs a scenario's tasks through TaskGoal and TaskStatus and watches the simulator's oracle. Works on any bus.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/config/schema/scenario.pb.h"
+#include "deploy/handsel/system/observer.hpp"
+
+namespace handsel {
+
+/// Without a word about a task for so long its goal is sent again: the supervisor tells it more often, one goal twice is one task.
+inline constexpr Duration kTaskSilence = std::chrono::seconds(2);
+inline constexpr Duration kAnswerPatience = std::chrono::seconds(4);  // the supervisor gives a thing that is named two seconds to be seen
+
+/// "give mug to anna"
+std::string describe(const TaskGoal& goal);
+/// The scenario's task as a goal; throws ConfigError for a kind that is none.
+TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id);
+/// All of them, in order, with ids from 1; throws ConfigError also when there is none.
+std::vector<TaskGoal> scenario_goals(const config::Scenario& scenario);
+bool is_over(TaskState state);
+
+struct StepOutcome {
+  std::string step;
+  double started{};   ///< since the performance began [s]
+  double duration{};  ///< [s]
+};
+
+struct TaskOutcome {
+  std::string task;              ///< "give mug to anna"
+  bool success{};                ///< give: the oracle's word; other kinds: the supervisor's
+  bool timed_out{};              ///< it was not done within the time of all tasks
+  std::string state, reason;     ///< as the supervisor said last; reason also when the oracle disagrees
+  double started{}, duration{};  ///< [s]
+  double first_motion{-1};       ///< after the goal was given the robot moved first [s]; negative: never
+  std::vector<StepOutcome> steps;
+  Refusals refusals;
+};
+
+class Performer {
+ public:
+  /// Begins as soon as `ready` holds. Throws as scenario_goals().
+  Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout, std::function<bool()> ready);
+
+  bool finished() const { return phase_ == Phase::finished; }
+  bool succeeded() const;
+  bool started() const { return phase_ != Phase::waiting; }
+  TimePoint begin() const { return begin_; }
+  double duration() const { return to_seconds(end_ - begin_); }  ///< of the performance [s], valid once finished
+  const std::vector<TaskOutcome>& outcomes() const { return outcomes_; }
+  /// Ends it now: the running task counts as failed for this reason.
+  void abort(const std::string& reason);
+
+ private:
+  enum class Phase { waiting, running, verifying, finished };
+  void tick(TimePoint now);
+  void begin_task(TimePoint now);
+  void follow(TimePoint now);
+  void verify(TimePoint now);
+  void conclude(TimePoint now);
+  void note_step(const TaskStatus& status, TimePoint now);
+
+  Bus& bus_;
+  Observer& observer_;
+  std::vector<TaskGoal> goals_;
+  std::unique_ptr<Publisher<TaskGoal>> publisher_;
+  std::function<bool()> ready_;
+  Duration timeout_;
+  Phase phase_{Phase::waiting};
+  std::size_t current_{0};
+  TimePoint begin_{}, end_{}, task_begin_{}, last_sent_{}, verify_begin_{};
+  std::vector<TaskOutcome> outcomes_;
+};
+
+}  // namespace handsel

@@ -1,0 +1,58 @@
+// A whole running system as one object: the domain's lock, the processes and a seat to watch them from.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "deploy/handsel/recording/recorder.hpp"
+#include "deploy/handsel/system/kept_state.hpp"
+#include "deploy/handsel/system/launcher.hpp"
+#include "deploy/handsel/system/launcher_settings.hpp"
+#include "deploy/handsel/system/process_watch.hpp"
+#include "deploy/handsel/system/processes.hpp"
+#include "deploy/handsel/system/session.hpp"
+
+namespace handsel {
+
+/// Why a process is not ready, empty when it is.
+std::string why_not_ready(const Snapshot&, const std::string& process);
+/// Components that are not there or not ready, each with why: "path_planner (not heard yet)". Empty: the system is ready. A
+/// driver may stand in for sim. The bridge may be degraded: nothing depends on it; without `with_bridge` it is not asked for.
+std::vector<std::string> not_ready(const Snapshot&, bool with_bridge = true);
+
+class System {
+ public:
+  /// Checks the input, takes the domain and starts every process. Throws ConfigError / MissingError before any process starts.
+  explicit System(const SystemOptions& options);
+
+  Session& session() { return session_; }
+  Launcher& launcher() { return launcher_; }
+  const SystemOptions& options() const { return options_; }
+  const std::filesystem::path& log_directory() const { return log_directory_; }
+  /// Address of the bridge's page; empty while it has not said so.
+  std::string web_address() const;
+
+  /// Listens until every component started here is ready; returns the time it took, or nullopt on Ctrl-C. Throws MissingError naming what
+  /// is missing after `limit`, in which time that a process waited for a processor does not count; ConfigError / MissingError when a
+  /// process gave up. Once ready, no death of a process ends the system.
+  std::optional<Duration> wait_ready(Duration limit);
+  /// Throws ConfigError / MissingError when a process gave up.
+  void require_alive() const;
+  /// Listens until `done` holds or `limit` is over, or Ctrl-C; true if it held. Throws as require_alive().
+  bool wait(Duration limit, const std::function<bool()>& done);
+
+ private:
+  SystemOptions options_;
+  DomainLock lock_;
+  std::filesystem::path log_directory_;
+  LauncherSettings settings_;
+  Session session_;
+  Recording recording_;  // until every process has stopped
+  KeptState kept_;       // likewise
+  Launcher launcher_;
+  ProcessWatch watch_;
+};
+
+}  // namespace handsel

@@ -1,0 +1,28 @@
+// A body that is where samples from outside say. Pure: time comes in.
+#pragma once
+
+#include "common/messages/perception.hpp"
+#include "common/messages/world.hpp"
+#include "sim/people/recording.hpp"
+
+namespace handsel::sim {
+
+/// Between samples it moves evenly from where it is to the newest one, within the time the last two were apart: one period late, as any
+/// tracker's picture of a person is. The first sample places it, and so does one that nobody could have moved to since the last: a tracker
+/// started anew. What was not seen is fitted to what was (`fit_body`). Ours.
+class FollowedBody {
+ public:
+  FollowedBody(const BodyPoints& start, double stature);
+
+  /// True when it was placed.
+  bool observe(const ObservedPerson& seen, double now);
+  void sample(double now, BodyPoints& out) const;
+
+ private:
+  Person fitted_;
+  BodyPoints from_, to_;
+  double begun_{0}, lasts_{0};
+  bool seen_{false};
+};
+
+}  // namespace handsel::sim

@@ -1,0 +1,459 @@
+#include "sim/people/person.hpp"
+
+#include <algorithm>
+
+#include "sim/people/person_parts.hpp"
+#include "sim/physics/object_surface.hpp"
+
+namespace handsel::sim {
+
+namespace {
+
+constexpr double kStill = 0.05;      // an object slower than this is offered [m/s]
+constexpr double kEarly = 0.35;      // for who does not wait, slower than this [m/s] ...
+constexpr double kGone = 0.2;        // who reaches for an object follows it up to this speed, who is early ...
+constexpr double kGoneEarly = 0.5;   // ... up to this [m/s]
+constexpr double kLeanReach = 0.12;  // leaning forward adds this to the reach [m]
+constexpr double kPatience = 8.0;    // pulls no longer than this [s]
+constexpr double kStepBack = 0.2;    // with what it took [m]
+constexpr double kStay = 2.0;        // who has fetched something goes then [s]
+constexpr double kStep = 0.3;        // a recorded body is moved on the floor by no more than this before contact [m]
+
+}  // namespace
+
+const char* name(PersonPhase phase) {
+  static constexpr const char* kNames[] = {"arriving", "watching",   "reaching", "closing", "pulling", "withdrawing",
+                                           "keeping",  "retracting", "offering", "darting", "leaving"};
+  return kNames[static_cast<int>(phase)];
+}
+
+PersonModel::PersonModel(const PersonSettings& settings)
+    : settings_(settings), feet_(settings.feet), home_(settings.feet), yaw_(settings.yaw) {
+  const std::vector<BodyJoint> rest =
+      settings_.manner.seated ? sitting_body(Vector3::Zero(), 0, settings_.stature) : standing_body(Vector3::Zero(), 0, settings_.stature);
+  for (std::size_t i = 0; i < template_.size(); ++i) template_[i] = rest[i].position;
+  side_ = settings_.left_handed ? Side::left : Side::right;
+  if (settings_.recording) {
+    side_ = settings_.recording->taking;
+    template_ = settings_.recording->frames.front();
+  }
+  const int s = index();
+  reach_ = (template_[kElbow[s]] - template_[kShoulder[s]]).norm() + (template_[kWrist[s]] - template_[kElbow[s]]).norm() +
+           (template_[kHand[s]] - template_[kWrist[s]]).norm();
+  gaze_ = forward();
+  body_.id = settings_.id;
+  body_.stature = settings_.stature;
+  body_.gaze_known = true;
+  body_.joints.resize(kBodyJoints.size());
+  for (std::size_t i = 0; i < kBodyJoints.size(); ++i) body_.joints[i].name = kBodyJoints[i];
+  if (settings_.kind == PersonKind::walker || settings_.approach_from > 0) {
+    feet_ = home_ - settings_.approach_from * forward();
+    phase_ = PersonPhase::arriving;
+  }
+  if (settings_.kind == PersonKind::giver) {
+    phase_ = PersonPhase::keeping;
+    hand_active_ = wants_grip_ = true;
+    place_base();
+    hand_target_ = from_ = keep_point();
+    duration_ = settings_.reaction;
+  }
+  if (settings_.kind == PersonKind::external) {
+    place_base();
+    followed_.emplace(points_, settings_.stature);
+  }
+  step(0, PersonView{});
+}
+
+bool PersonModel::exchanging() const {
+  if (settings_.kind == PersonKind::fetcher) return false;
+  switch (phase_) {
+    case PersonPhase::reaching:
+    case PersonPhase::closing:
+    case PersonPhase::pulling:
+    case PersonPhase::withdrawing:
+    case PersonPhase::retracting:
+    case PersonPhase::offering:
+      return true;
+    default:
+      return false;
+  }
+}
+
+void PersonModel::enter(PersonPhase phase) {
+  phase_ = phase;
+  phase_since_ = clock_;
+  lost_time_ = sore_time_ = progress_ = 0;
+}
+
+void PersonModel::dart(double speed) {
+  speed_ = speed;
+  feet_speed_ = 0;
+  hand_active_ = true;
+  hand_target_ = hand_point();
+  enter(PersonPhase::darting);
+}
+
+void PersonModel::leave() {
+  home_ = feet_;
+  enter(PersonPhase::leaving);
+}
+
+void PersonModel::step(double dt, const PersonView& view) {
+  if (!frozen_ && dt > 0) {
+    clock_ += dt;
+    if (settings_.kind == PersonKind::external) {
+      accompany(dt, view);
+    } else if (settings_.kind != PersonKind::still) {
+      act(dt, view);
+    }
+    step_aside(dt);
+    if (!followed_) look_at(looked_at(view), dt);
+  }
+  placed_ = false;
+  place_base();
+  if (wants_grip_) keep_above_furniture(view.robot_hand);
+  if (hand_active_) {
+    bend_arm(index(), hand_target_);
+    hand_target_ = points_[kHand[index()]];
+  }
+  want_hands(dt);
+  for (int s = 0; s < 2; ++s) {
+    if (!view.hand_pushed[s].isZero(0)) bend_arm(s, points_[kHand[s]] + view.hand_pushed[s]);
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    body_.joints[i].position = points_[i];
+    body_.joints[i].velocity = first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((points_[i] - before_[i]) / dt);
+  }
+  before_ = points_;
+  first_ = false;
+  body_.gaze_direction = gaze_;
+  body_.gaze_origin = points_[kHead] + 0.08 * gaze_;
+}
+
+void PersonModel::want_hands(double dt) {
+  for (int s = 0; s < 2; ++s) {
+    const Vector3 before = hands_[s].T_world_body.translation(), now = points_[kHand[s]];
+    hands_[s].velocity = first_ || dt <= 0 ? Vector3(Vector3::Zero()) : Vector3((now - before) / dt);
+    hands_[s].T_world_body = make_pose(now, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_, Vector3::UnitZ())));
+  }
+}
+
+void PersonModel::act(double dt, const PersonView& view) {
+  if (wants_grip_ && view.grip_broke) give_up();
+  switch (phase_) {
+    case PersonPhase::arriving: {
+      const double length = settings_.approach_from * (settings_.kind == PersonKind::walker ? 2 : 1);
+      const double s = length > 0 ? since() * kWalkSpeed / length : 1;
+      feet_ = home_ + (length * min_jerk(s) - settings_.approach_from) * walk_direction_ * forward();
+      if (s < 1) break;
+      if (settings_.kind == PersonKind::walker) {
+        walk_direction_ = -walk_direction_;
+        enter(PersonPhase::arriving);
+      } else {
+        enter(PersonPhase::watching);
+      }
+      break;
+    }
+    case PersonPhase::watching:
+      watch(dt, view);
+      break;
+    case PersonPhase::reaching:
+      if (settings_.recording) {
+        play(dt, view);
+      } else {
+        reach_out(dt, view);
+      }
+      break;
+    case PersonPhase::closing:
+      if (view.object == nullptr || gap(view) > kPalm + 0.03) {
+        give_up();
+      } else if (since() > 0.25) {
+        wants_grip_ = true;
+        from_ = hand_target_;
+        enter(PersonPhase::pulling);
+      }
+      break;
+    case PersonPhase::pulling:
+      pull(dt, view);
+      break;
+    case PersonPhase::withdrawing:
+      withdraw(dt, view);
+      break;
+    case PersonPhase::keeping:
+      if (settings_.kind == PersonKind::giver) {
+        hold_back(view);
+      } else {
+        hand_target_ = keep_point();
+        if (settings_.kind == PersonKind::fetcher && since() > kStay) leave();
+      }
+      break;
+    case PersonPhase::retracting:
+      retract(dt);
+      break;
+    case PersonPhase::offering:
+      offer(dt, view);
+      break;
+    case PersonPhase::darting:
+      dart_on(dt, view);
+      break;
+    case PersonPhase::leaving:
+      feet_ = home_ - 3.0 * min_jerk(since() * kWalkSpeed / 3.0) * forward();
+      if (wants_grip_) hand_target_ = keep_point();
+      break;
+  }
+}
+
+/// What the person is after is not where they would take it from: the robot's hand, or, for who fetches it, the place where it stands.
+bool PersonModel::out_of_hand(const PersonView& view) const { return view.held_by_robot == (settings_.kind == PersonKind::fetcher); }
+
+bool PersonModel::offered(const PersonView& view, int side) const {
+  const double fastest = settings_.manner.early ? kEarly : kStill;
+  if (refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest) return false;
+  if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
+  return (object_centre(view) - shoulder(side)).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
+}
+
+// The better hand, unless the other is clearly nearer or the only one that reaches.
+void PersonModel::choose_hand(const PersonView& view) {
+  if (settings_.recording || view.object == nullptr) return;
+  const Side better = settings_.left_handed ? Side::left : Side::right;
+  const double right = (object_centre(view) - shoulder(1)).norm(), left_distance = (object_centre(view) - shoulder(0)).norm();
+  const double own = better == Side::right ? right : left_distance, other = better == Side::right ? left_distance : right;
+  const bool change = own > other + 0.15 || (own > reach_ + kLeanReach - 0.03 && other < own);
+  side_ = change == (better == Side::right) ? Side::left : Side::right;
+}
+
+void PersonModel::watch(double dt, const PersonView& view) {
+  cooldown_ = std::max(0.0, cooldown_ - dt);
+  const bool takes =
+      settings_.kind == PersonKind::taker || settings_.kind == PersonKind::recording || settings_.kind == PersonKind::fetcher;
+  if (offer_time_ <= 0) choose_hand(view);
+  offer_time_ = takes && cooldown_ <= 0 && offered(view, index()) ? offer_time_ + dt : 0;
+  if (offer_time_ <= 0 || offer_time_ < (settings_.recording ? 0.05 : settings_.reaction)) return;
+  offer_time_ = 0;
+  const Vector3 centre = object_centre(view);
+  const Vector3 toward = (shoulder(index()) - centre).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const Vector3 away = (centre - view.robot_hand).cwiseProduct(Vector3(1, 1, 0.3));
+  side_of_object_ = (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero()))).normalized();
+  from_ = hand_point();
+  const Vector3 goal = grasp_point(view);
+  duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.manner.pace;
+  lean_from_ = lean_;
+  const double excess = (goal - shoulder(index())).norm() - 0.95 * reach_;
+  lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[index()]].z() - template_[kWaist].z()), 0.0, 0.35);
+  hand_target_ = from_;
+  hand_active_ = !settings_.recording;
+  playback_ = 0;
+  if (settings_.recording) {
+    home_ = feet_;
+    step_ = (goal - at_contact(home_)).cwiseProduct(Vector3(1, 1, 0));
+    if (step_.norm() > kStep) step_ *= kStep / step_.norm();
+  }
+  enter(PersonPhase::reaching);
+}
+
+// Where the recorded hand is at its farthest when the person stands at `feet`.
+Vector3 PersonModel::at_contact(const Vector3& feet) const {
+  BodyPoints points;
+  settings_.recording->sample(settings_.recording->contact, points);
+  return feet + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * points[kHand[index()]];
+}
+
+// The place for the middle of the hand nearest to `from` from which it holds the object.
+Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) const {
+  const Pose T_object_world = view.T_world_object.inverse();
+  const auto distance = [&](const Vector3& p) { return surface_distance(*view.object, T_object_world * p); };
+  Vector3 p = from;
+  for (int i = 0; i < 8; ++i) {
+    const double d = distance(p), h = 1e-4;
+    if (std::abs(d - kPalm) < 5e-4) break;
+    const Vector3 slope((distance(p + h * Vector3::UnitX()) - d) / h, (distance(p + h * Vector3::UnitY()) - d) / h,
+                        (distance(p + h * Vector3::UnitZ()) - d) / h);
+    if (slope.norm() < 1e-6) break;
+    p -= (d - kPalm) * slope.normalized();
+  }
+  return p;
+}
+
+void PersonModel::reach_out(double dt, const PersonView& view) {
+  const double fastest = settings_.manner.early ? kGoneEarly : kGone;
+  const bool lost = refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest;
+  lost_time_ = lost ? lost_time_ + dt : 0;
+  if (lost_time_ > 0.3) return give_up();
+  if (view.object == nullptr) return;
+  const double s = reach_share();
+  lean_ = lean_from_ + s * (lean_to_ - lean_from_);
+  hand_target_ = from_ + s * (grasp_point(view) - from_);
+  if (s >= kMidway && settings_.manner.withdraws && !came_once_) return give_up();
+  if (s < 1) return;
+  if (gap(view) < kPalm + 0.012) {
+    enter(PersonPhase::closing);
+  } else if (since() > reach_time() + 1.0) {
+    give_up();
+  }
+}
+
+void PersonModel::play(double dt, const PersonView& view) {
+  const Recording& recording = *settings_.recording;
+  const bool lost = refusing_ || view.object == nullptr || !view.held_by_robot || view.object_velocity.norm() > 0.2;
+  lost_time_ = lost ? lost_time_ + dt : 0;
+  if (lost_time_ > 0.5 || since() > recording.contact + 1.5) return give_up();
+  playback_ = std::min(playback_ + dt, recording.contact);
+  feet_ = home_ + min_jerk(playback_ / std::max(0.1, recording.contact - settings_.warp_time)) * step_;
+  place_base();
+  const Vector3 recorded = points_[kHand[index()]];
+  if (view.object != nullptr) {
+    const Vector3 meets = at_contact(home_ + step_);
+    warp_ = nearest_hold(view, meets) - meets;
+    if (warp_.norm() > settings_.max_warp) warp_ *= settings_.max_warp / warp_.norm();
+  }
+  const double s = min_jerk(1 - (recording.contact - playback_) / settings_.warp_time);
+  hand_active_ = s > 0;
+  hand_target_ = recorded + s * warp_;
+  if (playback_ >= recording.contact && view.object != nullptr && gap(view) < kPalm + 0.012) enter(PersonPhase::closing);
+}
+
+void PersonModel::pull(double dt, const PersonView& view) {
+  if (!wants_grip_ || view.object == nullptr) return give_up();
+  const Vector3 direction = (keep_point() - hand_target_).cwiseProduct(Vector3(1, 1, 0)).normalized();
+  const double ramp = std::min(1.0, since() / 0.4);
+  const double felt = view.grip_force.dot(direction);
+  const double speed = std::clamp(0.02 * (ramp * settings_.pull - felt), -0.1, 0.1);
+  hand_target_ += speed * dt * direction;
+  sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
+  lost_time_ = view.held_by_robot ? 0 : lost_time_ + dt;
+  const double moved = (hand_target_ - from_).dot(direction);
+  if (sore_time_ > 0.1 || since() > kPatience || moved < -0.15) {
+    give_up();
+  } else if (lost_time_ > 0.1 || (moved > 0.05 && felt < 0.7 * settings_.pull)) {
+    from_ = hand_target_;
+    duration_ = 1.2;
+    lean_from_ = lean_;
+    home_ = feet_;
+    enter(PersonPhase::withdrawing);
+  }
+}
+
+void PersonModel::withdraw(double dt, const PersonView& view) {
+  if (!wants_grip_) return give_up();
+  sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
+  if (sore_time_ > 0.3) return give_up();
+  progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
+  const double s = min_jerk(progress_);
+  lean_ = (1 - s) * lean_from_;
+  if (!settings_.manner.seated) feet_ = home_ - s * kStepBack * forward();
+  hand_target_ = from_ + s * (keep_point() - from_);
+  if (progress_ >= 1) enter(PersonPhase::keeping);
+}
+
+void PersonModel::give_up() {
+  wants_grip_ = false;
+  came_once_ = true;
+  cooldown_ = 2.0;
+  from_ = hand_active_ ? hand_target_ : hand_point();
+  hand_active_ = true;
+  hand_target_ = from_;
+  lean_from_ = lean_;
+  duration_ = 1.0;
+  warp_.setConstant(playback_);
+  enter(PersonPhase::retracting);
+}
+
+void PersonModel::retract(double) {
+  const double s = min_jerk(since() / duration_);
+  lean_ = (1 - s) * lean_from_;
+  playback_ = settings_.recording ? (1 - s) * warp_.x() : 0;
+  const Vector3 rest = feet_ + Eigen::AngleAxisd(yaw_, Vector3::UnitZ()) * template_[kHand[index()]];
+  hand_target_ = from_ + s * (rest - from_);
+  if (since() < duration_) return;
+  hand_active_ = false;
+  playback_ = 0;
+  enter(PersonPhase::watching);
+}
+
+void PersonModel::dart_on(double dt, const PersonView& view) {
+  const Vector3 to = view.robot_hand - hand_target_;
+  const double pace = std::min(speed_, kMaxHandAcceleration * since());
+  const double move = std::min(pace * dt, std::max(0.0, to.norm() - 0.08));
+  if (to.norm() > 1e-6) hand_target_ += move / to.norm() * to;
+  const Vector3 beyond = hand_target_ - shoulder(index());
+  const Vector3 lacking = std::max(0.0, 1 - 0.95 * reach_ / beyond.norm()) * beyond.cwiseProduct(Vector3(1, 1, 0));
+  feet_speed_ = std::min(feet_speed_ + kMaxTrunkAcceleration * dt, lacking.norm() / dt);
+  if (feet_speed_ > 0) feet_ += feet_speed_ * dt * lacking.normalized();
+  if (since() > 1.5) give_up();
+}
+
+Vector3 PersonModel::keep_point() const {
+  return points_[kTorso] + 0.22 * forward() + (side_ == Side::left ? 0.12 : -0.12) * left() - Vector3(0, 0, 0.05);
+}
+
+Vector3 PersonModel::shoulder(int side) const { return points_[kShoulder[side]]; }
+
+double PersonModel::gap(const PersonView& view) const {
+  return surface_distance(*view.object, view.T_world_object.inverse() * hand_target_);
+}
+
+// Where the middle of the hand touches the object, coming from side_of_object_.
+Vector3 PersonModel::grasp_point(const PersonView& view) const {
+  const Vector3 centre = object_centre(view);
+  const Pose T_object_world = view.T_world_object.inverse();
+  double t = 0.4;
+  for (int i = 0; i < 40; ++i) {
+    const double beyond = surface_distance(*view.object, T_object_world * (centre + t * side_of_object_)) - kPalm;
+    t -= beyond;
+    if (std::abs(beyond) < 5e-4 || t < 0) break;
+  }
+  return centre + std::max(t, 0.0) * side_of_object_;
+}
+
+void PersonModel::place_base() {
+  if (followed_) {
+    followed_->sample(clock_, points_);
+    const Vector3 left = points_[kShoulder[0]] - points_[kShoulder[1]];
+    yaw_ = std::atan2(-left.x(), left.y());
+    return;
+  }
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(yaw_, Vector3::UnitZ()).toRotationMatrix();
+  BodyPoints own = template_;
+  if (settings_.recording) {
+    settings_.recording->sample(playback_, own);
+  } else if (lean_ != 0) {
+    const Eigen::Matrix3d tilt = Eigen::AngleAxisd(lean_, Vector3::UnitY()).toRotationMatrix();
+    const auto lean = [&](int i) { own[i] = own[kWaist] + tilt * (own[i] - own[kWaist]); };
+    for (int i : {kHead, kNeck, kTorso}) lean(i);
+    for (int s = 0; s < 2; ++s) {
+      for (int i : {kShoulder[s], kElbow[s], kWrist[s], kHand[s]}) lean(i);
+    }
+  }
+  for (std::size_t i = 0; i < own.size(); ++i) points_[i] = feet_ + aside_ + R * own[i];
+}
+
+// Moves the hand to `target`. Near the base posture the arm keeps its shape, farther away hand and forearm line up, elbow down and out:
+// no joint jumps when the hand begins or ends to be led.
+void PersonModel::bend_arm(int s, const Vector3& target) {
+  const Vector3 root = points_[kShoulder[s]], elbow = points_[kElbow[s]], wrist = points_[kWrist[s]], hand = points_[kHand[s]];
+  const double upper = (elbow - root).norm(), lower = (wrist - elbow).norm(), palm = (hand - wrist).norm();
+  const double away = min_jerk((target - hand).norm() / 0.3);
+  const Vector3 along = (target - root).stableNormalized();
+  const Vector3 palm_vector = palm * ((1 - away) * (hand - wrist).stableNormalized() + away * along).stableNormalized();
+  Vector3 to = target - palm_vector - root;
+  const double d = std::clamp(to.norm(), std::abs(upper - lower) + 1e-3, upper + lower - 1e-6);
+  to = to.norm() > 1e-9 ? Vector3(to.normalized()) : forward();
+  const double a = (upper * upper - lower * lower + d * d) / (2 * d);
+  const double h = std::sqrt(std::max(0.0, upper * upper - a * a));
+  const auto across = [&](const Vector3& v) { return Vector3((v - v.dot(to) * to).stableNormalized()); };
+  const Vector3 led = across(Vector3(0, 0, -0.8) + (s == 0 ? 0.4 : -0.4) * left() - 0.2 * forward());
+  const Vector3 bent = elbow - root - (elbow - root).dot((wrist - root).stableNormalized()) * (wrist - root).stableNormalized();
+  const Vector3 own = bent.norm() > 1e-4 ? across(bent) : led;
+  const Vector3 out = across((1 - away) * own + away * led);
+  points_[kElbow[s]] = root + a * to + h * out;
+  points_[kWrist[s]] = root + d * to;
+  points_[kHand[s]] = points_[kWrist[s]] + palm_vector;
+}
+
+void PersonModel::look_at(const Vector3& target, double dt) {
+  const Vector3 want = (target - points_[kHead]).normalized();
+  gaze_ = (gaze_ + std::min(1.0, dt / 0.15) * (want - gaze_)).normalized();
+}
+
+}  // namespace handsel::sim

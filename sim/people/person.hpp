@@ -1,0 +1,169 @@
+// An emulated person: a body moved by what it sees, its hands wanted somewhere and pushed elsewhere. Pure: time comes in steps, chance from
+// a seed (behaviours: ours).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "common/messages/world.hpp"
+#include "common/model/human/human_body.hpp"
+#include "common/model/object_model.hpp"
+#include "sim/people/followed_body.hpp"
+#include "sim/people/recording.hpp"
+#include "sim/physics/grip.hpp"
+
+namespace handsel::sim {
+
+enum class PersonKind { taker, still, walker, recording, giver, external, fetcher };
+
+/// What makes a person different from the next.
+struct Manner {
+  double pace{1};                     ///< of the hand, times the usual
+  double hesitation{};                ///< stops midway on the first reach or offer [s]
+  bool withdraws{};                   ///< draws the hand back once from its first reach or offer, and comes again
+  double look_away{};                 ///< looks elsewhere once, so long [s] ...
+  double look_away_at{};              ///< ... from this time on [s]
+  Vector3 sidestep{Vector3::Zero()};  ///< walks so far [m] ...
+  double sidestep_at{};               ///< ... from this time on [s]
+  bool seated{};
+  bool early{};  ///< takes what comes within reach while it still moves
+};
+
+/// A box that stands where it is.
+struct Furniture {
+  Pose T_world_box{Pose::Identity()};
+  Vector3 size{Vector3::Zero()};  ///< [m]
+};
+
+struct PersonSettings {
+  std::string id;
+  Vector3 feet{Vector3::Zero()};  ///< world [m]
+  double yaw{};                   ///< facing, 0 = +x [rad]
+  double stature{1.75};           ///< [m]
+  PersonKind kind{PersonKind::taker};
+  double reaction{0.4};    ///< from offer to reach [s]
+  double approach_from{};  ///< walks in from this far behind its place [m]
+  double pull{8.0};        ///< when taking [N]
+  bool left_handed{};
+  std::shared_ptr<const Recording> recording;
+  std::string external;     ///< source of the body an external person follows
+  double correction{0.15};  ///< an external person's hand is led to what is offered from this near [m]
+  double max_warp{0.10};    ///< a recorded hand is moved by no more than this [m]
+  double warp_time{0.5};    ///< over the last part before contact [s]
+  double fetches_at{};      ///< who fetches something reaches for it from then on [s]
+  Manner manner{};
+  std::vector<Furniture> furniture;  ///< what they hold is kept above it
+};
+
+/// What the person sees and feels.
+struct PersonView {
+  Vector3 robot_hand{Vector3::Zero()};  ///< world [m]
+  const ObjectModel* object{nullptr};   ///< the one the exchange is about; nullptr: none
+  Pose T_world_object{Pose::Identity()};
+  Vector3 object_velocity{Vector3::Zero()};
+  bool held_by_robot{};
+  std::array<Vector3, 2> hand_pushed{Vector3::Zero(),
+                                     Vector3::Zero()};  ///< left, right: how far forces keep it from where it is wanted [m]
+  bool grip_broke{};                                    ///< it slipped out of this person's hand
+  Vector3 grip_force{Vector3::Zero()};                  ///< that this person's hand exerts on the object [N]
+};
+
+enum class PersonPhase { arriving, watching, reaching, closing, pulling, withdrawing, keeping, retracting, offering, darting, leaving };
+const char* name(PersonPhase);
+
+class PersonModel {
+ public:
+  explicit PersonModel(const PersonSettings&);
+
+  void step(double dt, const PersonView&);
+  /// Where an external person is now, as told from outside; others do not listen.
+  void follow(const ObservedPerson&);
+  void freeze(bool on) { frozen_ = on; }
+  void dart(double speed);  ///< the hand shoots toward the robot's hand [m/s]
+  void leave();
+  void refuse() { refusing_ = true; }
+
+  const std::string& source() const { return settings_.external; }
+  const std::string& id() const { return settings_.id; }
+  PersonPhase phase() const { return phase_; }
+  const Person& body() const { return body_; }  ///< the truth, velocities included
+  Side side() const { return side_; }           ///< of the exchanging hand
+  bool wants_grip() const { return wants_grip_; }
+  /// From the reach until the object is withdrawn. Who fetches something for themselves exchanges nothing with the robot.
+  bool exchanging() const;
+  const BodyState& hand() const { return hands_[index()]; }       ///< where the exchanging hand is wanted; axes turn with the body
+  const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
+  bool placed() const { return placed_; }                         ///< the next step takes it elsewhere without a motion
+  double reach() const { return reach_; }                         ///< shoulder to middle of the hand [m]
+  static constexpr double kPalm = 0.03;                           ///< middle of the hand to what it holds [m]
+
+ private:
+  void place_base();
+  void want_hands(double dt);
+  void bend_arm(int side, const Vector3& target);
+  void look_at(const Vector3& target, double dt);
+  void enter(PersonPhase);
+  void act(double dt, const PersonView&);
+  void watch(double dt, const PersonView&);
+  void reach_out(double dt, const PersonView&);
+  void play(double dt, const PersonView&);
+  void pull(double dt, const PersonView&);
+  void withdraw(double dt, const PersonView&);
+  void retract(double dt);
+  void dart_on(double dt, const PersonView&);
+  void give_up();
+  void hold_back(const PersonView&);
+  Vector3 offer_from_shoulder(const PersonView&) const;
+  void offer(double dt, const PersonView&);
+  void step_aside(double dt);
+  double reach_share() const;
+  double reach_time() const;
+  Vector3 looked_at(const PersonView&) const;
+  void accompany(double dt, const PersonView&);
+  void pull_after(const Vector3& would_be, double dt, const PersonView&);
+  void let_go();
+  bool offered(const PersonView&, int side) const;
+  bool out_of_hand(const PersonView&) const;
+  void choose_hand(const PersonView&);
+  Vector3 grasp_point(const PersonView&) const;
+  Vector3 nearest_hold(const PersonView&, const Vector3& from) const;
+  Vector3 at_contact(const Vector3& feet) const;
+  Vector3 shoulder(int side) const;
+  Vector3 forward() const { return {std::cos(yaw_), std::sin(yaw_), 0}; }
+  Vector3 left() const { return {-std::sin(yaw_), std::cos(yaw_), 0}; }
+  Vector3 object_centre(const PersonView& v) const { return v.T_world_object * v.object->com; }
+  double gap(const PersonView&) const;
+  Vector3 keep_point() const;
+  double height_above_furniture(const Vector3& hand) const;
+  void keep_above_furniture(const Vector3& robot_hand);
+  double since() const { return clock_ - phase_since_; }
+  Vector3 hand_point() const { return hands_[index()].T_world_body.translation(); }
+  int index() const { return side_ == Side::left ? 0 : 1; }
+
+  PersonSettings settings_;
+  BodyPoints template_{}, points_{}, before_{};
+  double reach_{}, clock_{0}, phase_since_{0}, offer_time_{0}, lost_time_{0}, sore_time_{0}, cooldown_{0}, playback_{0}, progress_{0};
+  PersonPhase phase_{PersonPhase::watching};
+  Side side_{Side::right};
+  bool frozen_{false}, refusing_{false}, wants_grip_{false}, hand_active_{false}, first_{true}, placed_{false};
+  bool came_once_{false};  // the first reach or offer is over
+  double step_clock_{0};   // of the sidestep
+  double ignored_{0};      // the offer, so long [s]
+  int steps_nearer_{0};
+  Vector3 p_shoulder_offer_{Vector3::Zero()}, home_aside_{Vector3::Zero()};
+  Vector3 feet_{Vector3::Zero()}, home_{Vector3::Zero()}, aside_{Vector3::Zero()};
+  double yaw_{}, lean_{0}, lean_from_{0}, lean_to_{0}, duration_{1}, speed_{0}, feet_speed_{0}, walk_direction_{1};
+  Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
+      warp_{Vector3::Zero()}, step_{Vector3::Zero()};
+  std::optional<FollowedBody> followed_;  // of an external person
+  Vector3 led_{Vector3::Zero()};          // of its hand from where it is told to be
+  Vector3 gaze_{Vector3::UnitX()};
+  Person body_;
+  std::array<BodyState, 2> hands_;
+};
+
+}  // namespace handsel::sim

@@ -1,0 +1,38 @@
+// For the sources of PersonModel: places of joints, and numbers its behaviours share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/human/human_body.hpp"
+
+namespace handsel::sim {
+
+inline constexpr double kSoreForce = 30.0;  ///< beyond this the person lets go [N]
+inline constexpr double kWalkSpeed = 0.6;   ///< mean [m/s]
+inline constexpr double kMidway = 0.55;     ///< of a reach: who hesitates or changes their mind does so there
+
+inline double min_jerk(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * s * (10 + s * (-15 + 6 * s));
+}
+
+/// Largest accelerations of a person who rushes, those that the controller's stop proof assumes [m/s^2].
+inline constexpr double kMaxHandAcceleration = 50.0, kMaxTrunkAcceleration = 10.0;
+/// Peak acceleration of the trunk in a short step [m/s^2]; a rapid voluntary step from standing has 3 to 4 m/s^2.
+inline constexpr double kMaxStepAcceleration = 4.0;
+
+/// Returns how long a minimum-jerk step of `length` [m] takes [s]: at walking speed, a short one no faster than people can.
+inline double step_time(double length) {
+  constexpr double kPeak = 5.7735;  // largest second derivative of min_jerk(): 10 / sqrt(3)
+  return std::max(length / kWalkSpeed, std::sqrt(kPeak * length / kMaxStepAcceleration));
+}
+
+inline const int kShoulder[2] = {body_joint_index("l_shoulder"), body_joint_index("r_shoulder")};
+inline const int kElbow[2] = {body_joint_index("l_elbow"), body_joint_index("r_elbow")};
+inline const int kWrist[2] = {body_joint_index("l_wrist"), body_joint_index("r_wrist")};
+inline const int kHand[2] = {body_joint_index("l_hand"), body_joint_index("r_hand")};
+inline const int kHead = body_joint_index("head"), kTorso = body_joint_index("torso"), kWaist = body_joint_index("waist"),
+                 kNeck = body_joint_index("neck");
+
+}  // namespace handsel::sim

@@ -1,0 +1,37 @@
+// What touches what, read from Bullet after a step.
+#pragma once
+
+#include <vector>
+
+#include "sim/physics/bullet.hpp"
+
+namespace handsel::sim {
+
+/// Whose a collision object is; kept in its user indices together with a number.
+enum class Owner : int { robot = 1, object = 2, fixed = 3, floor = 4, person = 5 };
+
+/// Collision groups of Bullet's filter.
+enum CollisionGroup : int { kRobot = 64, kObject = 128, kFixed = 256, kPerson = 512 };
+
+inline void own(btCollisionObject& object, Owner owner, int index) {
+  object.setUserIndex(static_cast<int>(owner));
+  object.setUserIndex2(index);
+}
+
+/// One contact point. `a` is the robot if it takes part, else the object.
+struct Touch {
+  Owner a{}, b{};
+  int index_a{}, index_b{};
+  Vector3 point{Vector3::Zero()};       ///< world [m]
+  Vector3 normal{Vector3::UnitZ()};     ///< from b to a
+  double distance{};                    ///< negative: they overlap [m]
+  double normal_force{};                ///< [N]
+  Vector3 force_on_a{Vector3::Zero()};  ///< friction included [N]
+  double friction{};                    ///< Coulomb coefficient of the pair
+  double torsion{};                     ///< torque about the normal per normal force [m]
+};
+
+/// Replaces `out` by the contacts closer than `reach` of the last step of length dt.
+void gather(btDispatcher&, double dt, double reach, std::vector<Touch>& out);
+
+}  // namespace handsel::sim

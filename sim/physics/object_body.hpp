@@ -1,0 +1,41 @@
+// An object as a rigid body of the physics.
+#pragma once
+
+#include <memory>
+
+#include "sim/physics/bullet.hpp"
+#include "sim/physics/grip.hpp"
+#include "sim/scene/scene_setup.hpp"
+
+namespace handsel::sim {
+
+class ObjectBody {
+ public:
+  /// Throws ConfigError when the model has no parts to collide with. `index` tells it apart in contacts.
+  ObjectBody(const StartObject& start, int index, ShapeStore&, btDynamicsWorld&);
+  ~ObjectBody();
+  ObjectBody(const ObjectBody&) = delete;
+  ObjectBody& operator=(const ObjectBody&) = delete;
+
+  const StartObject& start() const { return start_; }
+  const ObjectModel& model() const { return *start_.model; }
+  double least_inertia() const { return least_inertia_; }  ///< least principal moment [kg m^2]
+  const Pose& T_world_object() const { return T_world_object_; }
+  const BodyState& state() const { return state_; }  ///< of the centre of mass
+
+  void put(const Pose& T_world_com);
+  /// Wrench about the centre of mass, for the coming step.
+  void push(const Wrench&);
+  /// Reads the state after a step.
+  void read();
+
+ private:
+  StartObject start_;
+  btDynamicsWorld& world_;
+  std::unique_ptr<btRigidBody> body_;
+  double least_inertia_{};
+  Pose T_world_object_{Pose::Identity()};
+  BodyState state_;
+};
+
+}  // namespace handsel::sim

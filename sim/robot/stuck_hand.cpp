@@ -1,0 +1,26 @@
+#include "sim/robot/stuck_hand.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace handsel::sim {
+
+void StuckHand::apply(double dt, bool holds_object, Reference& reference) {
+  constexpr double kRestTime = 0.5, kRestSpeed = 1e-6;  // [s], [rad/s, m/s]
+  if (holds_object && !stuck_) {
+    const auto is_moving = [&](int axis) { return std::abs(reference.velocity[axis]) >= kRestSpeed; };
+    const bool moves = std::any_of(axes_.begin(), axes_.end(), is_moving);
+    at_rest_ = moves ? 0 : at_rest_ + dt;
+    stuck_ = at_rest_ > kRestTime;
+    position_ = reference.position;
+    effort_ = reference.effort;
+  }
+  if (!stuck_) return;
+  for (const int axis : axes_) {
+    reference.position[axis] = position_[axis];
+    reference.effort[axis] = effort_[axis];
+    reference.velocity[axis] = reference.acceleration[axis] = 0;
+  }
+}
+
+}  // namespace handsel::sim

@@ -1,0 +1,182 @@
+// A running system, real processes over DDS, with something to do at all times: a mug is picked up and put down again.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/config/resources.hpp"
+#include "common/model/robot_model.hpp"
+#include "common/trajectory/stop.hpp"
+#include "deploy/handsel/system/performer.hpp"
+#include "deploy/handsel/system/system.hpp"
+#include "deploy/handsel/system/system_options.hpp"
+
+namespace handsel::test {
+
+inline std::string environment(const char* variable) {
+  const char* value = std::getenv(variable);
+  return value == nullptr ? "" : value;
+}
+
+/// A running system with something to do at all times: a mug is picked up and put down again.
+class BusySystem {
+ public:
+  explicit BusySystem(int domain) : system_({.domain = domain, .scenario = "give_mug", .seed = 11, .web_port = 0}) {
+    const RobotModel robot = RobotModel::load(robot_description(robot_of(system_.options())));
+    arm_ = robot.require_group("arm").axes;
+    const KinematicLimits &comfort = robot.comfort_limits(), &stop = robot.stop_limits();
+    for (const int axis : arm_)
+      longest_stop_ =
+          std::max(longest_stop_,
+                   measure_stop(comfort.velocity[axis], comfort.acceleration[axis], stop.acceleration[axis], stop.jerk[axis]).duration);
+    Bus& bus = system_.session().bus();
+    sim_ = bus.advertise<SimControl>();
+    system_.session().observer().on_event([this](const TimelineEvent& event) {
+      if (events_.size() < kMaxEvents) events_.push_back(event);
+    });
+    bus.subscribe<RobotState>([this](const RobotState& state, const Receipt&) { watch(state); });
+  }
+
+  /// Nobody takes the mug from the hand of an arm that stands for long: that would move the arm.
+  bool ready() {
+    if (!system_.wait_ready(kReadyPatience)) return false;
+    disturb(SimAction::person_refuse, 0.0, "anna");
+    return true;
+  }
+  const Snapshot& now() { return system_.session().snapshot(); }
+  const SafetyState& safety() { return now().safety.sample; }
+  std::uint64_t incarnation(const std::string& process) {
+    const auto found = now().health.find(process);
+    return found == now().health.end() ? 0 : found->second.sample.incarnation;
+  }
+  bool is_ok(const std::string& process) {
+    const auto found = now().health.find(process);
+    return found != now().health.end() && found->second.sample.state == HealthState::ok;
+  }
+  /// Whether the arm is on a long path in free space: fingers that squeeze count as moving, too, and what they press on moves the arm for
+  /// as long as they do.
+  bool travels() {
+    const ActionPhase phase = now().action.sample.phase;
+    const bool approaches = phase == ActionPhase::approach;
+    return moves() && (approaches || phase == ActionPhase::carry || phase == ActionPhase::to_rest);
+  }
+  bool moves() { return now().truth.ever && now().truth.sample.robot_moving; }
+  void kill(const std::string& process) {
+    const pid_t pid = system_.launcher().pid(process);
+    ASSERT_GT(pid, 0) << process;
+    ::kill(pid, SIGKILL);
+  }
+  void say(TaskKind kind, double value = 0.0) {
+    TaskGoal goal{.id = system_.session().new_task_id(), .kind = kind};
+    goal.value = value;
+    said_ = goal.id;
+    system_.session().send(goal);
+  }
+  void stop_robot(const std::string& how) { disturb(SimAction::robot_stop, 0.0, how); }
+  void disturb(SimAction action, double value = 0.0, const std::string& subject = "") {
+    system_.session().wait(from_seconds(1.0), [&] { return sim_->readers() > 0; });
+    sim_->publish({.action = action, .subject = subject, .value = value});
+  }
+  /// The task given last.
+  std::uint64_t task() const { return goal_.id; }
+  /// Longest jerk-limited stop of an axis of the arm, from its comfort velocity and acceleration [s].
+  double longest_stop() const { return longest_stop_; }
+  bool answered() {
+    const auto found = now().tasks.find(said_);
+    return found != now().tasks.end() && is_over(found->second.state);
+  }
+
+  /// Waits until `done`, giving tasks all the while.
+  bool wait(Duration limit, const std::function<bool()>& done) {
+    return system_.wait(limit, [&] {
+      keep_busy();
+      return done();
+    });
+  }
+  void listen(Duration time) {
+    wait(time, [] { return false; });
+  }
+  /// From now on the largest deviation of an axis of the arm counts.
+  void mark() {
+    events_.clear();
+    marked_at_ = monotonic_now();
+    marked_.resize(0);
+    deviation_ = 0.0;
+    fastest_ = 0.0;
+  }
+  double deviation() const { return deviation_; }
+  /// What has happened since mark().
+  std::string timeline() {
+    std::string out;
+    const GroundTruth& truth = now().truth.sample;
+    const Vector3 at = truth.T_world_object.translation();
+    char text[160];
+    std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n", truth.object.c_str(), at.x(), at.y(), at.z(),
+                  truth.carrier.c_str());
+    out += text;
+    for (const TimelineEvent& event : events_) out += "  " + std::to_string(to_seconds(event.at - marked_at_)) + " s  " + event.text + "\n";
+    return out;
+  }
+  /// Largest speed factor in force since mark().
+  double fastest() const { return fastest_; }
+
+ private:
+  void watch(const RobotState& state) {
+    if (marked_.size() == 0) marked_ = state.position, marked_reference_ = state.reference.position;
+    for (const int axis : arm_) {
+      const double off = state.position[axis] - marked_[axis];
+      for (const double step : {5e-4, 5e-3, 2e-2})
+        if (deviation_ < step && std::abs(off) >= step) note_motion(state, axis, off);
+      deviation_ = std::max(deviation_, std::abs(off));
+    }
+    if (now().active.ever) fastest_ = std::max(fastest_, std::abs(now().active.sample.speed_factor));
+  }
+  /// Writes into the timeline that an axis has moved though nothing should.
+  void note_motion(const RobotState& state, int axis, double off) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    std::string text = "axis " + std::to_string(axis) + " has moved by " + std::to_string(off);
+    const double by = state.reference.position.size() > i ? state.reference.position[i] - marked_reference_[i] : 0.0;
+    text += " rad, its reference by " + std::to_string(by) + " rad " + state.refusal;
+    events_.push_back({monotonic_now(), text});
+  }
+  /// Gives the next task when the last one is over; a supervisor that was started anew is asked again.
+  void keep_busy() {
+    Session& session = system_.session();
+    const TimePoint time = session.bus().now();
+    if (time - sent_ < kTaskSilence) return;
+    const auto status = now().tasks.find(goal_.id);
+    const bool over = status != now().tasks.end() && is_over(status->second.state);
+    const bool silent = time - now().task.arrival >= kTaskSilence;
+    if (goal_.id != 0 && !over && !silent && status != now().tasks.end()) return;
+    if (goal_.id == 0 || over) {
+      const bool holds = now().truth.sample.carrier == "robot";
+      goal_ = {.id = session.new_task_id(), .kind = holds ? TaskKind::place : TaskKind::pick, .object = "mug"};
+      if (holds) goal_.surface = "table";
+    }
+    session.publish(goal_);
+    sent_ = time;
+  }
+
+  System system_;
+  std::vector<int> arm_;
+  double longest_stop_{};
+  std::unique_ptr<Publisher<SimControl>> sim_;
+  TaskGoal goal_;
+  TimePoint sent_{};
+  std::uint64_t said_{};
+  static constexpr std::size_t kMaxEvents = 1000;
+  std::vector<TimelineEvent> events_;
+  TimePoint marked_at_{};
+  Vector marked_, marked_reference_;
+  double deviation_{}, fastest_{};
+};
+
+}  // namespace handsel::test

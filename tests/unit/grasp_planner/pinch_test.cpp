@@ -1,0 +1,121 @@
+// Lists of grasps of the parallel gripper on the project's own objects: every promise of a listed grasp, checked from the outside.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "components/grasp_planner/list/grasp_list.hpp"
+
+namespace handsel::grasp_planner {
+namespace {
+
+const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
+
+std::shared_ptr<const HandKit> gripper() {
+  static const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
+  return kit;
+}
+
+ObjectModel object(const std::string& name, double scale = 1) {
+  ObjectModel o = ObjectModel::load(kDeploy / "objects" / name / (name + ".txtpb"));
+  if (scale == 1) return o;
+  for (Vector3& v : o.mesh.vertices) v *= scale;
+  o.parts.clear();
+  return o;
+}
+
+GraspListSettings small_settings() {
+  GraspListSettings settings;
+  settings.positions = 24;
+  settings.orientations = 48;
+  return settings;
+}
+
+std::shared_ptr<const Graspable> graspable(const ObjectModel& o) {
+  return std::make_shared<const Graspable>(o, gripper()->tip_radius(), small_settings().step_share, 1);
+}
+
+GraspList list_of(const ObjectModel& o) {
+  return list_grasps(gripper(), std::make_shared<const FingerWorkspaces>(make_workspaces(*gripper())), graspable(o), small_settings());
+}
+
+/// Signed distance of a point of the object from a pad's plane, positive before it, and where it is on the pad.
+Vector3 on_pad(const Grasp& g, std::uint32_t finger, const Vector3& p_object) {
+  const HandModel& hand = gripper()->hand;
+  const Finger& f = hand.fingers()[finger];
+  const Pose T_hand_pad = hand.model().link_pose(g.hand_joints, hand.model().link_index(f.tip_link)) * f.pad->T_tip_pad;
+  return (g.T_object_hand * T_hand_pad).inverse() * p_object;
+}
+
+class PinchedObjects : public testing::TestWithParam<const char*> {};
+
+TEST_P(PinchedObjects, are_held_by_areas_that_close_force) {
+  const ObjectModel o = object(GetParam());
+  const GraspList list = list_of(o);
+  ASSERT_GE(list.grasps.size(), 20U);
+  const HandModel& hand = gripper()->hand;
+  std::uint64_t counted = 0;
+  for (const std::uint64_t r : list.reasons) counted += r;
+  EXPECT_EQ(counted, list.frames);
+  for (const ListedGrasp& listed : list.grasps) {
+    const Grasp& g = listed.grasp;
+    ASSERT_EQ(g.hand_joints.size(), 1);
+    EXPECT_GE(g.hand_joints[0], hand.lower_contact()[0]);
+    EXPECT_LE(g.pregrasp_joints[0], hand.upper_contact()[0] + 1e-9);
+    EXPECT_GE(g.pregrasp_joints[0] - g.hand_joints[0], 0.0035) << "opens too little to get there";
+    std::set<std::uint32_t> fingers;
+    std::vector<PointContact> contacts;
+    for (const Contact& c : g.contacts) {
+      fingers.insert(c.finger);
+      contacts.push_back({c.position, -c.normal, c.friction});
+      const Vector3 p = on_pad(g, c.finger, c.position);
+      EXPECT_LE(std::abs(p.x()), 0.01 + 1e-9);
+      EXPECT_LE(std::abs(p.y()), 0.014 + 1e-9);
+      EXPECT_NEAR(p.z(), 0, 6e-4) << "a contact off its pad";
+    }
+    EXPECT_EQ(fingers.size(), 2U);
+    EXPECT_LE(g.contacts.size(), 8U);
+    EXPECT_TRUE(force_closure(contact_wrenches(contacts, 8, o.com, 10)));
+    EXPECT_GT(g.epsilon, 0);
+    EXPECT_GT(g.margin, 0);
+    // Both fingers push the axis closed, each with no more than it may.
+    EXPECT_LE(g.hand_effort[0], 0);
+    EXPECT_GE(g.hand_effort[0], -2.05 * hand.grip_force());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Objects, PinchedObjects, testing::Values("box", "can", "bottle"));
+
+TEST(Pinch, holds_nothing_wider_than_it_opens) {
+  const GraspList list = list_of(object("box", 2.0));
+  EXPECT_TRUE(list.grasps.empty());
+  EXPECT_GT(list.reasons[static_cast<std::size_t>(FrameReason::nothing_opposite)], list.frames * 9 / 10);
+}
+
+TEST(Pinch, list_goes_on_where_it_stopped) {
+  const ObjectModel o = object("box");
+  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*gripper()));
+  GraspLister lister(gripper(), workspaces, graspable(o), small_settings());
+  while (lister.advance(17)) {
+  }
+  const GraspList in_parts = lister.list(), whole = list_of(o);
+  ASSERT_EQ(in_parts.grasps.size(), whole.grasps.size());
+  for (std::size_t i = 0; i < whole.grasps.size(); ++i) {
+    EXPECT_EQ(in_parts.grasps[i].grasp.id, whole.grasps[i].grasp.id);
+    EXPECT_EQ(in_parts.grasps[i].grasp.quality, whole.grasps[i].grasp.quality);
+  }
+}
+
+TEST(Pinch, fingers_that_share_an_axis_carry_their_own_links) {
+  const HandKit& kit = *gripper();
+  ASSERT_EQ(kit.chains.size(), 2U);
+  for (const FingerChain& chain : kit.chains) {
+    EXPECT_EQ(chain.axes(), std::vector<int>{0});
+    EXPECT_EQ(chain.steps(), 1);
+  }
+  const Vector q = Vector::Constant(1, 0.03);
+  EXPECT_NEAR((kit.chains[0].tip(q) - kit.chains[1].tip(q)).y(), 0.06, 1e-12);
+}
+
+}  // namespace
+}  // namespace handsel::grasp_planner

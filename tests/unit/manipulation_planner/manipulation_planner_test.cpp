@@ -1,0 +1,304 @@
+#include "tests/unit/manipulation_planner/manipulation_rig.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+using rig::Rig;
+
+TEST(ManipulationPlanner, TheHandOpensOnItsWayWhichIsPlannedForItOpened) {
+  Rig rig;
+  rig.moves = true;
+  rig.opens_for = 20;
+  rig.opens_by = 0.1;
+  const double closed = RobotModel::part(rig.q, rig.robot->require_group("hand"))[0];
+  rig.start(ActionKind::pick);
+  rig.run_until("approach");
+  ASSERT_EQ(phase_text(rig.planner.status()), "approach");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  EXPECT_EQ(rig.execution.motion, MotionState::running);
+  EXPECT_EQ(rig.execution.hand, HandState::moving);
+  EXPECT_NEAR(RobotModel::part(rig.last_path.start, rig.robot->require_group("hand"))[0], closed + 0.1, 1e-9);
+  rig.opening = 200;
+  for (int i = 0; i < 150; ++i) rig.cycle();
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0) << "with the hand half open";
+  rig.run_until("reaching the object");
+  EXPECT_EQ(rig.execution.hand, HandState::idle);
+}
+
+TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_TRUE(rig.planner.status().holding);
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "lift"}));
+}
+
+TEST(ManipulationPlanner, AMotionThatIsHeldBackAgainAndAgainIsPlannedAnew) {
+  Rig rig;
+  rig.moves = true;
+  rig.start(ActionKind::pick);
+  rig.run_until("approach");
+  const auto blocked = [&] {
+    const auto& refusals = rig.planner.status().refusals;
+    return std::any_of(refusals.begin(), refusals.end(), [](const Refusal& r) { return r.reason.starts_with("the way is blocked"); });
+  };
+  const double along = rig.along;
+  for (int i = 0; i < 200 && !blocked(); ++i) {
+    rig.execution.causes = i % 20 < 4 ? 1U << static_cast<unsigned>(Cause::forecast_collision) : 0U;
+    rig.along = along;  // it starts and is held back, for ever
+    rig.cycle();
+  }
+  EXPECT_TRUE(blocked());
+}
+
+TEST(ManipulationPlanner, TheObjectRisesWhenLifted) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  double before = 0;
+  for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
+    if (phase_text(rig.planner.status()) == "grasp") before = rig.tool().translation().z();
+    rig.cycle();
+  }
+  EXPECT_GT(rig.tool().translation().z() - before, 0.1);
+}
+
+TEST(ManipulationPlanner, GivesWithinReachOfThePersonAndEngagesThemOnlyAtTheOffer) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.start(ActionKind::give);
+  bool engaged_before_offer = false, engaged_at_offer = false;
+  for (int i = 0; i < 2000 && (i < 5 || rig.planner.status().state == ActionState::running); ++i) {
+    const ActionStatus& status = rig.planner.status();
+    if (phase_text(status) == "carry") engaged_before_offer |= status.exchange_engaged;
+    if (phase_text(status) == "offer") engaged_at_offer |= status.exchange_engaged;
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_FALSE(engaged_before_offer);
+  EXPECT_TRUE(engaged_at_offer);
+  EXPECT_TRUE(within_reach(rig.people.people[0], rig.planner.status().exchange_point));
+  EXPECT_FALSE(rig.planner.status().holding);
+  EXPECT_EQ(rig.phases.back(), "retreat");
+  EXPECT_NE(std::find(rig.allowed.back().begin(), rig.allowed.back().end(), "anna"), rig.allowed.back().end());
+}
+
+TEST(ManipulationPlanner, AnOfferNobodyTakesFailsWithTheirName) {
+  Rig rig;
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.person_takes = false;
+  rig.start(ActionKind::give);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("anna did not take mug"), std::string::npos) << rig.planner.status().reason;
+  EXPECT_TRUE(rig.planner.status().holding);
+}
+
+TEST(ManipulationPlanner, AMotionThatIsStoppedIsPlannedAgain) {
+  Rig rig;
+  rig.stops = 2;
+  rig.start(ActionKind::go_to);
+  rig.run(30);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_EQ(rig.path_requests, 3);
+}
+
+TEST(ManipulationPlanner, FromAPersonItTouchesItDrawsBackFirst) {
+  Rig rig;
+  rig.touched = "anna";
+  rig.touching_posture = rig.q;
+  const Vector3 torso = rig.people.people[0].joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const double before = (rig.tool().translation() - torso).norm();
+  rig.start(ActionKind::go_to);
+  double farthest = before;
+  for (int i = 0; i < 500 && (i < 5 || rig.planner.status().state == ActionState::running); ++i) {
+    rig.cycle();
+    farthest = std::max(farthest, (rig.tool().translation() - torso).norm());
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"drawing back", "to rest"}));
+  EXPECT_EQ(rig.allowed.front(), std::vector<std::string>{"anna"});
+  EXPECT_TRUE(rig.allowed.back().empty());
+  EXPECT_GT(farthest, before + 0.03);
+}
+
+TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave) {
+  Rig rig;
+  rig.people.people.clear();
+  rig.scene.boxes.clear();
+  rig.scene.objects.clear();
+  rig.moves = true;
+  rig.q[rig.robot->require_group("arm").axes[0]] += 2.2;
+  rig.start(ActionKind::go_to);
+  const auto left = [&] { return rig.way.duration() - rig.along; };
+  const int turning = rig.robot->require_group("arm").axes[0];
+  const auto runs = [&](double duration) {
+    for (double t = 0; t < duration && (rig.way.size() == 0 || left() > 0.02); t += 0.02) {
+      const double at = rig.q[turning];
+      rig.cycle();
+      EXPECT_LT(rig.q[turning], at + 1e-6) << "the arm turned back";
+    }
+  };
+  runs(1.0);
+  EXPECT_EQ(rig.commands.size(), 1u);
+  EXPECT_GT(rig.planner.live_counts().kept, 1u);
+  EXPECT_EQ(rig.planner.live_counts().retimed, 0u);
+  const double before = left();
+  rig.share = 0.5;  // somebody has come near
+  runs(0.6);
+  const auto& counts = rig.planner.live_counts();
+  ASSERT_EQ(rig.commands.size(), 2u) << counts.looks << " looks, " << counts.refused << " refused";
+  EXPECT_GT(left() + 0.6, before + 0.15);
+  rig.share = 0.97;  // and has gone
+  const double slow = left();
+  EXPECT_GT(slow, 1.5) << "the test needs a longer way";
+  runs(0.6);
+  ASSERT_EQ(rig.commands.size(), 3u) << counts.looks << " looks, " << counts.refused << " refused";
+  EXPECT_LT(left() + 0.6, slow - 0.08);
+  EXPECT_EQ(rig.planner.live_counts().retimed, 2u);
+  for (const double jump : rig.jumps) EXPECT_LT(jump, 1e-9);
+  runs(20);
+  EXPECT_EQ(rig.commands.size(), 3u);
+  rig.run(1);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+}
+
+TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {
+  Rig rig;
+  rig.failing_paths = 1000;
+  rig.start(ActionKind::go_to);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_NE(rig.planner.status().reason.find("forearm"), std::string::npos);
+  EXPECT_FALSE(rig.planner.status().refusals.empty());
+}
+
+TEST(ManipulationPlanner, NoGraspsIsAReasonNotACrash) {
+  Rig rig;
+  rig.grasps_exist = false;
+  rig.fails_to_pick("three contacts");
+}
+
+TEST(ManipulationPlanner, ADeadPlannerIsAskedAgainAndNamedInTheEnd) {
+  Rig rig;
+  rig.grasp_planner_lives = false;
+  rig.fails_to_pick("grasp planner", ActionFailure::no_answer);
+}
+
+TEST(ManipulationPlanner, AnEmptyHandBacksOffAndSaysSo) {
+  Rig rig;
+  rig.grasp_holds = false;
+  rig.fails_to_pick("closed on nothing", ActionFailure::nothing_grasped);
+  EXPECT_EQ(rig.phases.back(), "backing off");
+}
+
+TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
+  Rig rig;
+  rig.object_comes = false;
+  rig.fails_to_pick("stayed behind", ActionFailure::left_behind);
+  EXPECT_FALSE(rig.planner.status().holding);
+  EXPECT_GT(std::count(rig.phases.begin(), rig.phases.end(), "lift"), 1) << "it is tried again";
+}
+
+TEST(ManipulationPlanner, WhatSlipsOutOfTheHandEndsTheActionWithThatReason) {
+  for (const bool to_a_person : {false, true}) {
+    Rig rig;
+    rig.start(ActionKind::pick);
+    rig.run(30);
+    ASSERT_TRUE(rig.planner.status().holding);
+    rig.person_takes = false;
+    rig.start(ActionKind::give);
+    rig.run_until("offer");
+    SceneObject& mug = rig.scene.objects[0];
+    mug.holder = to_a_person ? Holder::human : Holder::nobody;
+    mug.holder_id = to_a_person ? "anna" : "";
+    mug.T_world_object.translation().z() = 0.05;
+    for (int i = 0; i < 20; ++i) rig.cycle();
+    const ActionStatus& status = rig.planner.status();
+    if (to_a_person) {
+      EXPECT_EQ(status.state, ActionState::running) << status.reason;
+      continue;
+    }
+    EXPECT_EQ(status.state, ActionState::failed);
+    EXPECT_EQ(status.reason, "mug slipped out of the hand (offer)");
+    EXPECT_FALSE(status.holding);
+  }
+}
+
+TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoStopsTheArmAndTakesTheNextAction) {
+  Rig rig;
+  rig.moves = true;
+  rig.q[rig.robot->require_group("arm").axes[0]] += 1.0;
+  rig.start(ActionKind::go_to);
+  for (int i = 0; i < 50 && rig.commands.empty(); ++i) rig.cycle();
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  ASSERT_EQ(rig.commands.size(), 1u);
+  ActionGoal cancel;
+  cancel.id = rig.actions;
+  cancel.cancel = true;
+  rig.planner.on(cancel);
+  EXPECT_EQ(rig.planner.status().state, ActionState::cancelled);
+  rig.execution.mode = Mode::hold;
+  for (int i = 0; i < 20; ++i) rig.cycle();
+  ASSERT_EQ(rig.commands.size(), 2u) << "heard once is enough";
+  EXPECT_TRUE(rig.commands.back().axes.empty());
+  rig.execution.mode = Mode::normal;
+  rig.start(ActionKind::go_to);
+  rig.run(10);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded);
+}
+
+TEST(ManipulationPlanner, WithTheActionGoesWhatItHasAskedThePathPlannerFor) {
+  for (const bool replaced : {false, true}) {
+    Rig rig;
+    rig.path_planner_lives = false;
+    rig.start(ActionKind::go_to);
+    rig.run(0.5);
+    const RequestId asked = rig.last_path.id;
+    ASSERT_FALSE(rig.last_path.cancel);
+    if (replaced) {
+      rig.execution.mode = Mode::hold;  // so that the next one asks for nothing yet
+      rig.start(ActionKind::go_to);
+    } else {
+      ActionGoal cancel;
+      cancel.id = rig.actions;
+      cancel.cancel = true;
+      rig.planner.on(cancel);
+    }
+    rig.cycle();
+    EXPECT_TRUE(rig.last_path.cancel);
+    EXPECT_EQ(rig.last_path.id, asked);
+    rig.last_path = {};
+    rig.cycle();
+    EXPECT_FALSE(rig.last_path.cancel) << "once is enough";
+  }
+  Rig rig;
+  rig.start(ActionKind::go_to);
+  rig.run(10);
+  ASSERT_EQ(rig.planner.status().state, ActionState::succeeded);
+  rig.start(ActionKind::go_to);
+  rig.execution.mode = Mode::hold;
+  rig.cycle();
+  EXPECT_FALSE(rig.last_path.cancel) << "all was answered";
+}
+
+TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {
+  Rig rig;
+  Vector at_grasp = rig.q;  // as the rig answers
+  at_grasp[rig.robot->require_group("arm").axes[0]] += 0.2;
+  const Vector3 mug = rig.robot->link_pose(at_grasp, rig.robot->tool_link()).translation() - Vector3(0, 0, 0.3);
+  rig.scene.objects[0].T_world_object = make_pose(mug);
+  rig.grasped_as_it_stands = true;
+  rig.scene.boxes[0] = {"table", make_pose({mug.x(), mug.y(), mug.z() - 0.16}), {0.5, 0.5, 0.1}, true};
+  rig.start(ActionKind::pick);
+  rig.run(30);
+  rig.start(ActionKind::place);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_FALSE(rig.planner.status().holding);
+}
+
+}  // namespace
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,270 @@
+// Receiving: what is held out is taken, what is drawn back is not gone after.
+#include <numbers>
+
+#include "tests/unit/manipulation_planner/manipulation_rig.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+using rig::Rig;
+
+TEST(ManipulationPlanner, TakesWhatAPersonHoldsOutAndEngagesThemOnlyWhileTheyOffer) {
+  Rig rig;
+  rig.start(ActionKind::receive);
+  rig.run(1);
+  EXPECT_EQ(phase_text(rig.planner.status()), "watching for an offer");
+  EXPECT_FALSE(rig.planner.status().exchange_engaged);
+  rig.hold_out();
+  bool engaged = false;
+  for (int i = 0; i < 1000 && rig.planner.status().state == ActionState::running; ++i) {
+    rig.cycle();
+    if (phase_text(rig.planner.status()) == "reaching the object") engaged = rig.planner.status().exchange_engaged;
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_TRUE(engaged);
+  EXPECT_FALSE(rig.planner.status().exchange_engaged);
+  EXPECT_TRUE(rig.planner.status().holding);
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "retreat"}));
+}
+
+/// With the palm straight below the mug, or straight above it.
+Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
+  const Group &arm = rig.robot->require_group("arm"), &hand = rig.robot->require_group("hand");
+  Grasp grasp;
+  grasp.id = id;
+  grasp.epsilon = 0.1;
+  const Eigen::AngleAxisd tilt(from_below ? 0.0 : std::numbers::pi, Vector3::UnitY());
+  grasp.T_object_hand = make_pose(-0.28 * (tilt * Vector3::UnitZ()), Eigen::Quaterniond(tilt));
+  const auto joints = rig.robot->inverse(arm, rig.scene.objects[0].T_world_object * grasp.T_object_hand, rig.robot->rest_posture(), {});
+  EXPECT_TRUE(joints) << "the arm does not reach it from " << (from_below ? "below" : "above");
+  grasp.arm_joints = joints.value_or(RobotModel::part(rig.q, arm));
+  grasp.approach_joints = grasp.arm_joints;
+  grasp.approach_joints[6] += 0.05;
+  grasp.hand_joints = grasp.pregrasp_joints = RobotModel::part(rig.q, hand);
+  return grasp;
+}
+
+TEST(ManipulationPlanner, WhatIsTakenCanBePutDownWhereThatIsPossibleAtAll) {
+  for (const bool somewhere : {true, false}) {
+    Rig rig;
+    rig.hold_out();
+    rig.scene.objects[0].T_world_object = make_pose({0.7, -0.2, 1.0});
+    rig.grasped_as_it_stands = true;
+    rig.grasps = {upright_grasp(rig, 1, true), upright_grasp(rig, 2, false)};
+    const Vector &below = rig.grasps[0].approach_joints, &above = rig.grasps[1].approach_joints;
+    rig.q = RobotModel::with(rig.q, rig.robot->require_group("arm"), below + 0.35 * (above - below));
+    rig.scene.boxes[0] = {"table", make_pose({0.7, -0.5, 0.3}), {0.6, 0.6, 0.6}, somewhere};
+    rig.start(ActionKind::receive);
+    rig.run_until("reaching the object");
+    rig.cycle();
+    ASSERT_EQ(phase_text(rig.planner.status()), "reaching the object") << rig.planner.status().reason;
+    const bool from_above = rig.tool().translation().z() > rig.scene.objects[0].T_world_object.translation().z();
+    EXPECT_EQ(from_above, somewhere) << "the hand below it is nearer, and cannot put it on a table";
+    rig.run(30);
+    EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  }
+}
+
+TEST(ManipulationPlanner, WhatNobodyOffersIsNotTaken) {
+  Rig rig;
+  rig.scene.objects[0].holder = Holder::human;
+  rig.scene.objects[0].holder_id = "anna";
+  rig.draw_back();
+  rig.start(ActionKind::receive);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_EQ(rig.planner.status().reason, "anna does not offer mug within 30 s");
+  EXPECT_EQ(rig.phases, std::vector<std::string>{"making room"}) << "it moved toward them";
+}
+
+TEST(ManipulationPlanner, WhoWasAskedForItOffersItWithABentArmToo) {
+  Rig rig;
+  rig.hold_out();
+  rig.facts.facts.clear();
+  rig.start(ActionKind::receive);
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+}
+
+TEST(ManipulationPlanner, AnOfferWhoseMeasureTremblesDoesNotEnd) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  rig.facts.facts.clear();
+  Vector3 p_mug{1.145, 0, 1.1};  // 2.5 cm beyond what is kept before the body
+  rig.scene.objects[0].T_world_object.translation() = p_mug;
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  ASSERT_EQ(phase_text(rig.planner.status()), "approach");
+  for (int i = 0; phase_text(rig.planner.status()) == "approach" && i < 1000; ++i) {
+    rig.scene.objects[0].T_world_object.translation().x() = p_mug.x() + (i % 2 == 0 ? 0.02 : 0.03);
+    rig.cycle();
+    EXPECT_TRUE(rig.planner.status().exchange_engaged) << "in cycle " << i;
+  }
+  EXPECT_NE(phase_text(rig.planner.status()), "watching for an offer");
+  EXPECT_TRUE(rig.planner.status().refusals.empty()) << rig.planner.status().refusals.front().reason;
+}
+
+TEST(ManipulationPlanner, AnOfferThatIsShiftedIsFollowedWhileTheArmMoves) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  ASSERT_EQ(phase_text(rig.planner.status()), "approach");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  rig.scene.objects[0].T_world_object.translation().y() += 0.03;
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_GT(rig.led_over, 0) << "nobody asked for a way to where it is now";
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 0);
+}
+
+TEST(ManipulationPlanner, ForeseesWhenTheObjectChangesHands) {
+  Rig rig;
+  rig.moves = true;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  double at_first = 0, closed_at = 0, foreseen_at = 0;
+  for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
+    rig.cycle();
+    const double left = rig.planner.status().time_to_exchange, now = to_seconds(rig.now.time_since_epoch());
+    const std::string phase = phase_text(rig.planner.status());
+    const bool waits = phase == "watching for an offer" || phase == "making room";
+    EXPECT_FALSE(waits && std::isfinite(left)) << phase;
+    if (phase == "approach" && std::isfinite(left) && at_first == 0) {
+      at_first = left;
+      foreseen_at = now + left;
+    }
+    if (phase == "grasp" && closed_at == 0) closed_at = now;
+  }
+  ASSERT_GT(at_first, 0.5);
+  ASSERT_GT(closed_at, 0);
+  EXPECT_NEAR(foreseen_at, closed_at, 2.0);
+  EXPECT_FALSE(std::isfinite(rig.planner.status().time_to_exchange)) << "it is over";
+}
+
+TEST(ManipulationPlanner, WhatIsPutIntoTheOpenHandOnItsWayIsHeldAtOnce) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  Vector grasping = rig.q;
+  grasping[rig.robot->require_group("arm").axes.front()] += 0.2;  // as the rig answers
+  rig.T_tool_mug =
+      (rig.scene.T_world_base * rig.robot->link_pose(grasping, rig.robot->tool_link())).inverse() * rig.scene.objects[0].T_world_object;
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  rig.scene.objects[0].holder = Holder::robot;
+  rig.facts.facts.clear();
+  rig.run(60);
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+  EXPECT_TRUE(rig.planner.status().holding);
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0);
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "drawing back"), 0);
+}
+
+TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
+  Rig rig;
+  rig.moves = true;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  rig.draw_back();
+  rig.run_until("watching for an offer");
+  EXPECT_EQ(phase_text(rig.planner.status()), "watching for an offer");
+  ASSERT_FALSE(rig.planner.status().refusals.empty());
+  EXPECT_EQ(rig.planner.status().refusals.back().reason, "anna has drawn mug back");
+}
+
+TEST(ManipulationPlanner, WhoStepsTowardTheHandThatIsNearIsSteppedBackFrom) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.15;
+  rig.hold_out();
+  rig.scene.objects[0].T_world_object.translation() = rig.tool().translation() + Vector3(0.35, 0, 0);
+  rig.start(ActionKind::receive);
+  rig.run_until("approach");
+  const auto step = [&rig](double speed) {
+    for (BodyJoint& joint : rig.people.people.front().joints) joint.velocity = {-speed, 0, 0};
+    for (int i = 0; i < 5; ++i) rig.cycle();
+  };
+  step(0.2);
+  EXPECT_EQ(phase_text(rig.planner.status()), "approach") << "they only sway";
+  EXPECT_EQ(rig.phases, std::vector<std::string>{"approach"});
+  step(1.0);
+  step(0.0);
+  rig.run_until("reaching the object");
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "stepping back"), 1);
+  EXPECT_EQ(phase_text(rig.planner.status()), "reaching the object") << "it comes again: " << rig.planner.status().reason;
+}
+
+TEST(ManipulationPlanner, RoomIsMadeOnlyUntilThereIsAnOffer) {
+  Rig rig;
+  rig.moves = true;
+  rig.share = 0.02;
+  rig.scene.objects[0].holder = Holder::human;
+  rig.scene.objects[0].holder_id = "anna";
+  rig.draw_back();
+  rig.start(ActionKind::receive);
+  rig.run_until("making room");
+  ASSERT_EQ(phase_text(rig.planner.status()), "making room");
+  for (int i = 0; i < 5; ++i) rig.cycle();
+  rig.hold_out();
+  for (int i = 0; i < 50 && phase_text(rig.planner.status()) == "making room"; ++i) rig.cycle();
+  EXPECT_NE(phase_text(rig.planner.status()), "making room") << "it goes all the way though she waits";
+}
+
+TEST(ManipulationPlanner, WhereFingersAreInTheWayOfTheHandItDoesNotGo) {
+  Rig rig;
+  rig.hold_out();
+  Person& anna = rig.people.people.front();
+  rig.start(ActionKind::receive);
+  for (int i = 0; i < 3000 && rig.planner.status().state != ActionState::failed; ++i) {
+    Vector at = rig.q;
+    at[rig.robot->require_group("arm").axes.front()] += 0.2;  // as the rig answers
+    const Vector3 p = rig.robot->link_pose(at, rig.robot->tool_link()).translation();
+    for (const char* joint : {"r_hand", "r_wrist"}) anna.joints[static_cast<std::size_t>(body_joint_index(joint))].position = p;
+    rig.cycle();
+  }
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_EQ(rig.planner.status().reason, "the hand would come too near to the fingers of anna");
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "approach"), 0);
+}
+
+TEST(ManipulationPlanner, FromAnOfferThatIsMovedAwayItBacksOffWithTheHandOpened) {
+  Rig rig;
+  rig.moves = true;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run_until("reaching the object");
+  ASSERT_EQ(phase_text(rig.planner.status()), "reaching the object");
+  for (int i = 0; i < 10; ++i) rig.cycle();
+  rig.draw_back();
+  rig.run_until("watching for an offer");
+  EXPECT_EQ(phase_text(rig.planner.status()), "watching for an offer");
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 1);
+  EXPECT_FALSE(rig.planner.status().exchange_engaged);
+  EXPECT_FALSE(rig.planner.status().holding);
+  ASSERT_FALSE(rig.planner.status().refusals.empty());
+  EXPECT_EQ(rig.planner.status().refusals.back().reason, "mug was moved away");
+}
+
+TEST(ManipulationPlanner, WhoDoesNotLetGoKeepsIt) {
+  Rig rig;
+  rig.object_comes = false;
+  rig.hold_out();
+  rig.start(ActionKind::receive);
+  rig.run(200);
+  EXPECT_EQ(rig.planner.status().state, ActionState::failed);
+  EXPECT_EQ(rig.planner.status().reason, "anna does not let go of mug");
+  EXPECT_EQ(rig.phases.back(), "backing off");
+  EXPECT_FALSE(rig.planner.status().holding);
+}
+
+}  // namespace
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,380 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "sim/physics/object_surface.hpp"
+#include "tests/unit/sim/sim_fixture.hpp"
+
+namespace handsel::sim {
+namespace {
+
+using namespace test;
+
+std::filesystem::path recording_folder() {
+  const char* data = std::getenv("HANDSEL_DATA");
+  return data == nullptr ? std::filesystem::path() : std::filesystem::path(data) / "motion/kth_handover/handover_sample";
+}
+
+PersonView offer(const Vector3& where) {
+  PersonView view;
+  view.object = library()("mug");
+  view.T_world_object = make_pose(where);
+  view.robot_hand = where + Vector3(-0.2, 0, 0);
+  view.held_by_robot = true;
+  return view;
+}
+
+int joint(const char* name) { return body_joint_index(name); }
+
+TEST(SimPerson, ReachesSmoothlyAndItsHandEndsAtTheMug) {
+  PersonSettings settings;
+  settings.id = "anna";
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  const PersonView view = offer({0.95, 0.05, 1.05});
+  double fastest = 0, clock = 0;
+  Vector3 before = person.hand().T_world_body.translation();
+  while (person.phase() != PersonPhase::pulling && clock < 5) {
+    person.step(0.001, view);
+    clock += 0.001;
+    const Vector3 hand = person.hand().T_world_body.translation();
+    fastest = std::max(fastest, (hand - before).norm() / 0.001);
+    before = hand;
+    for (const auto& [a, b] : {std::pair{"r_shoulder", "r_elbow"}, {"r_elbow", "r_wrist"}}) {
+      const double length = (person.body().joints[joint(a)].position - person.body().joints[joint(b)].position).norm();
+      ASSERT_GT(length, 0.15);
+      ASSERT_LT(length, 0.40);
+    }
+  }
+  EXPECT_EQ(person.phase(), PersonPhase::pulling);
+  EXPECT_GT(clock, settings.reaction + 0.8) << "not before the reaction and the reach";
+  EXPECT_LT(clock, settings.reaction + 1.2 + 0.5);
+  EXPECT_GT(fastest, 0.3);
+  EXPECT_LT(fastest, 2.5);
+  const double gap = surface_distance(*view.object, view.T_world_object.inverse() * person.hand().T_world_body.translation());
+  EXPECT_NEAR(gap, PersonModel::kPalm, 0.013);
+}
+
+TEST(SimPerson, NoJointEverJumps) {
+  for (const bool recorded : {false, true}) {
+    if (recorded && recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
+    PersonSettings settings;
+    settings.feet = Vector3(1.5, 0, 0);
+    settings.yaw = M_PI;
+    if (recorded) settings.recording = std::make_shared<const Recording>(load_recording(recording_folder()));
+    settings.kind = recorded ? PersonKind::recording : PersonKind::taker;
+    PersonModel person(settings);
+    PersonView view = offer({0.95, -0.05, 1.05});
+    for (int i = 0; i < 12000; ++i) {
+      view.held_by_robot = i < 6000;  // the hold is lost: the person ends with the hand back at rest, or with the mug
+      person.step(0.001, view);
+      if (i == 0) continue;
+      for (const BodyJoint& joint : person.body().joints) {
+        ASSERT_LT(joint.velocity.norm(), 3.0) << joint.name << " at step " << i << " " << name(person.phase())
+                                              << (recorded ? " recorded" : "");
+      }
+    }
+  }
+}
+
+TEST(SimPerson, DoesNotReachForWhatMovesOrIsOutOfReach) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  PersonView moving = offer({0.95, 0.05, 1.05});
+  moving.object_velocity = Vector3(0.1, 0, 0);
+  for (int i = 0; i < 2000; ++i) person.step(0.001, moving);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+  for (int i = 0; i < 2000; ++i) person.step(0.001, offer({0.3, 0, 1.05}));
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+  person.refuse();
+  for (int i = 0; i < 2000; ++i) person.step(0.001, offer({0.95, 0.05, 1.05}));
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+PersonSettings giver() {
+  PersonSettings settings;
+  settings.id = "anna";
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.kind = PersonKind::giver;
+  return settings;
+}
+
+/// What a giver sees while it holds the mug: it goes with the hand.
+PersonView holding(const PersonModel& person, const Vector3& robot_hand, bool robot_holds_it) {
+  PersonView view = offer(person.hand().T_world_body * Vector3(0.08, 0, 0));
+  view.robot_hand = robot_hand;
+  view.held_by_robot = robot_holds_it;
+  return view;
+}
+
+void live(PersonModel& person, double seconds, const Vector3& robot_hand, bool robot_holds_it = false) {
+  for (int i = 0; i < static_cast<int>(seconds * 1000); ++i) person.step(0.001, holding(person, robot_hand, robot_holds_it));
+}
+
+TEST(SimPerson, WhoGivesHoldsItOutTowardTheRobotAndLetsGoOnceTheRobotHasIt) {
+  PersonModel person(giver());
+  const Vector3 robot_hand(0.4, 0.3, 1.0);
+  const double before = (person.hand().T_world_body.translation() - robot_hand).norm();
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 3, robot_hand);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+  EXPECT_LT((person.hand().T_world_body.translation() - robot_hand).norm(), before - 0.15);
+  live(person, 0.4, robot_hand, true);
+  EXPECT_TRUE(person.wants_grip()) << "not at the first touch";
+  live(person, 0.3, robot_hand, true);
+  EXPECT_FALSE(person.wants_grip());
+  live(person, 2, robot_hand, true);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimPerson, WhoGivesNeverHoldsItIntoTheRobotsHand) {
+  PersonModel person(giver());
+  live(person, 3, {1.0, -0.2, 1.2});
+  EXPECT_GT((person.hand().T_world_body.translation() - Vector3(1.0, -0.2, 1.2)).norm(), 0.3);
+}
+
+TEST(SimPerson, WhoHoldsSomethingKeepsItAboveTheTableTheySitAt) {
+  PersonSettings settings = giver();
+  settings.manner.seated = true;
+  PersonModel free(settings);
+  const Vector3 where = free.hand().T_world_body.translation();
+  EXPECT_LT(where.z(), 0.8);
+  const Furniture table{make_pose({where.x() - 0.2, where.y(), 0.36}), {0.5, 0.5, 0.72}},
+      far{make_pose({where.x() - 5, 0, 0.36}), {1, 1, 2}}, shelf{make_pose({where.x(), where.y(), 1.6}), {0.5, 0.5, 0.1}};
+  settings.furniture = {far, shelf};
+  PersonModel same(settings);
+  EXPECT_EQ(same.hand().T_world_body.translation(), where);
+  settings.furniture.push_back(table);
+  PersonModel person(settings);
+  Vector3 before = person.hand().T_world_body.translation();
+  for (int i = 0; i < 20000; ++i) {
+    person.step(0.001, holding(person, {0.3, 0.4, 1.0}, false));
+    const Vector3 hand = person.hand().T_world_body.translation();
+    ASSERT_GT(hand.z(), 0.72 + 0.1) << i;
+    ASSERT_LT((hand - before).norm(), 0.004) << i;
+    before = hand;
+  }
+}
+
+TEST(SimPerson, WhoIsIgnoredComesNearerAndHoldsItOutAnewTwice) {
+  PersonModel person(giver());
+  const double before = person.body().joints[joint("torso")].position.x();
+  live(person, 40, {0.3, 0, 1.0});
+  EXPECT_NEAR(before - person.body().joints[joint("torso")].position.x(), 0.24, 0.03);
+  EXPECT_EQ(person.phase(), PersonPhase::offering);
+}
+
+/// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most 10 m/s^2 (StopProofSettings::people).
+TEST(SimPerson, AStepNearerIsNoFasterThanPeopleStep) {
+  PersonModel person(giver());
+  Vector3 before = Vector3::Zero();
+  double fastest = 0, most = 0;
+  for (int i = 0; i < 40000; ++i) {
+    person.step(0.001, holding(person, {0.3, 0, 1.0}, false));
+    const Vector3 velocity = person.body().joints[joint("torso")].velocity;
+    if (i > 1) most = std::max(most, (velocity - before).norm() / 0.001);
+    fastest = std::max(fastest, velocity.norm());
+    before = velocity;
+  }
+  EXPECT_LT(most, 4.5);
+  EXPECT_GT(fastest, 0.3) << "no step was made";
+}
+
+TEST(SimPerson, WhoChangesTheirMindDrawsItBackOnceAndOffersAgain) {
+  PersonSettings settings = giver();
+  settings.manner.withdraws = true;
+  PersonModel person(settings);
+  live(person, 4, {0.4, 0, 1.0});
+  ASSERT_EQ(person.phase(), PersonPhase::offering);
+  const Vector3 near = person.hand().T_world_body.translation() + Vector3(-0.25, 0, 0);
+  live(person, 0.5, near);
+  EXPECT_EQ(person.phase(), PersonPhase::keeping);
+  EXPECT_TRUE(person.wants_grip());
+  live(person, 6, near);
+  EXPECT_EQ(person.phase(), PersonPhase::offering) << "and now stays";
+}
+
+TEST(SimPerson, WhoHesitatesTakesItLaterAndWhoIsEarlyTakesItWhileItMoves) {
+  const auto taken_after = [](const Manner& manner, double speed) {
+    PersonSettings settings;
+    settings.feet = Vector3(1.5, 0, 0);
+    settings.yaw = M_PI;
+    settings.manner = manner;
+    PersonModel person(settings);
+    PersonView view = offer({0.95, 0.05, 1.05});
+    view.object_velocity = Vector3(speed, 0, 0);
+    double clock = 0;
+    for (; person.phase() != PersonPhase::pulling && clock < 8; clock += 0.001) person.step(0.001, view);
+    return clock;
+  };
+  Manner hesitant, early;
+  hesitant.hesitation = 1.0;
+  early.early = true;
+  const double usual = taken_after({}, 0);
+  EXPECT_LT(usual, 2.5);
+  EXPECT_GT(taken_after(hesitant, 0), usual + 0.9);
+  EXPECT_GE(taken_after({}, 0.2), 8) << "who is not early waits for it to stand still";
+  EXPECT_LT(taken_after(early, 0.2), 2.5);
+}
+
+TEST(SimPerson, LooksAtWhatTheRobotHolds) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  PersonModel person(settings);
+  const PersonView view = offer({0.3, 0.2, 1.05});
+  for (int i = 0; i < 1500; ++i) person.step(0.001, view);
+  const Person& body = person.body();
+  const Vector3 want = (view.T_world_object.translation() - body.gaze_origin).normalized();
+  EXPECT_GT(body.gaze_direction.dot(want), 0.98);
+}
+
+TEST(SimPerson, WalksInFromBehindItsPlace) {
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.approach_from = 1.2;
+  PersonModel person(settings);
+  EXPECT_NEAR(person.body().joints[joint("waist")].position.x(), 2.7, 0.05);
+  for (int i = 0; i < 2500; ++i) person.step(0.001, PersonView{});
+  EXPECT_NEAR(person.body().joints[joint("waist")].position.x(), 1.5, 0.05);
+  EXPECT_EQ(person.phase(), PersonPhase::watching);
+}
+
+TEST(SimRecording, TheTakerOfTheKthSampleFacesForwardAndReachesWithTheRightHand) {
+  if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  const Recording recording = load_recording(recording_folder());
+  EXPECT_EQ(recording.frames.size(), 801u);
+  EXPECT_EQ(recording.taking, Side::right);
+  EXPECT_NEAR(recording.contact, 3.05, 0.25);
+  const BodyPoints& first = recording.frames.front();
+  EXPECT_GT(first[joint("l_shoulder")].y(), first[joint("r_shoulder")].y()) << "left is left of someone who faces +x";
+  EXPECT_LT(std::abs(first[joint("l_shoulder")].x() - first[joint("r_shoulder")].x()), 0.02);
+  EXPECT_NEAR(first[joint("waist")].head<2>().norm(), 0, 1e-9);
+  EXPECT_GT(first[joint("head")].z(), 1.3);
+  BodyPoints reaching;
+  recording.sample(recording.contact, reaching);
+  EXPECT_GT(reaching[joint("r_hand")].x(), 0.45);
+}
+
+TEST(SimRecording, TheHandIsWarpedByAtMostTenCentimetresInTheLastHalfSecondAndTheFeetMoveLessThanThirty) {
+  if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
+  PersonSettings settings;
+  settings.feet = Vector3(1.5, 0, 0);
+  settings.yaw = M_PI;
+  settings.kind = PersonKind::recording;
+  settings.recording = std::make_shared<const Recording>(load_recording(recording_folder()));
+  const auto recorded_at = [&](double t, const char* name) {
+    BodyPoints points;
+    settings.recording->sample(t, points);
+    return Vector3(settings.feet + Eigen::AngleAxisd(M_PI, Vector3::UnitZ()) * points[joint(name)]);
+  };
+  const double contact = settings.recording->contact;
+  for (const Vector3& off : {Vector3(0.02, 0.03, -0.04), Vector3(0.15, -0.1, 0.0), Vector3(0.2, 0.2, 0.25), Vector3(0.65, 0, 0)}) {
+    PersonModel person(settings);
+    const PersonView view = offer(recorded_at(contact, "r_hand") + Vector3(-0.07, 0, 0) + off);
+    double clock = 0, t = 0, warp = 0, step = 0;
+    while (clock < 6 && person.phase() != PersonPhase::closing) {
+      person.step(0.001, view);
+      clock += 0.001;
+      if (person.phase() != PersonPhase::reaching) continue;
+      t = std::min(t + 0.001, contact);
+      const Vector3 moved = person.body().joints[joint("waist")].position - recorded_at(t, "waist");
+      const double bent = (person.hand().T_world_body.translation() - recorded_at(t, "r_hand") - moved).norm();
+      if (t < contact - settings.warp_time - 0.002) {
+        ASSERT_LT(bent, 0.005) << "at " << t;
+      }
+      warp = std::max(warp, bent);
+      step = std::max(step, moved.norm());
+    }
+    EXPECT_LT(warp, settings.max_warp + 0.005);
+    EXPECT_LT(step, 0.305);
+    const bool within = off.head<2>().norm() < 0.3 && std::abs(off.z()) < 0.1;
+    EXPECT_EQ(person.phase() == PersonPhase::closing, within) << off.transpose();
+  }
+}
+
+TEST(SimWorld, WhoFetchesAMugTakesItFromWhereItStandsAndGoes) {
+  config::Scenario scenario = mug_in_hand();
+  config::PersonDescription* anna = add_person(scenario, config::FETCHER);
+  anna->set_object("mug");
+  anna->set_fetches_at(1.0);
+  // The arm is raised out of the way.
+  (*scenario.mutable_start())["arm_a2"] = 0.2;
+  SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
+  GroundTruth truth;
+  const Vector3 before = world.T_world_object("mug").translation();
+  while (world.time() < 0.95) world.step();
+  EXPECT_LT((world.T_world_object("mug").translation() - before).norm(), 0.02) << "not yet";
+  while (world.time() < 9) world.step();
+  world.truth(truth);
+  EXPECT_EQ(truth.carrier, "human");
+  EXPECT_FALSE(truth.dropped);
+  EXPECT_EQ(world.person_phase(0), PersonPhase::leaving);
+  EXPECT_GT((world.T_world_object("mug").translation() - before).norm(), 0.5);
+}
+
+TEST(SimWorld, WhoFetchesWhatIsNotThereIsRefused) {
+  config::Scenario scenario = mug_in_hand();
+  add_person(scenario, config::FETCHER)->set_object("vase");
+  try {
+    SimWorld(jido(), library(), scenario, SimSettings{}, 1);
+    ADD_FAILURE() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("person anna fetches \"vase\", which is no object of the scenario"), std::string::npos)
+        << error.what();
+  }
+}
+
+class BadRecording : public ::testing::Test {
+ protected:
+  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / ("recording_" + std::to_string(getpid()));
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    for (const char* part : {"hip", "chest", "neck", "head", "LUArm", "RUArm", "LFArm", "RFArm", "LHand", "RHand"}) {
+      const std::string row =
+          std::string("0,") + (part[0] == 'L' ? "0.2" : "-0.2") + (part == std::string("head") ? ",1.65" : ",1") + ",0,0,0,1\n";
+      write(part, "x,y,z,q0,q1,q2,q3\n" + row + row);
+    }
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void write(const std::string& part, const std::string& text) { std::ofstream(folder_ / ("taker_" + part + "_pose_saved.csv")) << text; }
+  std::string sentence() {
+    try {
+      load_recording(folder_);
+    } catch (const std::runtime_error& error) {
+      const std::string text = error.what();
+      return text.substr(text.rfind('/') == std::string::npos ? 0 : text.rfind('/') + 1);
+    }
+    return "accepted";
+  }
+};
+
+TEST_F(BadRecording, NamesFileLineAndFault) {
+  EXPECT_EQ(sentence(), "accepted");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n0,0,oops,0,0,0,1\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:3: column 3 is not a finite number");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,nan,0,0,0,1\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: column 3 is not a finite number");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,2\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: the quaternion's length is 2.000000, must be 1");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: expected 7 numbers separated by commas");
+  write("neck", "a,b\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:1: the first line must be x,y,z,q0,q1,q2,q3");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n");
+  EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:2: needs at least two rows");
+  write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n0,0,1,0,0,0,1\n0,0,1,0,0,0,1\n");
+  EXPECT_NE(sentence().find("rows, they must agree"), std::string::npos);
+  std::filesystem::remove(folder_ / "taker_neck_pose_saved.csv");
+  EXPECT_NE(sentence().find("cannot be opened"), std::string::npos);
+}
+
+TEST(SimRecording, AMissingFolderIsMissing) { EXPECT_THROW(load_recording("no/such/folder"), MissingError); }
+
+}  // namespace
+}  // namespace handsel::sim

@@ -1,0 +1,255 @@
+#include "common/trajectory/path/smooth.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <random>
+
+#include "common/trajectory/edit.hpp"
+#include "common/trajectory/limits_check.hpp"
+
+namespace handsel {
+namespace {
+
+using Eigen::VectorXd;
+
+VectorXd point(std::initializer_list<double> x) {
+  VectorXd v(static_cast<Eigen::Index>(x.size()));
+  std::copy(x.begin(), x.end(), v.begin());
+  return v;
+}
+
+const KinematicLimits kFigure18{VectorXd::Constant(2, 0.1), VectorXd::Constant(2, 0.3), VectorXd::Constant(2, 0.9)};
+
+TEST(Smooth, StraightMetreOfFigure18) {
+  EXPECT_NEAR(straight_motion(point({0, 0}), point({1, 0}), kFigure18).duration(), 10.0 + 2.0 / 3.0, 1e-12);
+}
+
+/// What a set of methods makes of random corners of 7 axes: every one checked, figures as docs/trajectory.md gives them.
+double smooth_corners(int corners, const SmoothSettings& settings, const char* title) {
+  const std::uint64_t seed = 41;
+  std::mt19937_64 random(seed);
+  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  std::map<std::string, int> count;
+  std::map<std::string, double> saved;
+  double total = 0, stops = 0;
+  for (int k = 0; k < corners; ++k) {
+    const int n = 7;
+    KinematicLimits l{VectorXd(n), VectorXd(n), VectorXd(n)};
+    for (int i = 0; i < n; ++i) l.velocity[i] = draw(0.3, 2), l.acceleration[i] = draw(0.6, 4), l.jerk[i] = draw(2, 16);
+    std::vector<VectorXd> nodes(3, VectorXd(n));
+    for (VectorXd& q : nodes) {
+      for (double& x : q) x = draw(-2, 2);
+    }
+    const SmoothResult r = smooth(nodes, l, settings);
+    const auto fail = [&](const std::string& why) { ADD_FAILURE() << why << ", seed " << seed << " case " << k; };
+    if (!r.ok()) return fail(r.reason), 0;
+    const CornerReport& corner = r.corners[0];
+    const MotionState3 end = final_state(r.trajectory);
+    const double allowed = corner.method == CornerMethod::overlap || corner.method == CornerMethod::stop ? 1e-9 : 0.1 + 1e-9;
+    if (const std::string why = why_not_within(r.trajectory, l, allowed); !why.empty()) return fail(why), 0;
+    if (limit_share(r.trajectory, l) > 1 + corner.excess + 1e-9) return fail("more excess than reported"), 0;
+    if (r.trajectory.duration() > r.duration_ptp + 1e-9) return fail("longer than stopping"), 0;
+    if (std::abs(r.trajectory.duration() - r.duration_ptp + corner.saved) > 1e-9) return fail("the saving is not what is reported"), 0;
+    if ((end.position - nodes[2]).lpNorm<Eigen::Infinity>() > 1e-9 || end.velocity.norm() + end.acceleration.norm() > 1e-9) {
+      return fail("it does not end at rest at the last node"), 0;
+    }
+    ++count[name(corner.method)];
+    saved[name(corner.method)] += corner.saved;
+    total += corner.saved;
+    stops += r.duration_ptp;
+  }
+  printf("%s, %d corners:\n", title, corners);
+  for (const auto& [method, times] : count) {
+    printf("  %-14s %5.1f %% of corners, mean saving %.3f s, %4.1f %% of all time\n", method.c_str(), 100.0 * times / corners,
+           saved[method] / times, 100 * saved[method] / stops);
+  }
+  printf("  time saved: %.1f %%\n", 100 * total / stops);
+  return total / stops;
+}
+
+TEST(Smooth, CornersKeepTheirLimitsAndNeverCostTime) {
+  const int corners = 10000;
+  const double all = smooth_corners(corners, {}, "best of all");
+  SmoothSettings three, stretched, overlap;
+  three.stretching = three.overlapping = false;
+  stretched.three_segments = stretched.overlapping = false;
+  overlap.three_segments = overlap.stretching = false;
+  EXPECT_GE(all, smooth_corners(corners, three, "three segments alone"));
+  EXPECT_GE(all, smooth_corners(corners, stretched, "stretched alone"));
+  EXPECT_GE(all, smooth_corners(corners, overlap, "overlap alone"));
+  EXPECT_GT(all, 0.1);
+}
+
+TEST(Smooth, ThePredicateIsOfferedExactlyWhatIsThenRun) {
+  std::mt19937_64 random(42);
+  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  std::map<std::string, int> seen;
+  for (int k = 0; k < 300; ++k) {
+    const KinematicLimits l{VectorXd::Constant(3, draw(0.3, 2)), VectorXd::Constant(3, draw(0.6, 4)), VectorXd::Constant(3, draw(2, 16))};
+    std::vector<VectorXd> nodes(3, VectorXd(3));
+    for (VectorXd& q : nodes) {
+      for (double& x : q) x = draw(-1, 1);
+    }
+    Trajectory offered;
+    int refusals = k % 3;
+    const SmoothResult r = smooth(nodes, l, {}, [&](const Trajectory& corner) {
+      offered = corner;
+      return refusals-- <= 0;
+    });
+    const CornerReport& c = r.corners[0];
+    ++seen[name(c.method)];
+    if (c.method == CornerMethod::stop) continue;
+    // Where the corner begins: the instant at which the whole is in the state the corner starts from.
+    const double leg = straight_motion(nodes[0], nodes[1], l).duration();
+    double begin = -1;
+    for (double t = 0; t <= leg && begin < 0; t += leg / 4000) {
+      if ((r.trajectory.at(t).position - offered.at(0).position).norm() < 2e-3) begin = t;
+    }
+    ASSERT_GE(begin, 0);
+    for (int i = 0; i <= 40; ++i) {
+      const double t = offered.duration() * i / 40;
+      ASSERT_LT((r.trajectory.at(begin + t).position - offered.at(t).position).norm(), 1e-2) << name(c.method) << " case " << k;
+    }
+  }
+  EXPECT_GT(seen["overlap"], 20);
+  EXPECT_GT(seen["three_segment"] + seen["stretched"], 20);
+}
+
+TEST(Smooth, TauZeroStopsAtTheNode) {
+  const std::vector<VectorXd> nodes{point({0, 0}), point({1, 0}), point({0.4, 0.8})};
+  SmoothSettings settings;
+  settings.tau = 0;
+  const SmoothResult stop = smooth(nodes, kFigure18, settings);
+  ASSERT_TRUE(stop.ok());
+  EXPECT_EQ(stop.corners[0].method, CornerMethod::stop);
+  EXPECT_NE(stop.corners[0].reason, "");
+  EXPECT_NEAR(stop.trajectory.duration(), stop.duration_ptp, 1e-12);
+  settings.tau = 1.0;
+  EXPECT_LT(smooth(nodes, kFigure18, settings).trajectory.duration(), stop.duration_ptp - 0.1);
+}
+
+/// The lowest share that holds anywhere between two places of a leg.
+double share_between(const SpeedZones& zones, double from, double to) {
+  double least = 1, begin = 0;
+  for (const SpeedZone& zone : zones) {
+    if (begin <= to && from <= zone.end) least = std::min(least, zone.share);
+    begin = zone.end;
+  }
+  return least;
+}
+
+/// Where on the straight way from a to b, and how far off it.
+std::pair<double, double> place_on(const VectorXd& a, const VectorXd& b, const VectorXd& q) {
+  const double s = std::clamp((q - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return {s, (q - a - s * (b - a)).norm()};
+}
+
+TEST(Smooth, SpeedFollowsTheZonesOfTheLegsExactly) {
+  const std::uint64_t seed = 43;
+  std::mt19937_64 random(seed);
+  const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
+  constexpr int kLines = 300, kAxes = 7;
+  const KinematicLimits limits{VectorXd::Constant(kAxes, 0.5), VectorXd::Constant(kAxes, 1), VectorXd::Constant(kAxes, 3)};
+  double zoned = 0, at_lowest = 0, unhindered = 0;
+  int smoothed = 0, stops = 0;
+  for (int line = 0; line < kLines; ++line) {
+    std::vector<VectorXd> nodes(static_cast<std::size_t>(2 + random() % 4), VectorXd(kAxes));
+    for (VectorXd& q : nodes)
+      for (double& x : q) x = draw(-1.2, 1.2);
+    std::vector<SpeedZones> speeds(nodes.size() - 1);
+    double lowest = 1;
+    for (SpeedZones& leg : speeds) {
+      for (double end = draw(0.02, 0.4); end < 1; end += draw(0.02, 0.4)) leg.push_back({end, draw(0.2, 1)});
+      leg.push_back({1, draw(0.2, 1)});
+      lowest = std::min(lowest, share_between(leg, 0, 1));
+    }
+    const auto where = [&] { return "seed " + std::to_string(seed) + " line " + std::to_string(line); };
+    const SmoothResult r = smooth(
+        nodes, limits, {},
+        [&](const Trajectory& corner) {
+          std::size_t node = 0;
+          double least = 1e-7;
+          const VectorXd left = corner.at(0).position, joined = corner.at(corner.duration()).position;
+          for (std::size_t k = 1; k + 1 < nodes.size(); ++k)
+            if (const double d = place_on(nodes[k - 1], nodes[k], left).second + place_on(nodes[k], nodes[k + 1], joined).second;
+                d < least) {
+              node = k;
+              least = d;
+            }
+          if (node == 0) return ADD_FAILURE() << where() << ": a corner of no node", true;
+          const double share = std::min(share_between(speeds[node - 1], place_on(nodes[node - 1], nodes[node], left).first + 1e-9, 1),
+                                        share_between(speeds[node], 0, place_on(nodes[node], nodes[node + 1], joined).first - 1e-9));
+          for (const AxisTrajectory& axis : corner.axes) EXPECT_LE(extremes(axis).velocity, 0.5 * share * (1.1 + 1e-9)) << where();
+          return true;
+        },
+        speeds);
+    ASSERT_TRUE(r.ok()) << r.reason;
+    for (const CornerReport& corner : r.corners) ++(corner.method == CornerMethod::stop ? stops : smoothed);
+    EXPECT_EQ(why_not_within(r.trajectory, limits, 0.1 + 1e-9), "") << where();
+    EXPECT_LE(r.trajectory.duration(), r.duration_ptp + 1e-9) << where();
+    EXPECT_LT((final_state(r.trajectory).position - nodes.back()).lpNorm<Eigen::Infinity>(), 1e-9) << where();
+    double sum = 0;
+    for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
+      sum += r.legs[k];
+      const Trajectory leg = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
+      EXPECT_EQ(why_not_within(leg, limits, 1e-9), "") << where();
+      EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits, {{1, share_between(speeds[k], 0, 1)}}).duration() + 1e-9);
+      EXPECT_GE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits).duration() - 1e-9);
+      for (int i = 0; i <= 500; ++i) {
+        const MotionState3 state = leg.at(leg.duration() * i / 500);
+        const auto [s, off] = place_on(nodes[k], nodes[k + 1], state.position);
+        ASSERT_LT(off, 1e-9) << where();
+        const double share = std::max(share_between(speeds[k], s - 1e-7, s - 1e-7), share_between(speeds[k], s + 1e-7, s + 1e-7));
+        ASSERT_LE(state.velocity.cwiseAbs().maxCoeff(), 0.5 * share + 1e-7) << where() << " leg " << k << " at " << s;
+      }
+    }
+    EXPECT_NEAR(sum, r.duration_ptp, 1e-9);
+    zoned += r.trajectory.duration();
+    at_lowest += smooth(nodes, {lowest * limits.velocity, limits.acceleration, limits.jerk}).trajectory.duration();
+    unhindered += smooth(nodes, limits).trajectory.duration();
+  }
+  std::printf("seed %llu: %d lines, %d corners, %d keep their stop: %.0f s; %.0f s at the lowest share all along, %.0f s unhindered\n",
+              static_cast<unsigned long long>(seed), kLines, smoothed + stops, stops, zoned, at_lowest, unhindered);
+  EXPECT_LT(zoned, 0.9 * at_lowest);
+  EXPECT_LT(stops, smoothed / 20);
+}
+
+TEST(Smooth, OneShareEverywhereIsThatLimit) {
+  const std::vector<VectorXd> nodes = {point({0, 0}), point({1, 0}), point({1, 1})};
+  KinematicLimits half = kFigure18;
+  half.velocity *= 0.5;
+  const SpeedZones zones = {{0.3, 0.5}, {0.6, 0.5}, {1, 0.5}};
+  EXPECT_NEAR(smooth(nodes, kFigure18, {}, {}, {zones, zones}).trajectory.duration(), smooth(nodes, half).trajectory.duration(), 1e-9);
+  EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones}).reason, "");
+  EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones, {{1, 0}}}).reason, "");
+}
+
+TEST(Smooth, AForbiddenCornerKeepsItsStopAndSaysWhy) {
+  const std::vector<VectorXd> nodes{point({0, 0}), point({1, 0}), point({1, 1}), point({2, 1})};
+  int asked = 0;
+  const SmoothResult r = smooth(nodes, kFigure18, {}, [&asked](const Trajectory& corner) {
+    ++asked;
+    return corner.axes[0].start.position > 0.95;
+  });
+  ASSERT_TRUE(r.ok());
+  ASSERT_EQ(r.corners.size(), 2u);
+  EXPECT_GT(asked, 1);
+  for (const CornerReport& c : r.corners) EXPECT_EQ(c.method == CornerMethod::stop, !c.reason.empty());
+  const SmoothResult none = smooth(nodes, kFigure18, {}, [](const Trajectory&) { return false; });
+  EXPECT_NEAR(none.trajectory.duration(), none.duration_ptp, 1e-9);
+  EXPECT_NE(none.corners[1].reason, "");
+}
+
+TEST(Smooth, RefusesBadNodesAndLimits) {
+  EXPECT_NE(smooth({}, kFigure18).reason, "");
+  EXPECT_NE(smooth({point({0, 0}), point({1})}, kFigure18).reason, "");
+  EXPECT_NE(smooth({point({0, 0}), point({1, std::nan("")})}, kFigure18).reason, "");
+  EXPECT_NE(smooth({point({0}), point({1})}, kFigure18).reason, "");
+  const SmoothResult same = smooth({point({0, 1}), point({0, 1})}, kFigure18);
+  EXPECT_TRUE(same.ok());
+  EXPECT_EQ(same.trajectory.duration(), 0);
+}
+
+}  // namespace
+}  // namespace handsel
