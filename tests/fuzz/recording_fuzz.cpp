@@ -105,8 +105,8 @@ void replay(bool bvh, const char* kind) {
   EXPECT_GT(refused, 0);
 }
 
-TEST(RecordingFuzz, CsvCorpusAndMutations) { replay(false, "csv"); }
-TEST(RecordingFuzz, BvhCorpusAndMutations) { replay(true, "bvh"); }
+TEST(RecordingFuzz, csv_corpus_and_mutations) { replay(false, "csv"); }
+TEST(RecordingFuzz, bvh_corpus_and_mutations) { replay(true, "bvh"); }
 
 }  // namespace
 }  // namespace handsel

@@ -75,7 +75,7 @@ class Process : public testing::Test {
   }
 };
 
-TEST_F(Process, SaysWhenItIsReadyAnswersAndEndsCleanlyOnSigterm) {
+TEST_F(Process, says_when_it_is_ready_answers_and_ends_cleanly_on_sigterm) {
   const TimePoint start = DdsBus({.component = "clock", .domain = kDomain, .health = false}).now();
   Probe probe({});
   EXPECT_EQ(probe.out_line().rfind("handsel_probe ready: domain ", 0), 0u);
@@ -98,7 +98,7 @@ TEST_F(Process, SaysWhenItIsReadyAnswersAndEndsCleanlyOnSigterm) {
   EXPECT_LT(to_seconds(bus.now() - asked), 1.0);
 }
 
-TEST_F(Process, SecondOfItsKindRefusesToStart) {
+TEST_F(Process, second_of_its_kind_refuses_to_start) {
   Probe first({});
   ASSERT_NE(first.out_line().find("ready"), std::string::npos);
   Probe second({});
@@ -110,7 +110,7 @@ TEST_F(Process, SecondOfItsKindRefusesToStart) {
   EXPECT_EQ(spare.wait(), 0);
 }
 
-TEST_F(Process, OfTwoThatStartTogetherOneStays) {
+TEST_F(Process, of_two_that_start_together_one_stays) {
   Probe a({}), b({});
   const bool a_ready = a.out_line().find("ready") != std::string::npos;
   const bool b_ready = b.out_line().find("ready") != std::string::npos;
@@ -118,7 +118,7 @@ TEST_F(Process, OfTwoThatStartTogetherOneStays) {
   EXPECT_EQ((a_ready ? b : a).wait(), 2);
 }
 
-TEST_F(Process, BadInputIsOneSentenceAndAnExitCode) {
+TEST_F(Process, bad_input_is_one_sentence_and_an_exit_code) {
   Probe unknown({"--robot", "nobody"});
   EXPECT_NE(unknown.err_line().find("nobody"), std::string::npos);
   EXPECT_EQ(unknown.wait(), 3);
@@ -129,7 +129,7 @@ TEST_F(Process, BadInputIsOneSentenceAndAnExitCode) {
   EXPECT_EQ(folder.wait(), 3);
 }
 
-TEST_F(Process, KilledProcessIsSeenWithinItsLease) {
+TEST_F(Process, killed_process_is_seen_within_its_lease) {
   DdsBus bus({.component = "tester", .domain = kDomain, .health = false});
   const auto& status = bus.subscribe<ComponentHealth>([](const ComponentHealth&, const Receipt&) {});
   Probe probe({});

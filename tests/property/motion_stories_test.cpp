@@ -146,7 +146,7 @@ Story told(std::uint64_t seed) {
   return story;
 }
 
-TEST(MotionStories, EverySampleIsWithinTheLimitsAndContinuous) {
+TEST(MotionStories, every_sample_is_within_the_limits_and_continuous) {
   const int stories = test::runs(3000);
   long samples = 0;
   std::uint64_t hash = 0;
@@ -166,7 +166,7 @@ TEST(MotionStories, EverySampleIsWithinTheLimitsAndContinuous) {
   EXPECT_GT(count["started afresh"], stories / 10);
 }
 
-TEST(MotionStories, ThatOnceWentWrong) {
+TEST(MotionStories, that_once_went_wrong) {
   for (const std::uint64_t seed : {8649, 744831, 1020995, 1082078, 1117332, 1157086, 1218998, 1247578, 1507586}) told(seed);
 }
 

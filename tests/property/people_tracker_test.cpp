@@ -192,7 +192,7 @@ class Sources : public ::testing::Test {
   }
 };
 
-TEST_F(Sources, good) { run({}); }
+TEST_F(Sources, of_good_quality_keep_each_person) { run({}); }
 TEST_F(Sources, that_drop_samples) { run({.dropped = 0.4}); }
 TEST_F(Sources, that_fall_silent_for_a_while) { run({.gaps = {{2, 2.4}, {4, 5.5}, {8, 11}}}); }
 TEST_F(Sources, that_jump) { run({.jumped = 0.05}); }

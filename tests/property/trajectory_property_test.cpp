@@ -208,7 +208,7 @@ struct Peer {
 };
 #endif
 
-TEST(SevenAxes, EndTogetherInsideTheLimitsAndAsSoonAsTheSlowSolver) {
+TEST(SevenAxes, end_together_inside_the_limits_and_as_soon_as_the_slow_solver) {
   const long count = setting("HANDSEL_CASES", 100000) / kBatch * kBatch, every = setting("HANDSEL_SLOW", 20);
   const std::uint64_t seed = 31;
   Cases cases(seed);
@@ -271,7 +271,7 @@ double way_back(AxisState s, const AxisLimits& l, double deepest) {
   return t;
 }
 
-TEST(SevenAxes, StartsBeyondTheVelocityComeBackAsFastAsAnyDepthOfDeceleration) {
+TEST(SevenAxes, starts_beyond_the_velocity_come_back_as_fast_as_any_depth_of_deceleration) {
   Cases cases(32);
   for (int k = 0; k < 200; ++k) {
     const AxisLimits l{cases.uniform(0.2, 2), cases.uniform(0.5, 6), cases.uniform(0.5, 12)};
@@ -295,7 +295,7 @@ TEST(SevenAxes, StartsBeyondTheVelocityComeBackAsFastAsAnyDepthOfDeceleration) {
   }
 }
 
-TEST(SevenAxes, NothingInTheCycleAllocates) {
+TEST(SevenAxes, nothing_in_the_cycle_allocates) {
   Cases cases(33);
   const Problem p = draw(cases), q = draw(cases);
   SynchronisedAxes axes(kAxes);
@@ -319,7 +319,7 @@ TEST(SevenAxes, NothingInTheCycleAllocates) {
   EXPECT_EQ(test::allocations(), before);
 }
 
-TEST(SevenAxes, TheTableGivesTheStateOfTheTrajectory) {
+TEST(SevenAxes, the_table_gives_the_state_of_the_trajectory) {
   Cases cases(34);
   for (int axes : {1, 2, 3, 7, 8, 9, 16, 22}) {
     for (int k = 0; k < 50; ++k) {
@@ -347,7 +347,7 @@ TEST(SevenAxes, TheTableGivesTheStateOfTheTrajectory) {
   }
 }
 
-TEST(SevenAxes, BadInputHasAReasonAndLeavesTheOthersAlone) {
+TEST(SevenAxes, bad_input_has_a_reason_and_leaves_the_others_alone) {
   Cases cases(35);
   Problem good;
   for (int i = 0; i < kAxes; ++i) good.set(i, cases.next(0));
@@ -387,7 +387,7 @@ TEST(SevenAxes, BadInputHasAReasonAndLeavesTheOthersAlone) {
   EXPECT_TRUE(axes.solve(outside_start.from, outside_start.to, outside_start.limits));
 }
 
-TEST(SevenAxes, ImposedDurationsAreInsideTheLimitsWheneverThatIsPossible) {
+TEST(SevenAxes, imposed_durations_are_inside_the_limits_whenever_that_is_possible) {
   Cases cases(36);
   int inside = 0, three = 0, short_ = 0;
   for (int k = 0; k < 20000; ++k) {

@@ -32,7 +32,7 @@ std::string text_of(const std::string& file) {
   return text.str();
 }
 
-TEST(BusyMachine, TwoSystemsOnOneProcessorHandTheirMugsOver) {
+TEST(BusyMachine, two_systems_on_one_processor_hand_their_mugs_over) {
   for (int run = 0; run < runs(); ++run) {
     const test::TemporaryFolder folder;
     const std::string one = folder.path() / "one", two = folder.path() / "two";

@@ -91,7 +91,7 @@ void expect_harmless(const Json& report, const std::string& what) {
 
 class Exchanges : public testing::TestWithParam<const char*> {};
 
-TEST_P(Exchanges, succeed) {
+TEST_P(Exchanges, succeed_in_each_scenario) {
   const std::uint64_t runs = number("HANDSEL_RUNS", 50), first = number("HANDSEL_FIRST_SEED", 9001);
   std::uint64_t done = 0;
   std::vector<double> first_motions;

@@ -136,7 +136,7 @@ class Expected {
   std::map<int, Sum> sums_;
 };
 
-TEST(SimulatedHandovers, FactsAgreeWithTheTruth) {
+TEST(SimulatedHandovers, facts_agree_with_the_truth) {
   const char* asked = std::getenv("HANDSEL_RUNS");
   const int runs = asked ? std::atoi(asked) : 3;
   int handed_over = 0;

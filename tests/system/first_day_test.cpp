@@ -174,7 +174,7 @@ TYPED_TEST(FirstDayOf, emergency_stop) {
 TYPED_TEST(FirstDayOf, user_stop) {
   this->tell([](FirstDay& day) { TestFixture::stopped_by(day, "user_stop", DriveMode::user_stop, "user stop"); });
 }
-TYPED_TEST(FirstDayOf, brake) {
+TYPED_TEST(FirstDayOf, braked_drives) {
   this->tell([](FirstDay& day) { TestFixture::stopped_by(day, "brake", DriveMode::braked, "brakes"); });
 }
 

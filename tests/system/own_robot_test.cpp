@@ -59,10 +59,10 @@ class OwnRobot : public testing::TestWithParam<const char*> {
   }
 };
 
-TEST_P(OwnRobot, gives) { give(1, 1); }
+TEST_P(OwnRobot, gives_the_object_once) { give(1, 1); }
 
 using OwnRobotTen = OwnRobot;
-TEST_P(OwnRobotTen, gives) { give(10, 9); }
+TEST_P(OwnRobotTen, gives_the_object_nine_times_of_ten) { give(10, 9); }
 
 INSTANTIATE_TEST_SUITE_P(Robots, OwnRobot, testing::Values("panda", "iiwa14"));
 INSTANTIATE_TEST_SUITE_P(Robots, OwnRobotTen, testing::Values("panda", "iiwa14"));

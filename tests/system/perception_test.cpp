@@ -198,7 +198,7 @@ class Perception : public testing::Test {
   }
 };
 
-TEST_F(Perception, RobotHandsTheMugToThePersonPublishedFromOutside) {
+TEST_F(Perception, robot_hands_the_mug_to_the_person_published_from_outside) {
   const fs::path mine = folder() / "my_perception";
   fs::create_directories(mine);
   for (const char* file : {"perception.c", "CMakeLists.txt"}) fs::copy_file(example() / file, mine / file);
@@ -219,12 +219,12 @@ TEST_F(Perception, RobotHandsTheMugToThePersonPublishedFromOutside) {
   EXPECT_EQ(out["ssm_violations"], 0);
 }
 
-TEST_F(Perception, DoctorNamesTheFaultOfEachBrokenVariant) { expect_named(issue_variants()); }
+TEST_F(Perception, doctor_names_the_fault_of_each_broken_variant) { expect_named(issue_variants()); }
 
 using PerceptionMore = Perception;
-TEST_F(PerceptionMore, DoctorNamesTheFaultOfEachBrokenVariant) { expect_named(more_variants()); }
+TEST_F(PerceptionMore, doctor_names_the_fault_of_each_broken_variant) { expect_named(more_variants()); }
 
-TEST(Recording, IsWhatItsGeneratorMakes) {
+TEST(Recording, is_what_its_generator_makes) {
   const fs::path made = fs::temp_directory_path() / ("handsel-person-" + std::to_string(getpid()) + ".csv");
   const Outcome outcome = shell("python3 " HANDSEL_SOURCE_DIR "/examples/perception/generate.py " + made.string());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

@@ -113,7 +113,7 @@ std::string scenario() {
   return file;
 }
 
-TEST(Ros2, APublisherWithRosNamesMovesOurPersonAndReadsOurRobot) {
+TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
   setenv("CYCLONEDDS_URI", "file://" HANDSEL_SOURCE_DIR "/deploy/dds/loopback.xml", 1);
   const std::string place = scenario();

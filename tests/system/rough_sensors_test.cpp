@@ -66,12 +66,12 @@ int successes(const std::vector<Json>& lines) {
   return count;
 }
 
-TEST(RoughSensors, TheGiveSucceeds) {
+TEST(RoughSensors, the_give_succeeds) {
   const std::vector<Json> lines = trials("give_mug_rough", 1, 3);
   EXPECT_EQ(successes(lines), 3);
 }
 
-TEST(RoughSensorsTen, TheGiveSucceedsForNineOfTenSeeds) {
+TEST(RoughSensorsTen, the_give_succeeds_for_nine_of_ten_seeds) {
   EXPECT_GE(successes(trials("give_mug_rough", 1, 10)), 9);
   const Changed plain([](config::SensorDescription& sensor) {
     sensor.set_latency(0.06);
@@ -134,7 +134,7 @@ Standstill with_fault(config::SensorFaultKind kind, double at, double length) {
   return out;
 }
 
-TEST(RoughSensors, FrozenRepeatedLateOrMissingDataStopTheRobotInTime) {
+TEST(RoughSensors, frozen_repeated_late_or_missing_data_stop_the_robot_in_time) {
   const double at = on_its_way();
   ASSERT_GT(at, 0) << "the mug was never on its way";
   for (const auto kind : {config::FROZEN, config::REPEATED, config::GAP, config::LATE}) {

@@ -51,7 +51,7 @@ void expect_refusal(const std::string& command, const std::string& line, const s
   EXPECT_EQ(a.err, "");
 }
 
-TEST(TrajectoryCommand, SolvesAndSamplesWhatItSolved) {
+TEST(TrajectoryCommand, solves_and_samples_what_it_solved) {
   const Answers solved = ask("solve", problem());
   EXPECT_EQ(solved.exit_code, 0);
   ASSERT_EQ(solved.lines.size(), 1u);
@@ -70,7 +70,7 @@ TEST(TrajectoryCommand, SolvesAndSamplesWhatItSolved) {
   EXPECT_NEAR(t.at("v")[4][1].get<double>(), 1, 1e-12);
 }
 
-TEST(TrajectoryCommand, EachAxisForItselfAndImposedDurations) {
+TEST(TrajectoryCommand, each_axis_for_itself_and_imposed_durations) {
   const std::string open = problem().substr(0, problem().size() - 1);
   const Answers none = ask("solve", open + R"(,"sync":"none"})");
   EXPECT_EQ(none.exit_code, 0);
@@ -88,7 +88,7 @@ TEST(TrajectoryCommand, EachAxisForItselfAndImposedDurations) {
   expect_refusal("solve", open + R"(,"sync":"late"})", "\"sync\" must be \"time\" or \"none\"");
 }
 
-TEST(TrajectoryCommand, EveryFaultHasItsSentence) {
+TEST(TrajectoryCommand, every_fault_has_its_sentence) {
   expect_refusal("solve", problem("p0", "[0,NaN]"), "this is not JSON");
   expect_refusal("solve", problem("p0", "[0,Infinity]"), "this is not JSON");
   expect_refusal("solve", problem("p0", "[0,null]"), "\"p0\" must be a finite number");
@@ -113,7 +113,7 @@ TEST(TrajectoryCommand, EveryFaultHasItsSentence) {
                  "a segment must be [duration, jerk], the duration not negative");
 }
 
-TEST(TrajectoryCommand, StartsBeyondTheLimitsComeBackInside) {
+TEST(TrajectoryCommand, starts_beyond_the_limits_come_back_inside) {
   const Answers a = ask("solve", problem("v0", "[1.5,0]"));
   EXPECT_EQ(a.exit_code, 0);
   const Answers samples = ask("sample --period 0.01", a.lines.at(0).dump());
@@ -128,7 +128,7 @@ TEST(TrajectoryCommand, StartsBeyondTheLimitsComeBackInside) {
   EXPECT_TRUE(inside);
 }
 
-TEST(TrajectoryCommand, SmoothsANodeAndSaysHow) {
+TEST(TrajectoryCommand, smooths_a_node_and_says_how) {
   const std::string line = R"({"nodes":[[0,0],[0.5,0],[0.8,0.4]],"vmax":[0.1,0.1],"amax":[0.3,0.3],"jmax":[0.9,0.9])";
   const Answers soft = ask("smooth", line + "}"), stop = ask("smooth", line + ",\"tau\":0}");
   EXPECT_EQ(soft.exit_code, 0);
@@ -142,7 +142,7 @@ TEST(TrajectoryCommand, SmoothsANodeAndSaysHow) {
   EXPECT_EQ(stop.lines[0].at("corners")[0].at("reason"), "tau leaves no room");
 }
 
-TEST(TrajectoryCommand, ABadLineDoesNotStopTheOthers) {
+TEST(TrajectoryCommand, a_bad_line_does_not_stop_the_others) {
   const Answers a = ask("solve", problem() + "\n" + problem("vmax", "[0,1]") + "\n\n" + problem() + "\n");
   EXPECT_EQ(a.exit_code, 2);
   ASSERT_EQ(a.lines.size(), 3u);
@@ -150,7 +150,7 @@ TEST(TrajectoryCommand, ABadLineDoesNotStopTheOthers) {
   EXPECT_EQ(a.lines[2], a.lines[0]);
 }
 
-TEST(TrajectoryCommand, BadUsageIsOneSentence) {
+TEST(TrajectoryCommand, bad_usage_is_one_sentence) {
   const auto refused = [](const std::string& arguments, const std::string& says) {
     const Outcome outcome = shell(kHandsel + " " + arguments + " < /dev/null");
     EXPECT_EQ(outcome.exit_code, 2) << arguments;
@@ -177,7 +177,7 @@ Answers ask_example(const std::string& arguments, const std::string& file, const
   return ask(arguments, input);
 }
 
-TEST(TrajectoryCommand, OnTheWayToTheCassetteTheCornerOverTheLidKeepsItsStop) {
+TEST(TrajectoryCommand, on_the_way_to_the_cassette_the_corner_over_the_lid_keeps_its_stop) {
   const Answers with = ask_example("cartesian --robot jido", "cassette/cassette.jsonl");
   EXPECT_EQ(with.exit_code, 0) << with.err;
   ASSERT_EQ(with.lines.size(), 1u);
@@ -199,7 +199,7 @@ TEST(TrajectoryCommand, OnTheWayToTheCassetteTheCornerOverTheLidKeepsItsStop) {
   EXPECT_LT(without.lines[0].at("duration").get<double>(), way.at("duration").get<double>() - 0.3);
 }
 
-TEST(TrajectoryCommand, WhatTheToolCannotDoIsSaidAndTheWayBeforeItIsThere) {
+TEST(TrajectoryCommand, what_the_tool_cannot_do_is_said_and_the_way_before_it_is_there) {
   const auto expect = [](const char* what, std::size_t reached, const std::function<void(json&)>& change) {
     const Answers a = ask_example("cartesian --robot jido", "cassette/cassette.jsonl", [&](json& line) {
       line.erase("obstacles");
@@ -236,7 +236,7 @@ TEST(TrajectoryCommand, WhatTheToolCannotDoIsSaidAndTheWayBeforeItIsThere) {
   EXPECT_EQ(same.lines[0].at("corners").size(), 1u);
 }
 
-TEST(TrajectoryCommand, ThePlatformDrivesBeneathTheTool) {
+TEST(TrajectoryCommand, the_platform_drives_beneath_the_tool) {
   const auto drive = [](json& line) {
     line.erase("obstacles");
     json& nodes = line.at("nodes");
@@ -251,7 +251,7 @@ TEST(TrajectoryCommand, ThePlatformDrivesBeneathTheTool) {
   EXPECT_EQ(ask_example("cartesian --robot jido", "cassette/cassette.jsonl", drive).exit_code, 2);
 }
 
-TEST(TrajectoryCommand, BesidePeopleTheSpeedFollowsTheCostOfTheWay) {
+TEST(TrajectoryCommand, beside_people_the_speed_follows_the_cost_of_the_way) {
   const TemporaryFolder folder;
   const std::string svg = (folder.path() / "sweep.svg").string();
   const Answers a = ask_example("timed --robot jido --svg " + svg, "beside_people/sweep.jsonl");

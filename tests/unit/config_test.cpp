@@ -44,7 +44,7 @@ std::string refusal(const std::string& text) {
   return message_of<ConfigError>([&] { load_text_proto(folder.write("r.txtpb", text), out); });
 }
 
-TEST(TextProto, ReadsWhatIsWritten) {
+TEST(TextProto, reads_what_is_written) {
   const TemporaryFolder folder;
   config::RobotDescription out;
   load_text_proto(folder.write("r.txtpb", "# a robot\nname: \"r\"\nrest { key: \"a\" value: 0.5 }\n"), out);
@@ -52,7 +52,7 @@ TEST(TextProto, ReadsWhatIsWritten) {
   EXPECT_EQ(out.rest().at("a"), 0.5);
 }
 
-TEST(TextProto, NamesFileLineAndColumnOfWhatIsWrong) {
+TEST(TextProto, names_file_line_and_column_of_what_is_wrong) {
   EXPECT_THAT(refusal("name: \"r\"\nspeed: 3\n"), HasSubstr("r.txtpb:2:"));
   EXPECT_THAT(refusal("name: \"r\"\nspeed: 3\n"), HasSubstr("speed"));
   EXPECT_THAT(refusal("name: 3\n"), HasSubstr("r.txtpb:1:"));
@@ -60,11 +60,11 @@ TEST(TextProto, NamesFileLineAndColumnOfWhatIsWrong) {
   EXPECT_THAT(refusal("groups { name: \"arm\"\n"), HasSubstr("r.txtpb:"));
 }
 
-TEST(TextProto, AUrdfInItsPlaceIsCalledOne) {
+TEST(TextProto, a_urdf_in_its_place_is_called_one) {
   EXPECT_THAT(refusal("<?xml version=\"1.0\"?>\n<robot name=\"r\"/>\n"), HasSubstr("r.txtpb is XML, e.g. a URDF"));
 }
 
-TEST(TextProto, AFileThatIsNotThereIsMissing) {
+TEST(TextProto, a_file_that_is_not_there_is_missing) {
   config::RobotDescription out;
   EXPECT_THAT(message_of<MissingError>([&] { load_text_proto("/nowhere/x.txtpb", out); }), HasSubstr("/nowhere/x.txtpb"));
 }
@@ -182,7 +182,7 @@ TEST(TextProto, names_that_are_no_text_and_keys_given_twice_are_refused) {
   EXPECT_THAT(refusal(std::string(5u << 20, ' ')), HasSubstr("r.txtpb has 5 MB; it may have 4 MB"));
 }
 
-TEST(People, ProfilesAreReadAndThoseThatCannotBeAreRefused) {
+TEST(People, profiles_are_read_and_those_that_cannot_be_are_refused) {
   const TemporaryFolder folder;
   EXPECT_EQ(load_people(folder.path()).people_size(), 0);
   const auto refused = [&](const std::string& text) {
@@ -197,28 +197,28 @@ TEST(People, ProfilesAreReadAndThoseThatCannotBeAreRefused) {
   EXPECT_THAT(refused("people { id: \"a\" preferred_distance: -1 }"), HasSubstr("preferred_distance of a must be in [0, 2]"));
 }
 
-TEST(Resources, FindsTheDescriptionsOfTheProject) {
+TEST(Resources, finds_the_descriptions_of_the_project) {
   EXPECT_TRUE(std::filesystem::exists(robot_description("jido")));
   EXPECT_TRUE(std::filesystem::exists(hand_description("sah")));
   EXPECT_TRUE(std::filesystem::exists(object_description("mug")));
   EXPECT_TRUE(std::filesystem::exists(resource("robots")));
 }
 
-TEST(Resources, ListsWhatThereIsWhenANameIsUnknown) {
+TEST(Resources, lists_what_there_is_when_a_name_is_unknown) {
   EXPECT_THAT(message_of<MissingError>([] { robot_description("jodi"); }), HasSubstr("jido"));
   EXPECT_THAT(message_of<MissingError>([] { object_description("mugg"); }), HasSubstr("bottle, "));
   EXPECT_THAT(message_of<MissingError>([] { robot_description("./nothing.txtpb"); }), HasSubstr("nothing.txtpb"));
   EXPECT_THAT(message_of<MissingError>([] { resource("robots/none"); }), HasSubstr("robots/none"));
 }
 
-TEST(Resources, LocatesTheFirstLineWithAText) {
+TEST(Resources, locates_the_first_line_with_a_text) {
   const TemporaryFolder folder;
   const auto file = folder.write("x", "one\ntwo \"b\"\nthree \"b\"\n");
   EXPECT_THAT(locate(file, "\"b\""), EndsWith("x:2"));
   EXPECT_THAT(locate(file, "absent"), EndsWith("/x"));
 }
 
-TEST(Names, AreThoseOfTheEnumerators) {
+TEST(Names, are_those_of_the_enumerators) {
   EXPECT_STREQ(name(Mode::hold), "hold");
   EXPECT_STREQ(name(Cause::override_slow), "override_slow");
   EXPECT_STREQ(name(TaskKind::give), "give");

@@ -26,7 +26,7 @@ double volume(const TriangleMesh& mesh) {
   return v;
 }
 
-TEST(Mesh, ReadsVerticesAndTrianglesInMetres) {
+TEST(Mesh, reads_vertices_and_triangles_in_metres) {
   const TemporaryFolder folder;
   const auto mesh = load_mesh(folder.write("t.obj", kTetrahedron));
   EXPECT_EQ(mesh.vertices.size(), 4u);
@@ -34,14 +34,14 @@ TEST(Mesh, ReadsVerticesAndTrianglesInMetres) {
   EXPECT_NEAR(volume(mesh), 1.0 / 6, 1e-9);
 }
 
-TEST(Mesh, ScalesAndKeepsOutsideOutside) {
+TEST(Mesh, scales_and_keeps_outside_outside) {
   const TemporaryFolder folder;
   const auto file = folder.write("t.obj", kTetrahedron);
   EXPECT_NEAR(volume(load_mesh(file, Vector3(0.1, 0.1, 0.1))), 1e-3 / 6, 1e-12);
   EXPECT_NEAR(volume(load_mesh(file, Vector3(1, 1, -1))), 1.0 / 6, 1e-9);
 }
 
-TEST(Mesh, WeldsEqualVerticesAndDropsTrianglesWithoutArea) {
+TEST(Mesh, welds_equal_vertices_and_drops_triangles_without_area) {
   const TemporaryFolder folder;
   const auto mesh = load_mesh(folder.write("t.obj",
                                            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 2 0 0\n"
@@ -50,12 +50,12 @@ TEST(Mesh, WeldsEqualVerticesAndDropsTrianglesWithoutArea) {
   EXPECT_EQ(mesh.triangles[0][1], mesh.triangles[1][0]);
 }
 
-TEST(Mesh, SplitsPolygons) {
+TEST(Mesh, splits_polygons) {
   const TemporaryFolder folder;
   EXPECT_EQ(load_mesh(folder.write("q.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")).triangles.size(), 2u);
 }
 
-TEST(Mesh, SaysWhatIsWrong) {
+TEST(Mesh, says_what_is_wrong) {
   const TemporaryFolder folder;
   EXPECT_THAT(message_of<MissingError>([&] { load_mesh(folder.path() / "none.obj"); }), HasSubstr("none.obj"));
   EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.write("bad.stl", "not a mesh at all")); }), HasSubstr("bad.stl"));
@@ -64,7 +64,7 @@ TEST(Mesh, SaysWhatIsWrong) {
   EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.write("t.obj", kTetrahedron), Vector3(1, 0, 1)); }), HasSubstr("scale"));
 }
 
-TEST(Mesh, OddInputIsNamedAndOpenOnesAreRead) {
+TEST(Mesh, odd_input_is_named_and_open_ones_are_read) {
   const TemporaryFolder folder;
   const auto refusal = [&](const std::string& text) { return message_of<ConfigError>([&] { load_mesh(folder.write("odd.obj", text)); }); };
   EXPECT_THAT(refusal(""), HasSubstr("odd.obj"));
@@ -125,14 +125,14 @@ TEST(Mesh, only_files_whose_format_is_checked_are_read) {
   EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.path()); }), HasSubstr("is not a file"));
 }
 
-TEST(Mesh, RefusesMoreThanTheCap) {
+TEST(Mesh, refuses_more_than_the_cap) {
   const TemporaryFolder folder;
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (int i = 0; i < 500'001; ++i) text += "f 1 2 3\n";
   EXPECT_THAT(message_of<ConfigError>([&] { load_mesh(folder.write("big.obj", text)); }), HasSubstr("500000 triangles"));
 }
 
-TEST(Segments, NearestPointsMatchAFineSearch) {
+TEST(Segments, nearest_points_match_a_fine_search) {
   std::mt19937_64 engine(7);
   std::uniform_real_distribution<double> u(-1, 1);
   const auto point = [&] { return Vector3(u(engine), u(engine), u(engine)); };

@@ -31,7 +31,7 @@ std::string rejected(const M& message) {
   return type->from_wire(wire.get(), &back, why) ? "" : why;
 }
 
-TEST(Ros2Wire, IsCalledAsRosCallsItAndKeepsEveryValue) {
+TEST(Ros2Wire, is_called_as_ros_calls_it_and_keeps_every_value) {
   const auto type = ros2_type<ros2::JointState>("joint_states", Profile::goal);
   EXPECT_STREQ(type->row().topic, "rt/joint_states");
   EXPECT_STREQ(type->row().type, "sensor_msgs::msg::dds_::JointState_");
@@ -58,7 +58,7 @@ TEST(Ros2Wire, IsCalledAsRosCallsItAndKeepsEveryValue) {
   EXPECT_TRUE(again.transforms[0].T_parent_child.isApprox(frames.transforms[0].T_parent_child));
 }
 
-TEST(Ros2Wire, RejectsWhatIsMalformedInOneSentence) {
+TEST(Ros2Wire, rejects_what_is_malformed_in_one_sentence) {
   const double nan = std::nan("");
   EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, Vector::Constant(1, nan), {}, {}}), "rt/x: position[0] is not finite");
   EXPECT_EQ(rejected(ros2::JointState{1, {"a"}, Vector::Constant(2, 0), {}, {}}), "rt/x: position has 2 elements for 1 names");
@@ -89,7 +89,7 @@ TEST(TfTree, when_it_is_full_frames_not_sent_for_long_make_room) {
   EXPECT_FALSE(tree.find("head_1", "world"));
 }
 
-TEST(TfTree, FollowsTheWayToTheWorldAndKnowsHowOldItIs) {
+TEST(TfTree, follows_the_way_to_the_world_and_knows_how_old_it_is) {
   TfTree tree;
   const TimePoint t(from_seconds(10));
   tree.set(frame("world", "mast", Vector3(0, 0, 2)), t, true);
@@ -107,7 +107,7 @@ TEST(TfTree, FollowsTheWayToTheWorldAndKnowsHowOldItIs) {
   EXPECT_FALSE(tree.find("a", "world")) << "a loop ends";
 }
 
-TEST(BodyFrame, IsNamedAsRos4hriDoes) {
+TEST(BodyFrame, is_named_as_ros4hri_does) {
   EXPECT_EQ(body_frame("r_wrist_7f")->joint, "r_wrist");
   EXPECT_EQ(body_frame("r_wrist_7f")->body, "7f");
   EXPECT_EQ(body_frame("head_anna_2")->body, "anna_2");
@@ -140,7 +140,7 @@ class Lane : public testing::Test {
   std::shared_ptr<Node> lane;
 };
 
-TEST_F(Lane, TurnsFramesOfABodyIntoAnObservation) {
+TEST_F(Lane, turns_frames_of_a_body_into_an_observation) {
   std::vector<HumanObservation> seen;
   ours.subscribe<HumanObservation>([&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
   const auto tf = write<ros2::Transforms>("tf");
@@ -176,7 +176,7 @@ TEST_F(Lane, TurnsFramesOfABodyIntoAnObservation) {
   EXPECT_TRUE(seen.back().people.empty());
 }
 
-TEST_F(Lane, LeavesOutAFrameFromOutsideThatIsCalledLikeALinkOfOurRobot) {
+TEST_F(Lane, leaves_out_a_frame_from_outside_that_is_called_like_a_link_of_our_robot) {
   std::vector<HumanObservation> seen;
   ours.subscribe<HumanObservation>([&](const HumanObservation& m, const Receipt&) { seen.push_back(m); });
   const auto tf = write<ros2::Transforms>("tf");
@@ -200,7 +200,7 @@ TEST_F(Lane, LeavesOutAFrameFromOutsideThatIsCalledLikeALinkOfOurRobot) {
   EXPECT_EQ(lane->trouble(), "");
 }
 
-TEST_F(Lane, TellsJointsAndFramesOfOurRobot) {
+TEST_F(Lane, tells_joints_and_frames_of_our_robot) {
   std::vector<ros2::JointState> joints;
   std::vector<ros2::Transforms> frames;
   read("joint_states", joints);
@@ -240,7 +240,7 @@ TEST_F(Lane, TellsJointsAndFramesOfOurRobot) {
   EXPECT_TRUE(tree.find("object_mug", "world")->T_root_frame.translation().isApprox(Vector3(0.7, -0.4, 0.8)));
 }
 
-TEST(JointGatherer, GathersAxesFromSeveralMessagesAndSaysWhatIsMissing) {
+TEST(JointGatherer, gathers_axes_from_several_messages_and_says_what_is_missing) {
   setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
   const NodeContext context = load_context("jido");
   JointGatherer gatherer(*context.robot, 0.1);
@@ -311,7 +311,7 @@ class Desk : public testing::Test {
   TimePoint now{from_seconds(100)};
 };
 
-TEST_F(Desk, JudgesTimesAndHandsOverWhatWasAskedFor) {
+TEST_F(Desk, judges_times_and_hands_over_what_was_asked_for) {
   EXPECT_EQ(asked(by(0.3)), "");
   TrajectoryOutbox out = step();
   ASSERT_TRUE(out.query);
@@ -361,7 +361,7 @@ TEST_F(Desk, JudgesTimesAndHandsOverWhatWasAskedFor) {
   EXPECT_EQ(out.results[0], "done");
 }
 
-TEST_F(Desk, RefusesWithTheReason) {
+TEST_F(Desk, refuses_with_the_reason) {
   ros2::JointTrajectory wanted = by(0.2);
   wanted.joint_names = {"elbow_of_somebody"};
   EXPECT_EQ(asked(wanted), "refused: joint elbow_of_somebody is no joint of the arm of jido");

@@ -6,10 +6,10 @@ if(HANDSEL_RUCKIG)
   target_link_libraries(test_trajectory_property PRIVATE ruckig_peer)
 endif()
 # Ten million problems: some minutes of one core.
-add_test(NAME trajectory_ten_million COMMAND test_trajectory_property --gtest_filter=SevenAxes.EndTogether*)
+add_test(NAME trajectory_ten_million COMMAND test_trajectory_property --gtest_filter=SevenAxes.end_together*)
 set_tests_properties(trajectory_ten_million PROPERTIES LABELS full TIMEOUT 3600 ENVIRONMENT "HANDSEL_CASES=10000000;HANDSEL_SLOW=1000")
 # A hundred thousand problems, all of them by the slow solver too.
-add_test(NAME trajectory_slow_solver COMMAND test_trajectory_property --gtest_filter=SevenAxes.EndTogether*)
+add_test(NAME trajectory_slow_solver COMMAND test_trajectory_property --gtest_filter=SevenAxes.end_together*)
 set_tests_properties(trajectory_slow_solver PROPERTIES LABELS full TIMEOUT 1200 ENVIRONMENT "HANDSEL_CASES=100000;HANDSEL_SLOW=1")
 # Registers narrower than this processor's widest.
 foreach(level avx2 base)

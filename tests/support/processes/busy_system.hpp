@@ -122,6 +122,10 @@ class BusySystem {
     std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n", truth.object.c_str(), at.x(), at.y(), at.z(),
                   truth.carrier.c_str());
     out += text;
+    out += "  execution: " + now().execution.sample.reason + "; external torque [Nm]";
+    for (const int axis : arm_)
+      if (axis < torque_.size()) out += " " + std::to_string(torque_[axis]);
+    out += "\n";
     for (const TimelineEvent& event : events_) out += "  " + std::to_string(to_seconds(event.at - marked_at_)) + " s  " + event.text + "\n";
     return out;
   }
@@ -130,6 +134,7 @@ class BusySystem {
 
  private:
   void watch(const RobotState& state) {
+    torque_ = state.external_torque;
     if (marked_.size() == 0) marked_ = state.position, marked_reference_ = state.reference.position;
     for (const int axis : arm_) {
       const double off = state.position[axis] - marked_[axis];
@@ -175,7 +180,7 @@ class BusySystem {
   static constexpr std::size_t kMaxEvents = 1000;
   std::vector<TimelineEvent> events_;
   TimePoint marked_at_{};
-  Vector marked_, marked_reference_;
+  Vector marked_, marked_reference_, torque_;
   double deviation_{}, fastest_{};
 };
 

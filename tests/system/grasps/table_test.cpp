@@ -59,7 +59,7 @@ std::set<std::string> words(const char* list) {
   return out;
 }
 
-TEST_F(Table, NamesTheWritersAndReadersThereAre) {
+TEST_F(Table, names_the_writers_and_readers_there_are) {
   std::map<std::string, std::set<std::string>> readers, writers;
   for (const auto& endpoint : network.endpoints()) (endpoint.writes ? writers : readers)[endpoint.type].insert(endpoint.component);
   for (const TopicRow& row : topics()) {
@@ -75,7 +75,7 @@ TEST_F(Table, NamesTheWritersAndReadersThereAre) {
   }
 }
 
-TEST_F(Table, NobodySendsWhatOthersMustReject) {
+TEST_F(Table, nobody_sends_what_others_must_reject) {
   std::map<std::string, ComponentHealth> health;
   network.add("observer").subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) { health[m.component] = m; });
   network.run_for(std::chrono::seconds(2));

@@ -55,7 +55,7 @@ class BusRules : public testing::Test {
 using Stages = testing::Types<LocalStage, DdsStage>;
 TYPED_TEST_SUITE(BusRules, Stages);
 
-TYPED_TEST(BusRules, CarriesAMessageWithStampAndReceipt) {
+TYPED_TEST(BusRules, carries_a_message_with_stamp_and_receipt) {
   Bus& a = this->stage.add("sim");
   Bus& b = this->stage.add("b");
   auto publisher = a.advertise<RobotState>();
@@ -76,7 +76,7 @@ TYPED_TEST(BusRules, CarriesAMessageWithStampAndReceipt) {
   EXPECT_LT(to_seconds(b.lag<RobotState>()), 5.0);
 }
 
-TYPED_TEST(BusRules, RefusesToSendAMalformedMessageAndSaysSoInItsHealth) {
+TYPED_TEST(BusRules, refuses_to_send_a_malformed_message_and_says_so_in_its_health) {
   Bus& a = this->stage.add("sim");
   Bus& b = this->stage.add("b");
   std::string reason;
@@ -90,7 +90,7 @@ TYPED_TEST(BusRules, RefusesToSendAMalformedMessageAndSaysSoInItsHealth) {
   EXPECT_TRUE(this->stage.until([&] { return reason.find("RobotState.velocity[3] is nan") != std::string::npos; })) << reason;
 }
 
-TYPED_TEST(BusRules, StateKeepsTheLastSampleAndCommandsTheLastEight) {
+TYPED_TEST(BusRules, state_keeps_the_last_sample_and_commands_the_last_eight) {
   Bus& a = this->stage.add("manipulation_planner");
   Bus& b = this->stage.add("b");
   auto facts = a.advertise<Facts>();
@@ -118,7 +118,7 @@ TYPED_TEST(BusRules, StateKeepsTheLastSampleAndCommandsTheLastEight) {
   EXPECT_EQ(ids, (std::vector<std::uint64_t>{5, 6, 7, 8, 9, 10, 11, 12}));
 }
 
-TYPED_TEST(BusRules, LateJoinerGetsStateButNoOldCommand) {
+TYPED_TEST(BusRules, late_joiner_gets_state_but_no_old_command) {
   Bus& a = this->stage.add("supervisor manipulation_planner");
   auto go = a.advertise<Go>();
   auto hands = a.advertise<HandCommand>();
@@ -139,7 +139,7 @@ TYPED_TEST(BusRules, LateJoinerGetsStateButNoOldCommand) {
   EXPECT_EQ(ids, std::vector<std::uint64_t>{2});
 }
 
-TYPED_TEST(BusRules, DeathOfAWriterIsSeenAsLostWriterAndMissedDeadline) {
+TYPED_TEST(BusRules, death_of_a_writer_is_seen_as_lost_writer_and_missed_deadline) {
   this->stage.add("a");
   Bus& b = this->stage.add("b");
   Bus& c = this->stage.add("sim");
@@ -260,7 +260,7 @@ TYPED_TEST(BusRules, the_ros2_lane_commands_a_trajectory_while_it_has_a_writer_a
   EXPECT_TRUE(this->stage.until([&] { return planned == 1; }));
 }
 
-TYPED_TEST(BusRules, PolledSubscriptionGetsTheNewestOncePerPeriod) {
+TYPED_TEST(BusRules, polled_subscription_gets_the_newest_once_per_period) {
   Bus& a = this->stage.add("sim");
   Bus& b = this->stage.add("b");
   auto publisher = a.advertise<RobotState>();
@@ -275,7 +275,7 @@ TYPED_TEST(BusRules, PolledSubscriptionGetsTheNewestOncePerPeriod) {
   EXPECT_GT(status.received, 2u);
 }
 
-TYPED_TEST(BusRules, TimersKeepTheirPaceAndCountTheirCycles) {
+TYPED_TEST(BusRules, timers_keep_their_pace_and_count_their_cycles) {
   Bus& a = this->stage.add("a");
   TimePoint first{}, last{};
   const TimerStatus& timer = a.every(std::chrono::milliseconds(10), [&](TimePoint now) {
@@ -290,7 +290,7 @@ TYPED_TEST(BusRules, TimersKeepTheirPaceAndCountTheirCycles) {
   EXPECT_EQ(once, 1);
 }
 
-TYPED_TEST(BusRules, JobsRunInTurnAndReportBackEvenWhenCancelled) {
+TYPED_TEST(BusRules, jobs_run_in_turn_and_report_back_even_when_cancelled) {
   Bus& a = this->stage.add("a");
   std::vector<int> order;
   bool saw_cancel = false;
@@ -307,7 +307,7 @@ TYPED_TEST(BusRules, JobsRunInTurnAndReportBackEvenWhenCancelled) {
   EXPECT_EQ(order, (std::vector<int>{1, 2, 3}));
 }
 
-TYPED_TEST(BusRules, HealthTellsRatesAgesAndDegradation) {
+TYPED_TEST(BusRules, health_tells_rates_ages_and_degradation) {
   Bus& a = this->stage.add("a");
   Bus& b = this->stage.add("spark");
   ComponentHealth health;
@@ -327,7 +327,7 @@ TYPED_TEST(BusRules, HealthTellsRatesAgesAndDegradation) {
   EXPECT_LT(health.topics[1].age, 0.0) << "never seen";
 }
 
-TYPED_TEST(BusRules, RequestsWaitForABusyReaderWithoutBlockingTheWriter) {
+TYPED_TEST(BusRules, requests_wait_for_a_busy_reader_without_blocking_the_writer) {
   Bus& a = this->stage.add("a");
   Bus& b = this->stage.add("b");
   auto requests = a.advertise<GraspRequest>();
@@ -358,7 +358,7 @@ class Ages : public testing::Test {
   }
 };
 
-TEST_F(Ages, AreOverTheFastestSampleSoFar) {
+TEST_F(Ages, are_over_the_fastest_sample_so_far) {
   EXPECT_NEAR(age(0.0, 0.010), 0.0, 1e-9);
   EXPECT_NEAR(age(0.1, 0.105), 0.0, 1e-9);
   EXPECT_NEAR(age(0.2, 0.235), 0.030, 1e-3);
@@ -366,7 +366,7 @@ TEST_F(Ages, AreOverTheFastestSampleSoFar) {
   EXPECT_NEAR(age(0.3, 2.305), 2.000, 4e-3) << "frozen data grows old";
 }
 
-TEST_F(Ages, SurviveAStepOfTheWritersClockEitherWay) {
+TEST_F(Ages, survive_a_step_of_the_writers_clock_either_way) {
   for (int i = 0; i < 100; ++i) age(0.01 * i, 0.01 * i + 0.002);
   clock_offset -= from_seconds(30).count();
   for (int i = 100; i < 200; ++i) EXPECT_LT(age(0.01 * i, 0.01 * i + 0.002), 0.001) << i;
@@ -375,13 +375,13 @@ TEST_F(Ages, SurviveAStepOfTheWritersClockEitherWay) {
   EXPECT_NEAR(age(3.0, 3.052), 0.05, 1e-3) << "a late sample is still seen as late";
 }
 
-TEST_F(Ages, FollowClocksThatDriftApart) {
+TEST_F(Ages, follow_clocks_that_drift_apart) {
   double worst = 0;
   for (int i = 0; i < 60000; ++i) worst = std::max(worst, age(0.01 * i, 0.01 * i * 1.0005));
   EXPECT_LT(worst, 1e-4) << "500 ppm over ten minutes";
 }
 
-TEST(LocalNetwork, SameSeedSameHistory) {
+TEST(LocalNetwork, same_seed_same_history) {
   const auto history = [](std::uint64_t seed) {
     LocalNetwork network(seed);
     Bus& a = network.add("sim");

@@ -15,14 +15,14 @@ TimeGrant until(double seconds, double waited = 0, std::uint64_t incarnation = 1
   return {.incarnation = incarnation, .until = at(seconds), .waited = from_seconds(waited)};
 }
 
-TEST(PacedClock, IsTheMachinesClockUntilTheFirstGrant) {
+TEST(PacedClock, is_the_machines_clock_until_the_first_grant) {
   PacedClock clock;
   EXPECT_EQ(clock.at(at(7)), at(7));
   EXPECT_EQ(clock.look_at(at(9), at(7)), at(9));
   EXPECT_FALSE(clock.paced());
 }
 
-TEST(PacedClock, StandsStillWhereNoMoreIsGranted) {
+TEST(PacedClock, stands_still_where_no_more_is_granted) {
   PacedClock clock;
   ASSERT_TRUE(clock.grant(until(10.02), at(10)));
   EXPECT_EQ(clock.at(at(10.01)), at(10.01));
@@ -31,7 +31,7 @@ TEST(PacedClock, StandsStillWhereNoMoreIsGranted) {
   EXPECT_EQ(clock.at(at(10.055)), at(10.025));
 }
 
-TEST(PacedClock, NeverGoesBackAfterTheFirstGrant) {
+TEST(PacedClock, never_goes_back_after_the_first_grant) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   clock.at(at(10.02));
@@ -40,14 +40,14 @@ TEST(PacedClock, NeverGoesBackAfterTheFirstGrant) {
   EXPECT_EQ(clock.at(at(10.04)), at(10.025));
 }
 
-TEST(PacedClock, TakesTheSystemsTimeFromTheFirstGrantAlsoWhenThatIsEarlier) {
+TEST(PacedClock, takes_the_systems_time_from_the_first_grant_also_when_that_is_earlier) {
   PacedClock clock;
   EXPECT_EQ(clock.at(at(100)), at(100));
   clock.grant(until(60.02, 40), at(100));
   EXPECT_EQ(clock.at(at(100.01)), at(60.01));
 }
 
-TEST(PacedClock, GoesOnWhenTheSimulatorHasBeenSilentForASecond) {
+TEST(PacedClock, goes_on_when_the_simulator_has_been_silent_for_a_second) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   double wall = 10;
@@ -60,7 +60,7 @@ TEST(PacedClock, GoesOnWhenTheSimulatorHasBeenSilentForASecond) {
   EXPECT_LT(begin, at(11.1)) << "time has jumped";
 }
 
-TEST(PacedClock, AProcessThatGotNoProcessorDoesNotBlameTheSimulator) {
+TEST(PacedClock, a_process_that_got_no_processor_does_not_blame_the_simulator) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   clock.at(at(10.02));
@@ -68,7 +68,7 @@ TEST(PacedClock, AProcessThatGotNoProcessorDoesNotBlameTheSimulator) {
   EXPECT_TRUE(clock.paced());
 }
 
-TEST(PacedClock, AProcessThatWasStoppedFirstHearsWhetherItWasWaitedFor) {
+TEST(PacedClock, a_process_that_was_stopped_first_hears_whether_it_was_waited_for) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   clock.at(at(10.005));
@@ -79,7 +79,7 @@ TEST(PacedClock, AProcessThatWasStoppedFirstHearsWhetherItWasWaitedFor) {
   EXPECT_EQ(clock.at(at(11.002)), at(11.002)) << "the simulator has gone on";
 }
 
-TEST(PacedClock, AProcessThatWasStarvedMakesUpForWhatWasGranted) {
+TEST(PacedClock, a_process_that_was_starved_makes_up_for_what_was_granted) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   clock.at(at(10.005));
@@ -88,14 +88,14 @@ TEST(PacedClock, AProcessThatWasStarvedMakesUpForWhatWasGranted) {
   EXPECT_EQ(clock.at(at(11.001)), at(10.016));
 }
 
-TEST(PacedClock, OnlyOneSimulatorGivesThePace) {
+TEST(PacedClock, only_one_simulator_gives_the_pace) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   EXPECT_FALSE(clock.grant(until(99, 0, 2), at(10.01)));
   EXPECT_EQ(clock.at(at(10.05)), at(10.02));
 }
 
-TEST(PacedClock, AnEarlierArrivalIsNeverInTheFuture) {
+TEST(PacedClock, an_earlier_arrival_is_never_in_the_future) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   clock.at(at(10.05));
@@ -103,7 +103,7 @@ TEST(PacedClock, AnEarlierArrivalIsNeverInTheFuture) {
   EXPECT_EQ(clock.past(at(10.04)), at(10.02));
 }
 
-TEST(PacedClock, WhatArrivedWhileTimeStoodStillArrivedThen) {
+TEST(PacedClock, what_arrived_while_time_stood_still_arrived_then) {
   PacedClock clock;
   clock.grant(until(10.02), at(10));
   clock.at(at(10.02));
@@ -114,7 +114,7 @@ TEST(PacedClock, WhatArrivedWhileTimeStoodStillArrivedThen) {
   EXPECT_EQ(clock.past(at(10.073)), at(10.023));
 }
 
-TEST(Executor, MakesUpForEveryTickOfGrantedTimeAtTheInstantItWasDue) {
+TEST(Executor, makes_up_for_every_tick_of_granted_time_at_the_instant_it_was_due) {
   Executor executor([](const std::string&) {});
   const TimePoint start = monotonic_now();
   executor.grant({.incarnation = 1, .until = start + from_seconds(0.02), .waited = {}});
@@ -136,7 +136,7 @@ TEST(Executor, MakesUpForEveryTickOfGrantedTimeAtTheInstantItWasDue) {
   EXPECT_EQ(status.skipped, 0u);
 }
 
-TEST(Executor, OfTheTicksBeforeAJumpOfTimeOnlyTheNewestIsServed) {
+TEST(Executor, of_the_ticks_before_a_jump_of_time_only_the_newest_is_served) {
   Executor executor([](const std::string&) {});
   TimePoint start = monotonic_now();
   executor.grant({.incarnation = 1, .until = start + from_seconds(0.02), .waited = {}});
@@ -155,7 +155,7 @@ TEST(Executor, OfTheTicksBeforeAJumpOfTimeOnlyTheNewestIsServed) {
   EXPECT_GT(status.skipped, 100u);
 }
 
-TEST(Executor, HeartbeatsGoOnWhileTimeStandsStill) {
+TEST(Executor, heartbeats_go_on_while_time_stands_still) {
   Executor executor([](const std::string&) {});
   executor.grant({.incarnation = 1, .until = monotonic_now(), .waited = {}});
   int beats = 0, ticks = 0;

@@ -53,7 +53,7 @@ class EveryMessage : public testing::TestWithParam<std::size_t> {
   }
 };
 
-TEST_P(EveryMessage, GoesThereAndBackWithoutLoss) {
+TEST_P(EveryMessage, goes_there_and_back_without_loss) {
   for (const bool full : {false, true}) {
     auto first = sample(full);
     auto message = type.new_message();
@@ -73,7 +73,7 @@ TEST_P(EveryMessage, GoesThereAndBackWithoutLoss) {
   }
 }
 
-TEST_P(EveryMessage, PrintsAsJson) {
+TEST_P(EveryMessage, prints_as_json) {
   auto message = type.new_message();
   std::string why;
   auto wire = sample();
@@ -84,7 +84,7 @@ TEST_P(EveryMessage, PrintsAsJson) {
   EXPECT_FALSE(nlohmann::json::parse(type.to_json(type.new_message().get()), nullptr, false).is_discarded());
 }
 
-TEST_P(EveryMessage, RejectsEveryNumberThatIsNone) {
+TEST_P(EveryMessage, rejects_every_number_that_is_none) {
   constexpr double kInf = std::numeric_limits<double>::infinity();
   auto wire = sample();
   for (const NamedLeaf& leaf : leaves(wire.get())) {
@@ -115,7 +115,7 @@ TEST_P(EveryMessage, RejectsEveryNumberThatIsNone) {
   EXPECT_TRUE(accepts(wire.get(), why)) << why;
 }
 
-TEST_P(EveryMessage, RejectsUnknownChoicesBrokenTextsFlagsAndStamps) {
+TEST_P(EveryMessage, rejects_unknown_choices_broken_texts_flags_and_stamps) {
   auto wire = sample();
   for (const NamedLeaf& leaf : leaves(wire.get())) {
     std::vector<char> good(static_cast<char*>(leaf.value), static_cast<char*>(leaf.value) + leaf.size);
@@ -143,7 +143,7 @@ TEST_P(EveryMessage, RejectsUnknownChoicesBrokenTextsFlagsAndStamps) {
   }
 }
 
-TEST_P(EveryMessage, FullestSampleFitsItsRowOfTheTable) {
+TEST_P(EveryMessage, fullest_sample_fits_its_row_of_the_table) {
   const std::size_t size = test::cdr_size(type, sample(true).get());
   EXPECT_LE(size, type.row().largest) << type.row().type;
   EXPECT_GE(size * 2, type.row().largest) << type.row().type << " is far below its row: " << size;
@@ -168,7 +168,7 @@ RobotState good_state() {
   return state;
 }
 
-TEST(Wire, SaysWhatIsWrongInOneSentence) {
+TEST(Wire, says_what_is_wrong_in_one_sentence) {
   RobotState state = good_state();
   state.velocity = Vector::Zero(21);
   EXPECT_EQ(refusal_of(state), "RobotState.velocity has not as many values as position");
@@ -196,7 +196,7 @@ TEST(Wire, SaysWhatIsWrongInOneSentence) {
   EXPECT_EQ(refusal_of(goal), "TaskGoal.kind is the unknown choice 99, the last known one is 14 (clear_person)");
 }
 
-TEST(Wire, NormalisesNearlyUnitQuaternionsAndRejectsZeroOnes) {
+TEST(Wire, normalises_nearly_unit_quaternions_and_rejects_zero_ones) {
   const MessageType& type = message_type<RobotState>();
   auto wire = type.new_wire();
   type.fill(wire.get(), false);
@@ -215,7 +215,7 @@ TEST(Wire, NormalisesNearlyUnitQuaternionsAndRejectsZeroOnes) {
   EXPECT_EQ(why, "RobotState.T_world_base.orientation has norm 0, must be a unit quaternion");
 }
 
-TEST(Wire, CutsLongSentencesAndLongListsOfRefusalsInsteadOfLosingTheMessage) {
+TEST(Wire, cuts_long_sentences_and_long_lists_of_refusals_instead_of_losing_the_message) {
   TaskStatus status;
   status.reason = std::string(255, 'a') + "\xc3\xa9";  // the bound falls into the last character
   status.refusals.assign(300, Refusal{"grasp", "no"});
@@ -229,7 +229,7 @@ TEST(Wire, CutsLongSentencesAndLongListsOfRefusalsInsteadOfLosingTheMessage) {
   EXPECT_EQ(out.refusals.size(), 256u);
 }
 
-TEST(Wire, InfinityTravelsAsTheHorizon) {
+TEST(Wire, infinity_travels_as_the_horizon) {
   TrajectoryForecast forecast;
   forecast.time_to_collision = forecast.clearance = std::numeric_limits<double>::infinity();
   const MessageType& type = message_type<TrajectoryForecast>();
@@ -242,7 +242,7 @@ TEST(Wire, InfinityTravelsAsTheHorizon) {
   EXPECT_EQ(out.clearance, std::numeric_limits<double>::infinity());
 }
 
-TEST(Topics, TableNamesWhatExistsOnce) {
+TEST(Topics, table_names_what_exists_once) {
   const std::set<std::string> components{"supervisor",
                                          "spark",
                                          "costmap",
@@ -280,7 +280,7 @@ TEST(Topics, TableNamesWhatExistsOnce) {
   }
 }
 
-TEST(Idl, EveryFieldAndEnumeratorIsDocumented) {
+TEST(Idl, every_field_and_enumerator_is_documented) {
   int fields = 0;
   for (const auto& entry : std::filesystem::directory_iterator(HANDSEL_SOURCE_DIR "/idl")) {
     if (entry.path().extension() != ".idl") continue;

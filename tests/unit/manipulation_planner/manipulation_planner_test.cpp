@@ -5,7 +5,7 @@ namespace {
 
 using rig::Rig;
 
-TEST(ManipulationPlanner, TheHandOpensOnItsWayWhichIsPlannedForItOpened) {
+TEST(ManipulationPlanner, the_hand_opens_on_its_way_which_is_planned_for_it_opened) {
   Rig rig;
   rig.moves = true;
   rig.opens_for = 20;
@@ -25,7 +25,7 @@ TEST(ManipulationPlanner, TheHandOpensOnItsWayWhichIsPlannedForItOpened) {
   EXPECT_EQ(rig.execution.hand, HandState::idle);
 }
 
-TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
+TEST(ManipulationPlanner, picks_by_approach_reach_grasp_and_lift) {
   Rig rig;
   rig.start(ActionKind::pick);
   rig.run(30);
@@ -34,7 +34,7 @@ TEST(ManipulationPlanner, PicksByApproachReachGraspAndLift) {
   EXPECT_EQ(rig.phases, (std::vector<std::string>{"approach", "reaching the object", "lift"}));
 }
 
-TEST(ManipulationPlanner, AMotionThatIsHeldBackAgainAndAgainIsPlannedAnew) {
+TEST(ManipulationPlanner, a_motion_that_is_held_back_again_and_again_is_planned_anew) {
   Rig rig;
   rig.moves = true;
   rig.start(ActionKind::pick);
@@ -52,7 +52,7 @@ TEST(ManipulationPlanner, AMotionThatIsHeldBackAgainAndAgainIsPlannedAnew) {
   EXPECT_TRUE(blocked());
 }
 
-TEST(ManipulationPlanner, TheObjectRisesWhenLifted) {
+TEST(ManipulationPlanner, the_object_rises_when_lifted) {
   Rig rig;
   rig.start(ActionKind::pick);
   double before = 0;
@@ -63,7 +63,7 @@ TEST(ManipulationPlanner, TheObjectRisesWhenLifted) {
   EXPECT_GT(rig.tool().translation().z() - before, 0.1);
 }
 
-TEST(ManipulationPlanner, GivesWithinReachOfThePersonAndEngagesThemOnlyAtTheOffer) {
+TEST(ManipulationPlanner, gives_within_reach_of_the_person_and_engages_them_only_at_the_offer) {
   Rig rig;
   rig.start(ActionKind::pick);
   rig.run(30);
@@ -84,7 +84,7 @@ TEST(ManipulationPlanner, GivesWithinReachOfThePersonAndEngagesThemOnlyAtTheOffe
   EXPECT_NE(std::find(rig.allowed.back().begin(), rig.allowed.back().end(), "anna"), rig.allowed.back().end());
 }
 
-TEST(ManipulationPlanner, AnOfferNobodyTakesFailsWithTheirName) {
+TEST(ManipulationPlanner, an_offer_nobody_takes_fails_with_their_name) {
   Rig rig;
   rig.start(ActionKind::pick);
   rig.run(30);
@@ -96,7 +96,7 @@ TEST(ManipulationPlanner, AnOfferNobodyTakesFailsWithTheirName) {
   EXPECT_TRUE(rig.planner.status().holding);
 }
 
-TEST(ManipulationPlanner, AMotionThatIsStoppedIsPlannedAgain) {
+TEST(ManipulationPlanner, a_motion_that_is_stopped_is_planned_again) {
   Rig rig;
   rig.stops = 2;
   rig.start(ActionKind::go_to);
@@ -105,7 +105,7 @@ TEST(ManipulationPlanner, AMotionThatIsStoppedIsPlannedAgain) {
   EXPECT_EQ(rig.path_requests, 3);
 }
 
-TEST(ManipulationPlanner, FromAPersonItTouchesItDrawsBackFirst) {
+TEST(ManipulationPlanner, from_a_person_it_touches_it_draws_back_first) {
   Rig rig;
   rig.touched = "anna";
   rig.touching_posture = rig.q;
@@ -124,7 +124,7 @@ TEST(ManipulationPlanner, FromAPersonItTouchesItDrawsBackFirst) {
   EXPECT_GT(farthest, before + 0.03);
 }
 
-TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave) {
+TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_when_they_leave) {
   Rig rig;
   rig.people.people.clear();
   rig.scene.boxes.clear();
@@ -165,7 +165,7 @@ TEST(ManipulationPlanner, AKeptPathIsTimedAnewWhenPeopleComeNearAndWhenTheyLeave
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
 }
 
-TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {
+TEST(ManipulationPlanner, says_what_stood_in_the_way_and_what_it_tried) {
   Rig rig;
   rig.failing_paths = 1000;
   rig.start(ActionKind::go_to);
@@ -175,26 +175,26 @@ TEST(ManipulationPlanner, SaysWhatStoodInTheWayAndWhatItTried) {
   EXPECT_FALSE(rig.planner.status().refusals.empty());
 }
 
-TEST(ManipulationPlanner, NoGraspsIsAReasonNotACrash) {
+TEST(ManipulationPlanner, no_grasps_is_a_reason_not_a_crash) {
   Rig rig;
   rig.grasps_exist = false;
   rig.fails_to_pick("three contacts");
 }
 
-TEST(ManipulationPlanner, ADeadPlannerIsAskedAgainAndNamedInTheEnd) {
+TEST(ManipulationPlanner, a_dead_planner_is_asked_again_and_named_in_the_end) {
   Rig rig;
   rig.grasp_planner_lives = false;
   rig.fails_to_pick("grasp planner", ActionFailure::no_answer);
 }
 
-TEST(ManipulationPlanner, AnEmptyHandBacksOffAndSaysSo) {
+TEST(ManipulationPlanner, an_empty_hand_backs_off_and_says_so) {
   Rig rig;
   rig.grasp_holds = false;
   rig.fails_to_pick("closed on nothing", ActionFailure::nothing_grasped);
   EXPECT_EQ(rig.phases.back(), "backing off");
 }
 
-TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
+TEST(ManipulationPlanner, what_stays_behind_when_the_hand_goes_up_is_not_held) {
   Rig rig;
   rig.object_comes = false;
   rig.fails_to_pick("stayed behind", ActionFailure::left_behind);
@@ -202,7 +202,7 @@ TEST(ManipulationPlanner, WhatStaysBehindWhenTheHandGoesUpIsNotHeld) {
   EXPECT_GT(std::count(rig.phases.begin(), rig.phases.end(), "lift"), 1) << "it is tried again";
 }
 
-TEST(ManipulationPlanner, WhatSlipsOutOfTheHandEndsTheActionWithThatReason) {
+TEST(ManipulationPlanner, what_slips_out_of_the_hand_ends_the_action_with_that_reason) {
   for (const bool to_a_person : {false, true}) {
     Rig rig;
     rig.start(ActionKind::pick);
@@ -227,7 +227,7 @@ TEST(ManipulationPlanner, WhatSlipsOutOfTheHandEndsTheActionWithThatReason) {
   }
 }
 
-TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoStopsTheArmAndTakesTheNextAction) {
+TEST(ManipulationPlanner, cancelled_in_mid_motion_it_says_so_stops_the_arm_and_takes_the_next_action) {
   Rig rig;
   rig.moves = true;
   rig.q[rig.robot->require_group("arm").axes[0]] += 1.0;
@@ -250,7 +250,7 @@ TEST(ManipulationPlanner, CancelledInMidMotionItSaysSoStopsTheArmAndTakesTheNext
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded);
 }
 
-TEST(ManipulationPlanner, WithTheActionGoesWhatItHasAskedThePathPlannerFor) {
+TEST(ManipulationPlanner, with_the_action_goes_what_it_has_asked_the_path_planner_for) {
   for (const bool replaced : {false, true}) {
     Rig rig;
     rig.path_planner_lives = false;
@@ -284,7 +284,7 @@ TEST(ManipulationPlanner, WithTheActionGoesWhatItHasAskedThePathPlannerFor) {
   EXPECT_FALSE(rig.last_path.cancel) << "all was answered";
 }
 
-TEST(ManipulationPlanner, PlacesWhatItHoldsOnTheSurface) {
+TEST(ManipulationPlanner, places_what_it_holds_on_the_surface) {
   Rig rig;
   Vector at_grasp = rig.q;  // as the rig answers
   at_grasp[rig.robot->require_group("arm").axes[0]] += 0.2;

@@ -8,7 +8,7 @@ namespace {
 
 using rig::Rig;
 
-TEST(ManipulationPlanner, TakesWhatAPersonHoldsOutAndEngagesThemOnlyWhileTheyOffer) {
+TEST(ManipulationPlanner, takes_what_a_person_holds_out_and_engages_them_only_while_they_offer) {
   Rig rig;
   rig.start(ActionKind::receive);
   rig.run(1);
@@ -44,7 +44,7 @@ Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
   return grasp;
 }
 
-TEST(ManipulationPlanner, WhatIsTakenCanBePutDownWhereThatIsPossibleAtAll) {
+TEST(ManipulationPlanner, what_is_taken_can_be_put_down_where_that_is_possible_at_all) {
   for (const bool somewhere : {true, false}) {
     Rig rig;
     rig.hold_out();
@@ -65,7 +65,7 @@ TEST(ManipulationPlanner, WhatIsTakenCanBePutDownWhereThatIsPossibleAtAll) {
   }
 }
 
-TEST(ManipulationPlanner, WhatNobodyOffersIsNotTaken) {
+TEST(ManipulationPlanner, what_nobody_offers_is_not_taken) {
   Rig rig;
   rig.scene.objects[0].holder = Holder::human;
   rig.scene.objects[0].holder_id = "anna";
@@ -77,7 +77,7 @@ TEST(ManipulationPlanner, WhatNobodyOffersIsNotTaken) {
   EXPECT_EQ(rig.phases, std::vector<std::string>{"making room"}) << "it moved toward them";
 }
 
-TEST(ManipulationPlanner, WhoWasAskedForItOffersItWithABentArmToo) {
+TEST(ManipulationPlanner, who_was_asked_for_it_offers_it_with_a_bent_arm_too) {
   Rig rig;
   rig.hold_out();
   rig.facts.facts.clear();
@@ -86,7 +86,7 @@ TEST(ManipulationPlanner, WhoWasAskedForItOffersItWithABentArmToo) {
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
 }
 
-TEST(ManipulationPlanner, AnOfferWhoseMeasureTremblesDoesNotEnd) {
+TEST(ManipulationPlanner, an_offer_whose_measure_trembles_does_not_end) {
   Rig rig;
   rig.moves = true;
   rig.share = 0.15;
@@ -106,7 +106,7 @@ TEST(ManipulationPlanner, AnOfferWhoseMeasureTremblesDoesNotEnd) {
   EXPECT_TRUE(rig.planner.status().refusals.empty()) << rig.planner.status().refusals.front().reason;
 }
 
-TEST(ManipulationPlanner, AnOfferThatIsShiftedIsFollowedWhileTheArmMoves) {
+TEST(ManipulationPlanner, an_offer_that_is_shifted_is_followed_while_the_arm_moves) {
   Rig rig;
   rig.moves = true;
   rig.share = 0.15;
@@ -122,7 +122,7 @@ TEST(ManipulationPlanner, AnOfferThatIsShiftedIsFollowedWhileTheArmMoves) {
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "backing off"), 0);
 }
 
-TEST(ManipulationPlanner, ForeseesWhenTheObjectChangesHands) {
+TEST(ManipulationPlanner, foresees_when_the_object_changes_hands) {
   Rig rig;
   rig.moves = true;
   rig.hold_out();
@@ -146,7 +146,7 @@ TEST(ManipulationPlanner, ForeseesWhenTheObjectChangesHands) {
   EXPECT_FALSE(std::isfinite(rig.planner.status().time_to_exchange)) << "it is over";
 }
 
-TEST(ManipulationPlanner, WhatIsPutIntoTheOpenHandOnItsWayIsHeldAtOnce) {
+TEST(ManipulationPlanner, what_is_put_into_the_open_hand_on_its_way_is_held_at_once) {
   Rig rig;
   rig.moves = true;
   rig.share = 0.15;
@@ -167,7 +167,7 @@ TEST(ManipulationPlanner, WhatIsPutIntoTheOpenHandOnItsWayIsHeldAtOnce) {
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "drawing back"), 0);
 }
 
-TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
+TEST(ManipulationPlanner, what_is_drawn_back_is_not_gone_after) {
   Rig rig;
   rig.moves = true;
   rig.hold_out();
@@ -181,7 +181,7 @@ TEST(ManipulationPlanner, WhatIsDrawnBackIsNotGoneAfter) {
   EXPECT_EQ(rig.planner.status().refusals.back().reason, "anna has drawn mug back");
 }
 
-TEST(ManipulationPlanner, WhoStepsTowardTheHandThatIsNearIsSteppedBackFrom) {
+TEST(ManipulationPlanner, who_steps_toward_the_hand_that_is_near_is_stepped_back_from) {
   Rig rig;
   rig.moves = true;
   rig.share = 0.15;
@@ -203,7 +203,7 @@ TEST(ManipulationPlanner, WhoStepsTowardTheHandThatIsNearIsSteppedBackFrom) {
   EXPECT_EQ(phase_text(rig.planner.status()), "reaching the object") << "it comes again: " << rig.planner.status().reason;
 }
 
-TEST(ManipulationPlanner, RoomIsMadeOnlyUntilThereIsAnOffer) {
+TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
   Rig rig;
   rig.moves = true;
   rig.share = 0.02;
@@ -219,7 +219,7 @@ TEST(ManipulationPlanner, RoomIsMadeOnlyUntilThereIsAnOffer) {
   EXPECT_NE(phase_text(rig.planner.status()), "making room") << "it goes all the way though she waits";
 }
 
-TEST(ManipulationPlanner, WhereFingersAreInTheWayOfTheHandItDoesNotGo) {
+TEST(ManipulationPlanner, where_fingers_are_in_the_way_of_the_hand_it_does_not_go) {
   Rig rig;
   rig.hold_out();
   Person& anna = rig.people.people.front();
@@ -236,7 +236,7 @@ TEST(ManipulationPlanner, WhereFingersAreInTheWayOfTheHandItDoesNotGo) {
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "approach"), 0);
 }
 
-TEST(ManipulationPlanner, FromAnOfferThatIsMovedAwayItBacksOffWithTheHandOpened) {
+TEST(ManipulationPlanner, from_an_offer_that_is_moved_away_it_backs_off_with_the_hand_opened) {
   Rig rig;
   rig.moves = true;
   rig.hold_out();
@@ -254,7 +254,7 @@ TEST(ManipulationPlanner, FromAnOfferThatIsMovedAwayItBacksOffWithTheHandOpened)
   EXPECT_EQ(rig.planner.status().refusals.back().reason, "mug was moved away");
 }
 
-TEST(ManipulationPlanner, WhoDoesNotLetGoKeepsIt) {
+TEST(ManipulationPlanner, who_does_not_let_go_keeps_it) {
   Rig rig;
   rig.object_comes = false;
   rig.hold_out();

@@ -33,7 +33,7 @@ bool inside(const BodyCapsule& c, const Vector3& p) {
   return (p - c.a - t * d).norm() <= c.radius + 1e-9;
 }
 
-TEST(HumanBody, JointsAreInOrderAndLeftIsLeft) {
+TEST(HumanBody, joints_are_in_order_and_left_is_left) {
   const Person p = person_at({1, 2, 0}, 0);
   ASSERT_EQ(p.joints.size(), kBodyJoints.size());
   for (std::size_t i = 0; i < kBodyJoints.size(); ++i) EXPECT_EQ(p.joints[i].name, kBodyJoints[i]);
@@ -41,7 +41,7 @@ TEST(HumanBody, JointsAreInOrderAndLeftIsLeft) {
   EXPECT_EQ(body_joint_index("tail"), -1);
 }
 
-TEST(HumanBody, CapsulesCoverEveryJointAndTheTopOfTheHead) {
+TEST(HumanBody, capsules_cover_every_joint_and_the_top_of_the_head) {
   const Person p = person_at({0, 0, 0}, 0.7);
   const auto capsules = body_capsules(p);
   for (const auto& joint : p.joints) {
@@ -55,7 +55,7 @@ TEST(HumanBody, CapsulesCoverEveryJointAndTheTopOfTheHead) {
   EXPECT_LT(top, p.stature * 1.05);
 }
 
-TEST(HumanBody, InflationGrowsEveryCapsule) {
+TEST(HumanBody, inflation_grows_every_capsule) {
   Person p = person_at({0, 0, 0}, 0);
   const auto before = body_capsules(p);
   p.inflation = 0.1;
@@ -63,9 +63,9 @@ TEST(HumanBody, InflationGrowsEveryCapsule) {
   for (std::size_t i = 0; i < before.size(); ++i) EXPECT_NEAR(after[i].radius, before[i].radius + 0.1, 1e-12);
 }
 
-TEST(HumanBody, NobodyHasNoCapsules) { EXPECT_TRUE(body_capsules(Person{}).empty()); }
+TEST(HumanBody, nobody_has_no_capsules) { EXPECT_TRUE(body_capsules(Person{}).empty()); }
 
-TEST(FitBody, CompleteObservationsAreKept) {
+TEST(FitBody, complete_observations_are_kept) {
   const Person truth = person_at({1.2, 0.3, 0}, 2.5);
   ObservedPerson seen;
   for (const auto& joint : truth.joints) seen.joints.push_back({joint.name, joint.position, 1.0});
@@ -73,13 +73,13 @@ TEST(FitBody, CompleteObservationsAreKept) {
   for (const auto& joint : truth.joints) EXPECT_LT(off(fitted, truth, joint.name), 1e-9);
 }
 
-TEST(FitBody, TrunkAndHeadPlaceTheUnseenRest) {
+TEST(FitBody, trunk_and_head_place_the_unseen_rest) {
   const Person truth = person_at({1.2, -0.4, 0}, -2.9);
   const auto fitted = fit_body(observe(truth, {"head", "neck", "torso", "l_shoulder", "r_shoulder"}), nullptr, 1.75);
   for (const auto& joint : truth.joints) EXPECT_LT(off(fitted, truth, joint.name), 0.02) << joint.name;
 }
 
-TEST(FitBody, OneJointAndTheGazeAreEnoughToStand) {
+TEST(FitBody, one_joint_and_the_gaze_are_enough_to_stand) {
   const Person truth = person_at({2, 0, 0}, M_PI);
   ObservedPerson seen = observe(truth, {"head"});
   seen.has_gaze = true;
@@ -89,7 +89,7 @@ TEST(FitBody, OneJointAndTheGazeAreEnoughToStand) {
   EXPECT_LT(off(fitted, truth, "r_hand"), 0.05);
 }
 
-TEST(FitBody, UnseenElbowBendsBySizeAndUnseenHandFollowsTheForearm) {
+TEST(FitBody, unseen_elbow_bends_by_size_and_unseen_hand_follows_the_forearm) {
   const Person truth = person_at({0, 0, 0}, 0);
   ObservedPerson seen = observe(truth, {"head", "neck", "torso", "l_shoulder", "r_shoulder"});
   const Vector3 shoulder = truth.joints[body_joint_index("r_shoulder")].position;
@@ -106,7 +106,7 @@ TEST(FitBody, UnseenElbowBendsBySizeAndUnseenHandFollowsTheForearm) {
   EXPECT_NEAR((hand - wrist).normalized().dot((wrist - elbow).normalized()), 1.0, 1e-6);
 }
 
-TEST(FitBody, PreviousBodyKeepsWhatIsNoLongerSeen) {
+TEST(FitBody, previous_body_keeps_what_is_no_longer_seen) {
   Person previous = person_at({0, 0, 0}, 0);
   const Vector3 elbow = previous.joints[body_joint_index("r_elbow")].position;
   Vector3& wrist = previous.joints[body_joint_index("r_wrist")].position;
@@ -117,7 +117,7 @@ TEST(FitBody, PreviousBodyKeepsWhatIsNoLongerSeen) {
   EXPECT_LT(off(fitted, now, "r_wrist"), 0.02);
 }
 
-TEST(FitBody, NothingSeenIsNothingUnlessThereWasABody) {
+TEST(FitBody, nothing_seen_is_nothing_unless_there_was_a_body) {
   EXPECT_TRUE(fit_body({}, nullptr, 1.75).empty());
   const Person previous = person_at({1, 1, 0}, 0);
   EXPECT_LT(off(fit_body({}, &previous, 1.75), previous, "head"), 1e-12);
@@ -128,7 +128,7 @@ TEST(FitBody, NothingSeenIsNothingUnlessThereWasABody) {
   EXPECT_TRUE(fit_body(nonsense, nullptr, 1.75).empty());
 }
 
-TEST(FitBody, EverySubsetGivesAFiniteBodyThatKeepsWhatWasSeen) {
+TEST(FitBody, every_subset_gives_a_finite_body_that_keeps_what_was_seen) {
   constexpr std::uint64_t seed = 3;
   std::mt19937_64 engine(seed);
   std::normal_distribution<double> noise(0, 0.03);
@@ -147,7 +147,7 @@ TEST(FitBody, EverySubsetGivesAFiniteBodyThatKeepsWhatWasSeen) {
   }
 }
 
-TEST(SimplifiedBody, IsACylinderOnTheFloorAndAHead) {
+TEST(SimplifiedBody, is_a_cylinder_on_the_floor_and_a_head) {
   const auto body = simplified_body(person_at({1, 2, 0}, 0.3));
   EXPECT_NEAR(body.axis_bottom.x(), 1, 0.02);
   EXPECT_NEAR(body.axis_bottom.y(), 2, 0.02);
@@ -156,7 +156,7 @@ TEST(SimplifiedBody, IsACylinderOnTheFloorAndAHead) {
   EXPECT_NEAR(body.head.z(), 1.63, 0.05);
 }
 
-TEST(ComfortableReach, IsBeforeTheShoulderAndBelowIt) {
+TEST(ComfortableReach, is_before_the_shoulder_and_below_it) {
   const Person p = person_at({0, 0, 0}, M_PI);
   const Vector3 shoulder = p.joints[body_joint_index("r_shoulder")].position, reach = comfortable_reach(p, Side::right);
   EXPECT_LT(reach.x(), shoulder.x() - 0.3);

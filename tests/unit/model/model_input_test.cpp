@@ -37,17 +37,17 @@ std::string urdf_refusal(const std::string& text) {
   return message_of<ConfigError>([&] { RobotModel::load_urdf(folder.write("r.urdf", text)); });
 }
 
-TEST(BadUrdf, MissingFile) {
+TEST(BadUrdf, missing_file) {
   EXPECT_THAT(message_of<MissingError>([] { RobotModel::load_urdf("/nowhere/r.urdf"); }), HasSubstr("/nowhere/r.urdf"));
 }
 
-TEST(BadUrdf, NotXml) {
+TEST(BadUrdf, not_xml) {
   EXPECT_THAT(urdf_refusal("<robot name=\"r\">\n<link name=\"a\"\n</robot>"), AllOf(HasSubstr("r.urdf:"), HasSubstr("XML")));
   EXPECT_THAT(urdf_refusal("<house/>"), HasSubstr("no <robot>"));
   EXPECT_THAT(urdf_refusal("<robot name=\"r\"/>"), HasSubstr("no link"));
 }
 
-TEST(BadUrdf, Cycles) {
+TEST(BadUrdf, with_a_cycle_is_refused) {
   EXPECT_THAT(
       urdf_refusal("<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/>" + joint("x", "a", "b") + joint("y", "b", "a") + "</robot>"),
       HasSubstr("cycle"));
@@ -56,18 +56,18 @@ TEST(BadUrdf, Cycles) {
   EXPECT_THAT(urdf_refusal(urdf(joint("again", "base", "one"))), AllOf(HasSubstr("r.urdf:5"), HasSubstr("more than one parent")));
 }
 
-TEST(BadUrdf, Duplicates) {
+TEST(BadUrdf, with_duplicates_is_refused) {
   EXPECT_THAT(urdf_refusal(urdf("<link name=\"one\"/>\n")), AllOf(HasSubstr("r.urdf:5"), HasSubstr("link one is defined twice")));
 }
 
-TEST(BadUrdf, CapsulesAreNotUrdf) {
+TEST(BadUrdf, capsules_are_not_urdf) {
   EXPECT_THAT(
       urdf_refusal("<robot name=\"r\">\n<link name=\"a\"><collision><geometry>\n<capsule radius=\"1\" length=\"1\"/></geometry></collision>"
                    "</link></robot>"),
       AllOf(HasSubstr("r.urdf:3"), HasSubstr("link a has a <capsule>")));
 }
 
-TEST(BadUrdf, MissingMeshNamesTheLine) {
+TEST(BadUrdf, missing_mesh_names_the_line) {
   const TemporaryFolder folder;
   const auto file = folder.write("r.urdf", urdf("<link name=\"m\"><collision><geometry><mesh filename=\"package://p/none.stl\"/></geometry>"
                                                 "</collision></link>\n" +
@@ -76,7 +76,7 @@ TEST(BadUrdf, MissingMeshNamesTheLine) {
   EXPECT_EQ(RobotModel::load_urdf(file, {}, Meshes::skip).dof(), 2);
 }
 
-TEST(BadUrdf, Values) {
+TEST(BadUrdf, with_bad_values_is_refused) {
   EXPECT_THAT(
       urdf_refusal("<robot name=\"r\"><link name=\"a\"><inertial><mass value=\"-1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" "
                    "iyz=\"0\" izz=\"1\"/></inertial></link><link name=\"b\"/>" +
@@ -91,7 +91,7 @@ TEST(BadUrdf, Values) {
               HasSubstr("circle"));
 }
 
-TEST(BadUrdf, Limits) {
+TEST(BadUrdf, with_bad_limits_is_refused) {
   const auto with_limit = [](const std::string& limit) {
     return urdf("<link name=\"a\"/><joint name=\"x\" type=\"revolute\"><parent link=\"one\"/><child link=\"a\"/><axis xyz=\"0 0 1\"/>" +
                 limit + "</joint>");
@@ -161,7 +161,7 @@ TEST(BadSrdf, groups_that_contain_themselves_are_refused) {
   EXPECT_THAT(refusal(rows), HasSubstr("has 600 groups"));
 }
 
-TEST(Urdf, MeshesAreFoundInPackagesAboveTheUrdf) {
+TEST(Urdf, meshes_are_found_in_packages_above_the_urdf) {
   const TemporaryFolder folder;
   std::filesystem::create_directories(folder.path() / "urdf");
   folder.write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -173,7 +173,7 @@ TEST(Urdf, MeshesAreFoundInPackagesAboveTheUrdf) {
   EXPECT_EQ(std::get<MeshPtr>(shape)->vertices.size(), 3u);
 }
 
-TEST(Urdf, MimicsOfMimicsAreComposed) {
+TEST(Urdf, mimics_of_mimics_are_composed) {
   const TemporaryFolder folder;
   const auto robot =
       RobotModel::load_urdf(folder.write("r.urdf", urdf("<link name=\"a\"/><link name=\"b\"/>" +
@@ -200,11 +200,11 @@ std::string robot_refusal(const std::string& text, const std::string& model = ur
   return message_of<ConfigError>([&] { RobotModel::load(folder.write("r.txtpb", text)); });
 }
 
-TEST(RobotDescription, IsReadWhenRight) { EXPECT_EQ(robot_refusal(description("rest { key: \"j\" value: 0.5 }\n")), "no error"); }
+TEST(RobotDescription, is_read_when_right) { EXPECT_EQ(robot_refusal(description("rest { key: \"j\" value: 0.5 }\n")), "no error"); }
 
-TEST(RobotDescription, UnknownKeyNamesTheLine) { EXPECT_THAT(robot_refusal(description("colour: 3\n")), HasSubstr("r.txtpb:7:")); }
+TEST(RobotDescription, unknown_key_names_the_line) { EXPECT_THAT(robot_refusal(description("colour: 3\n")), HasSubstr("r.txtpb:7:")); }
 
-TEST(RobotDescription, UnknownNamesNameTheLine) {
+TEST(RobotDescription, unknown_names_name_the_line) {
   EXPECT_THAT(robot_refusal(description("", "\"k\"")), AllOf(HasSubstr("r.txtpb:3"), HasSubstr("no joint \"k\"")));
   EXPECT_THAT(robot_refusal(description("tool_link: \"palm\"\n")), AllOf(HasSubstr("r.txtpb:7"), HasSubstr("tool_link")));
   EXPECT_THAT(robot_refusal(description("rest { key: \"k\" value: 0 }\n")), AllOf(HasSubstr("r.txtpb:7"), HasSubstr("rest")));
@@ -212,11 +212,11 @@ TEST(RobotDescription, UnknownNamesNameTheLine) {
   EXPECT_THAT(robot_refusal(description("", "\"j\", \"j\"")), HasSubstr("twice"));
 }
 
-TEST(RobotDescription, RestMustBeInsideTheLimits) {
+TEST(RobotDescription, rest_must_be_inside_the_limits) {
   EXPECT_THAT(robot_refusal(description("rest { key: \"j\" value: 1.5 }\n")), HasSubstr("outside"));
 }
 
-TEST(RobotDescription, LimitsMustBeCompleteAndOrdered) {
+TEST(RobotDescription, limits_must_be_complete_and_ordered) {
   const auto limits = [](double comfort, double stop) {
     const auto entry = [](const char* kind, double v) {
       return std::string(kind) + " { joints: \"j\" velocity: " + std::to_string(v) + " acceleration: 4 jerk: 12 }\n";
@@ -230,19 +230,19 @@ TEST(RobotDescription, LimitsMustBeCompleteAndOrdered) {
               HasSubstr("guard has no entry for \"j\""));
 }
 
-TEST(RobotDescription, WhatMovesNeedsAMass) {
+TEST(RobotDescription, what_moves_needs_a_mass) {
   EXPECT_THAT(robot_refusal(description(),
                             "<robot name=\"r\"><link name=\"base\"/>\n<link name=\"one\"/>" + joint("j", "base", "one") + "</robot>"),
               AllOf(HasSubstr("r.urdf:2"), HasSubstr("mass > 0")));
 }
 
-TEST(RobotDescription, MissingUrdfIsMissing) {
+TEST(RobotDescription, missing_urdf_is_missing) {
   const TemporaryFolder folder;
   EXPECT_THAT(message_of<MissingError>([&] { RobotModel::load(folder.write("r.txtpb", description())); }),
               AllOf(HasSubstr("r.txtpb:2"), HasSubstr("r.urdf")));
 }
 
-TEST(RobotDescription, SrdfNamesAreChecked) {
+TEST(RobotDescription, srdf_names_are_checked) {
   const TemporaryFolder folder;
   folder.write("r.urdf", urdf(""));
   folder.write("r.srdf", "<robot name=\"r\">\n<disable_collisions link1=\"base\" link2=\"ghost\"/></robot>");
@@ -250,7 +250,7 @@ TEST(RobotDescription, SrdfNamesAreChecked) {
               AllOf(HasSubstr("r.srdf:2"), HasSubstr("ghost")));
 }
 
-TEST(HandDescription, SaysWhatIsWrong) {
+TEST(HandDescription, says_what_is_wrong) {
   const TemporaryFolder folder;
   folder.write("r.urdf", urdf("<link name=\"two\"/>" + joint("k", "base", "two")));
   const auto refusal = [&](const std::string& text) {
@@ -311,7 +311,7 @@ class Mounted : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(Mounted, HandFollowsTheFlange) {
+TEST_F(Mounted, hand_follows_the_flange) {
   const RobotModel robot = load();
   EXPECT_EQ(robot.dof(), 2);
   EXPECT_EQ(robot.link_index("old"), -1);
@@ -325,7 +325,7 @@ TEST_F(Mounted, HandFollowsTheFlange) {
   EXPECT_EQ(robot.links()[static_cast<std::size_t>(robot.link_index("nail"))].collision.size(), 1U);
 }
 
-TEST_F(Mounted, SaysWhatIsWrong) {
+TEST_F(Mounted, says_what_is_wrong) {
   EXPECT_THAT(message_of<ConfigError>([&] { load("without: \"ghost\"\n"); }), HasSubstr("no link \"ghost\""));
   EXPECT_THAT(message_of<ConfigError>([&] { load("without: \"base\"\n"); }), HasSubstr("root"));
   EXPECT_THAT(message_of<ConfigError>([&] { load("", "mount { link: \"flange\" }\n"); }), HasSubstr("mount.link is \"flange\""));
@@ -335,7 +335,7 @@ TEST_F(Mounted, SaysWhatIsWrong) {
   EXPECT_THAT(message_of<ConfigError>([&] { load(); }), AllOf(HasSubstr("link \"one\""), HasSubstr("g.urdf")));
 }
 
-TEST(ObjectDescription, SaysWhatIsWrong) {
+TEST(ObjectDescription, says_what_is_wrong) {
   const TemporaryFolder folder;
   folder.write("o.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
   const auto load = [&](const std::string& text) { return ObjectModel::load(folder.write("o.txtpb", text)); };
@@ -350,7 +350,7 @@ TEST(ObjectDescription, SaysWhatIsWrong) {
   EXPECT_LT((std::get<Box>(object.parts[0].shape).size - Vector3::Constant(0.1)).norm(), 1e-9);
 }
 
-TEST(ForeignRobots, Load) {
+TEST(ForeignRobots, are_loaded_from_the_data_folder) {
   const char* data = std::getenv("HANDSEL_DATA");
   const std::filesystem::path root = data != nullptr ? data : "";
   if (data == nullptr || !std::filesystem::exists(root / "robots")) GTEST_SKIP() << "HANDSEL_DATA is not set or has no robots";

@@ -27,7 +27,7 @@ Vector random_axes(const RobotModel& robot, const Group& group, std::mt19937_64&
   return q;
 }
 
-TEST(Jido, HasTheAxesOfArmHandAndHeadInOrder) {
+TEST(Jido, has_the_axes_of_arm_hand_and_head_in_order) {
   EXPECT_EQ(jido().dof(), 22);
   EXPECT_EQ(jido().require_group("arm").axes.size(), 7u);
   EXPECT_EQ(jido().require_group("hand").axes.front(), 7);
@@ -36,7 +36,7 @@ TEST(Jido, HasTheAxesOfArmHandAndHeadInOrder) {
   EXPECT_EQ(jido().redundancy_axis(), 2);
 }
 
-TEST(Jido, FlangeIsWhereTheArmsKinematicsPutIt) {
+TEST(Jido, flange_is_where_the_arms_kinematics_put_it) {
   Vector q = Vector::Zero(jido().dof());
   q.head<7>() << 0.3, -0.5, 0.7, 1.1, -0.4, 0.6, 0.2;
   std::vector<Pose> T;
@@ -48,7 +48,7 @@ TEST(Jido, FlangeIsWhereTheArmsKinematicsPutIt) {
   EXPECT_LT((flange.linear() - R).cwiseAbs().maxCoeff(), 1e-5);
 }
 
-TEST(Sah, TipCentresAreThoseOfTheHand) {
+TEST(Sah, tip_centres_are_those_of_the_hand) {
   const auto tips = [](const Vector& q) {
     std::vector<Pose> T;
     sah().model().forward(q, T);
@@ -65,7 +65,7 @@ TEST(Sah, TipCentresAreThoseOfTheHand) {
   expect(tips(q), {{0.07335, 0.07466, 0.22284}, {0.08491, 0.03632, 0.21671}, {0.08491, -0.00609, 0.22125}, {0.08491, -0.04842, 0.21629}});
 }
 
-TEST(Sah, DistalJointsFollowMiddleJointsOneToOne) {
+TEST(Sah, distal_joints_follow_middle_joints_one_to_one) {
   const auto& model = sah().model();
   EXPECT_EQ(model.dof(), 13);
   int coupled = 0;
@@ -78,7 +78,7 @@ TEST(Sah, DistalJointsFollowMiddleJointsOneToOne) {
   EXPECT_EQ(coupled, 4);
 }
 
-TEST(Sah, IsTheHandJidoCarries) {
+TEST(Sah, is_the_hand_jido_carries) {
   const auto& group = jido().require_group("hand");
   ASSERT_EQ(group.axes.size(), sah().model().axes().size());
   for (std::size_t i = 0; i < group.axes.size(); ++i) EXPECT_EQ(jido().axes()[group.axes[i]].name, sah().model().axes()[i].name);
@@ -94,7 +94,7 @@ TEST(Sah, IsTheHandJidoCarries) {
   }
 }
 
-TEST(Jido, RestPostureIsInsideLimitsWithTheHandInFront) {
+TEST(Jido, rest_posture_is_inside_limits_with_the_hand_in_front) {
   const Vector& q = jido().rest_posture();
   for (int i = 0; i < jido().dof(); ++i) {
     EXPECT_GE(q[i], jido().axes()[i].lower);
@@ -106,7 +106,7 @@ TEST(Jido, RestPostureIsInsideLimitsWithTheHandInFront) {
   EXPECT_LT(palm.translation().z(), 1.1);
 }
 
-TEST(Jido, LimitsAreOrdered) {
+TEST(Jido, limits_are_ordered) {
   const auto ordered = [](const Vector& comfort, const Vector& stop, const Vector& guard) {
     EXPECT_TRUE((comfort.array() * 1.1 <= guard.array() * (1 + 1e-9)).all());
     EXPECT_TRUE((stop.array() <= guard.array()).all());
@@ -119,7 +119,7 @@ TEST(Jido, LimitsAreOrdered) {
   for (int i = 0; i < jido().dof(); ++i) EXPECT_LE(g.velocity[i], jido().joints()[jido().axes()[i].joint].max_velocity + 1e-9);
 }
 
-TEST(Kinematics, JacobianIsTheDerivativeOfForward) {
+TEST(Kinematics, jacobian_is_the_derivative_of_forward) {
   std::mt19937_64 engine(11);
   const auto& arm = jido().require_group("arm");
   for (int trial = 0; trial < 20; ++trial) {
@@ -138,7 +138,7 @@ TEST(Kinematics, JacobianIsTheDerivativeOfForward) {
   }
 }
 
-TEST(Kinematics, JacobianOfAFingerCountsTheCoupledJoint) {
+TEST(Kinematics, jacobian_of_a_finger_counts_the_coupled_joint) {
   const auto& hand = sah().model();
   const auto& fore = hand.require_group("fore");
   const Vector q = Vector::Constant(hand.dof(), 0.2);
@@ -148,7 +148,7 @@ TEST(Kinematics, JacobianOfAFingerCountsTheCoupledJoint) {
   EXPECT_LT((moved - hand.jacobian(q, fore).block<3, 1>(0, 2)).norm(), 1e-5);
 }
 
-TEST(InverseKinematics, FindsEveryReachablePoseInsideTheLimits) {
+TEST(InverseKinematics, finds_every_reachable_pose_inside_the_limits) {
   constexpr std::uint64_t seed = 21;
   std::mt19937_64 engine(seed);
   const auto& arm = jido().require_group("arm");
@@ -168,7 +168,7 @@ TEST(InverseKinematics, FindsEveryReachablePoseInsideTheLimits) {
   }
 }
 
-TEST(InverseKinematics, StaysNearItsSeedForANearbyPose) {
+TEST(InverseKinematics, stays_near_its_seed_for_a_nearby_pose) {
   const auto& arm = jido().require_group("arm");
   Pose wanted = jido().link_pose(jido().rest_posture(), arm.tip);
   wanted.translation().z() += 0.02;
@@ -177,7 +177,7 @@ TEST(InverseKinematics, StaysNearItsSeedForANearbyPose) {
   EXPECT_LT((*found - RobotModel::part(jido().rest_posture(), arm)).cwiseAbs().maxCoeff(), 0.1);
 }
 
-TEST(InverseKinematics, FindsTheSolutionBesideItsSeed) {
+TEST(InverseKinematics, finds_the_solution_beside_its_seed) {
   constexpr std::uint64_t seed = 33;
   std::mt19937_64 engine(seed);
   std::uniform_real_distribution<double> share(0.12, 0.88), noise(-0.05, 0.05);
@@ -194,7 +194,7 @@ TEST(InverseKinematics, FindsTheSolutionBesideItsSeed) {
   }
 }
 
-TEST(InverseKinematics, IsNumericForOtherChains) {
+TEST(InverseKinematics, is_numeric_for_other_chains) {
   std::mt19937_64 engine(5);
   const auto& hand = sah().model();
   for (const char* name : {"thumb", "fore"}) {
@@ -208,7 +208,7 @@ TEST(InverseKinematics, IsNumericForOtherChains) {
   }
 }
 
-TEST(InverseKinematics, SaysNoOutOfReach) {
+TEST(InverseKinematics, says_no_out_of_reach) {
   const auto& arm = jido().require_group("arm");
   Pose far = jido().link_pose(jido().rest_posture(), arm.tip);
   far.translation().x() += 2;
@@ -217,7 +217,7 @@ TEST(InverseKinematics, SaysNoOutOfReach) {
   EXPECT_FALSE(jido().inverse(arm, far, jido().rest_posture()).has_value());
 }
 
-TEST(InverseKinematics, IsTheSameForTheSameSeed) {
+TEST(InverseKinematics, is_the_same_for_the_same_seed) {
   const auto& arm = jido().require_group("arm");
   const Pose wanted = make_pose({0.7, -0.3, 0.8}, Eigen::Quaterniond(Eigen::AngleAxisd(2.5, Vector3(1, 1, 0).normalized())));
   const auto first = jido().inverse(arm, wanted, jido().rest_posture());
@@ -228,7 +228,7 @@ TEST(InverseKinematics, IsTheSameForTheSameSeed) {
   }
 }
 
-TEST(RobotModel, ForwardReusesItsOutput) {
+TEST(RobotModel, forward_reuses_its_output) {
   std::vector<Pose> T;
   jido().forward(jido().rest_posture(), T);
   const Pose* data = T.data();
@@ -236,7 +236,7 @@ TEST(RobotModel, ForwardReusesItsOutput) {
   EXPECT_EQ(T.data(), data);
 }
 
-TEST(RobotModel, PairsDisabledAreAdjacentRigidOrInTheSrdf) {
+TEST(RobotModel, pairs_disabled_are_adjacent_rigid_or_in_the_srdf) {
   const auto link = [](const char* name) { return jido().link_index(name); };
   EXPECT_TRUE(jido().pair_disabled(link("arm_link_1"), link("arm_link_2")));
   EXPECT_TRUE(jido().pair_disabled(link("base_link"), link("arm_base")));
@@ -245,7 +245,7 @@ TEST(RobotModel, PairsDisabledAreAdjacentRigidOrInTheSrdf) {
   EXPECT_FALSE(jido().pair_disabled(link("fore_distal_link"), link("thumb_distal_link")));
 }
 
-TEST(ObjectModel, ObjectsAreClosedAndStandOnTheirLowestPoint) {
+TEST(ObjectModel, objects_are_closed_and_stand_on_their_lowest_point) {
   for (const char* name : {"mug", "bottle", "can", "box", "ball"}) {
     const auto object = ObjectModel::load(object_description(name));
     EXPECT_EQ(object.name, name);

@@ -34,7 +34,7 @@ std::vector<Vector3> surface_points(const Shape& shape) {
   return out;
 }
 
-TEST(RobotCapsules, ContainEveryPointOfTheShapes) {
+TEST(RobotCapsules, contain_every_point_of_the_shapes) {
   const auto robot = RobotModel::load(robot_description("jido"));
   const auto capsules = robot_capsules(robot);
   for (std::size_t link = 0; link < robot.links().size(); ++link)
@@ -63,7 +63,7 @@ struct Setting {
   Separation find(const Exception& exception = {}) const { return separation(capsules, T, T_world_base, people, exception); }
 };
 
-TEST(Separation, IsTheLeastOverAllPairs) {
+TEST(Separation, is_the_least_over_all_pairs) {
   const Setting s;
   double least = std::numeric_limits<double>::infinity();
   Vector3 p, q;
@@ -78,27 +78,27 @@ TEST(Separation, IsTheLeastOverAllPairs) {
   EXPECT_EQ(found.person, "anna");
 }
 
-TEST(Separation, NobodyIsInfinitelyFar) {
+TEST(Separation, nobody_is_infinitely_far) {
   Setting s;
   s.people.people.clear();
   EXPECT_EQ(s.find().distance, std::numeric_limits<double>::infinity());
   EXPECT_EQ(s.find().link, -1);
 }
 
-TEST(Separation, ShrinksByTheInflation) {
+TEST(Separation, shrinks_by_the_inflation) {
   Setting s;
   const double before = s.find().distance;
   s.people.people[0].inflation = 0.2;
   EXPECT_NEAR(s.find().distance, before - 0.2, 1e-9);
 }
 
-TEST(Separation, IsNegativeInsideThePerson) {
+TEST(Separation, is_negative_inside_the_person) {
   Setting s;
   for (auto& joint : s.people.people[0].joints) joint.position = s.T_world_base * s.T[s.robot.tool_link()].translation();
   EXPECT_LT(s.find().distance, 0);
 }
 
-TEST(Separation, ExceptsTheExchangingForearmAndHandOnly) {
+TEST(Separation, excepts_the_exchanging_forearm_and_hand_only) {
   Setting s;
   auto& joints = s.people.people[0].joints;
   const Vector3 palm = s.T_world_base * s.T[s.robot.tool_link()].translation();
@@ -112,7 +112,7 @@ TEST(Separation, ExceptsTheExchangingForearmAndHandOnly) {
   EXPECT_GT(free.distance, s.find().distance);
 }
 
-TEST(Separation, IncompleteBodiesStillCount) {
+TEST(Separation, incomplete_bodies_still_count) {
   Setting s;
   auto& joints = s.people.people[0].joints;
   joints.resize(4);

@@ -36,7 +36,7 @@ HumanObservation seen(const Vector3& hand) {
 
 Vector3 hand_of(const SimWorld& world) { return world.person(0).joints[static_cast<std::size_t>(body_joint_index("r_hand"))].position; }
 
-TEST(ExternalPerson, FollowsItsSourceAndNoOther) {
+TEST(ExternalPerson, follows_its_source_and_no_other) {
   SimWorld world(jido(), library(), with_visitor(), SimSettings{}, 1);
   Driver driver(world, start());
   EXPECT_TRUE(world.follows());
@@ -64,7 +64,7 @@ TEST(ExternalPerson, FollowsItsSourceAndNoOther) {
   EXPECT_EQ(world.control({0, SimAction::person_freeze, "anna", 0}), "");
 }
 
-TEST(ExternalPerson, ComesFromOneMomentToTheNextWithoutAPush) {
+TEST(ExternalPerson, comes_from_one_moment_to_the_next_without_a_push) {
   SimWorld world(jido(), library(), with_visitor(), SimSettings{}, 1);
   Driver driver(world, start());
   driver.hold(0.3);
@@ -85,7 +85,7 @@ TEST(ExternalPerson, ComesFromOneMomentToTheNextWithoutAPush) {
   EXPECT_LT(fastest, 0.05) << "nobody struck the arm";
 }
 
-TEST(ExternalPerson, TakesWhatIsOfferedAndPullsUntilTheRobotLetsGo) {
+TEST(ExternalPerson, takes_what_is_offered_and_pulls_until_the_robot_lets_go) {
   SimWorld world(jido(), library(), with_visitor(), SimSettings{}, 1);
   Driver driver(world, start());
   const Vector3 away(in_hand().x() + 0.45, in_hand().y() - 0.2, 0.8);
@@ -136,7 +136,7 @@ TEST(ExternalPerson, TakesWhatIsOfferedAndPullsUntilTheRobotLetsGo) {
   EXPECT_LT((hand_of(world) - near - Vector3(0.12, 0, 0)).norm(), 0.05) << "the led hand is back where it is told to be";
 }
 
-TEST(ExternalPerson, NeedsASourceOfItsOwn) {
+TEST(ExternalPerson, needs_a_source_of_its_own) {
   config::Scenario scenario = with_visitor();
   scenario.mutable_people(0)->clear_external();
   EXPECT_THROW(SimWorld(jido(), library(), scenario, SimSettings{}, 1), ConfigError);

@@ -41,7 +41,7 @@ std::string sentence(const std::string& name) {
   return "read";
 }
 
-TEST(Bvh, JointPositionsAreThoseOfAThirdPartyTool) {
+TEST(Bvh, joint_positions_are_those_of_a_third_party_tool) {
   if (bvh_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA names no folder with motion/bvh";
   const Bvh bvh = parse_bvh(contents(bvh_folder() / "walk01.bvh"), "walk01.bvh");
   EXPECT_EQ(bvh.frames(), 101u);
@@ -74,7 +74,7 @@ TEST(Bvh, JointPositionsAreThoseOfAThirdPartyTool) {
   EXPECT_LT(worst, 2e-5) << "file units; the table has five decimals";
 }
 
-TEST(Bvh, EveryFileOfOthersIsReadAndIsABody) {
+TEST(Bvh, every_file_of_others_is_read_and_is_a_body) {
   if (bvh_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA names no folder with motion/bvh";
   int read = 0;
   for (const auto& entry : fs::directory_iterator(bvh_folder())) {
@@ -105,7 +105,7 @@ TEST(Bvh, EveryFileOfOthersIsReadAndIsABody) {
   EXPECT_GE(read, 7);
 }
 
-TEST(Recordings, OfOurCorpusReachWithTheRightHand) {
+TEST(Recordings, of_our_corpus_reach_with_the_right_hand) {
   for (const char* name : {"csv/good_reach.csv", "bvh/good_cm.bvh", "bvh/good_inches.bvh", "bvh/good_no_unit.bvh", "bvh/good_prefix.bvh"}) {
     const Recording r = load_recording(ours(name));
     EXPECT_EQ(r.taking, Side::right) << name;
@@ -115,14 +115,14 @@ TEST(Recordings, OfOurCorpusReachWithTheRightHand) {
   }
 }
 
-TEST(Recordings, UnevenTimesAreResampled) {
+TEST(Recordings, uneven_times_are_resampled) {
   const Recording r = load_recording(ours("csv/good_uneven.csv"));
   EXPECT_NEAR(r.rate, 19 / (19 / 30.0 + 0.01), 0.01);
   EXPECT_EQ(r.frames.size(), 20u);
 }
 
 /// A bent arm at the same share of its reach, the same direction, feet on the floor.
-TEST(Retarget, KeepsFeetOnTheFloorBonesOfTheNewBodyAndTheReach) {
+TEST(Retarget, keeps_feet_on_the_floor_bones_of_the_new_body_and_the_reach) {
   const auto length = [](const BodyPoints& p, const char* a, const char* b) { return (p[joint(a)] - p[joint(b)]).norm(); };
   std::vector<fs::path> files{ours("csv/good_reach.csv"), ours("bvh/good_cm.bvh")};
   if (!bvh_folder().empty()) files.push_back(bvh_folder() / "cmu_12_01_walk.bvh");
@@ -160,14 +160,14 @@ TEST(Retarget, KeepsFeetOnTheFloorBonesOfTheNewBodyAndTheReach) {
   }
 }
 
-TEST(Retarget, ToItsOwnSizeChangesLittle) {
+TEST(Retarget, to_its_own_size_changes_little) {
   const Recording from = load_recording(ours("csv/good_reach.csv"));
   const Recording to = retarget(from, from.stature);
   for (std::size_t f = 0; f < to.frames.size(); ++f)
     EXPECT_LT((to.frames[f][joint("r_hand")] - from.frames[f][joint("r_hand")]).norm(), 0.12);
 }
 
-TEST(BadRecordings, AreRefusedInOneSentenceWithFileAndLine) {
+TEST(BadRecordings, are_refused_in_one_sentence_with_file_and_line) {
   const std::pair<const char*, const char*> expected[] = {
       {"csv/nan.csv", "nan.csv:7: column 4 is not a finite number within 1e7"},
       {"csv/time_backwards.csv", "time_backwards.csv:7: time 0.100000 is not after 0.133300"},
@@ -190,7 +190,7 @@ TEST(BadRecordings, AreRefusedInOneSentenceWithFileAndLine) {
   for (const auto& [file, text] : expected) EXPECT_NE(sentence(file).find(text), std::string::npos) << file << ": " << sentence(file);
 }
 
-TEST(BadRecordings, WrongUnitsAreToldByTheBodysSize) {
+TEST(BadRecordings, wrong_units_are_told_by_the_bodys_size) {
   EXPECT_NE(sentence("csv/millimetres.csv").find("millimetres.csv:2: from waist to head the body measures 650.0"), std::string::npos)
       << sentence("csv/millimetres.csv");
   EXPECT_NE(sentence("csv/millimetres.csv").find("which looks like millimetres; positions must be in metres"), std::string::npos);
@@ -200,7 +200,7 @@ TEST(BadRecordings, WrongUnitsAreToldByTheBodysSize) {
   EXPECT_NE(sentence("csv/y_up.csv").find("z must be up"), std::string::npos);
 }
 
-TEST(BadRecordings, OfAnotherKindOrMissing) {
+TEST(BadRecordings, of_another_kind_or_missing) {
   EXPECT_THROW(load_recording("no/such.bvh"), MissingError);
   EXPECT_THROW(load_recording(fs::path(HANDSEL_SOURCE_DIR) / "README.md"), ConfigError);
 }

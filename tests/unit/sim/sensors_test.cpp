@@ -64,7 +64,7 @@ bool shows(const HumanObservation& observation, const std::string& joint) {
   return false;
 }
 
-TEST(Sensors, RateFrom15To120HzIsThatOfTheStream) {
+TEST(Sensors, rate_from15_to120_hz_is_that_of_the_stream) {
   for (const double rate : {15.0, 30.0, 60.0, 120.0}) {
     SensorSettings s = plain();
     s.rate = rate;
@@ -73,7 +73,7 @@ TEST(Sensors, RateFrom15To120HzIsThatOfTheStream) {
   }
 }
 
-TEST(Sensors, LatencyAndJitterAreThoseOfTheStreamAndOrderIsKept) {
+TEST(Sensors, latency_and_jitter_are_those_of_the_stream_and_order_is_kept) {
   SensorSettings s = plain();
   s.latency = 0.06;
   s.jitter = 0.02;
@@ -95,7 +95,7 @@ TEST(Sensors, LatencyAndJitterAreThoseOfTheStreamAndOrderIsKept) {
   EXPECT_LE(most, 0.081 + 1e-9);
 }
 
-TEST(Sensors, NoiseHasTheStandardDeviationAsked) {
+TEST(Sensors, noise_has_the_standard_deviation_asked) {
   SensorSettings s = plain();
   s.noise = 0.01;
   const Person anna = person_at("anna", 1.4, 0);
@@ -107,7 +107,7 @@ TEST(Sensors, NoiseHasTheStandardDeviationAsked) {
   EXPECT_NEAR(std::sqrt(squares / n), 0.01, 0.0003);
 }
 
-TEST(Sensors, DropOutsAreTheShareAskedAndIndependent) {
+TEST(Sensors, drop_outs_are_the_share_asked_and_independent) {
   SensorSettings s = plain();
   s.rate = 100;
   s.dropout = 0.2;
@@ -119,7 +119,7 @@ TEST(Sensors, DropOutsAreTheShareAskedAndIndependent) {
   EXPECT_NEAR(pairs / 20000.0, 0.04, 0.008);
 }
 
-TEST(Sensors, BurstsBeginAndLastAsAsked) {
+TEST(Sensors, bursts_begin_and_last_as_asked) {
   SensorSettings s = plain();
   s.rate = 100;
   s.burst_rate = 0.5;
@@ -135,7 +135,7 @@ TEST(Sensors, BurstsBeginAndLastAsAsked) {
   EXPECT_NEAR(silent / bursts, 0.3, 0.07);
 }
 
-TEST(Sensors, JointsAreMissingByTheShareAsked) {
+TEST(Sensors, joints_are_missing_by_the_share_asked) {
   SensorSettings s = plain();
   s.joint_dropout = 0.3;
   double seen = 0, all = 0;
@@ -146,7 +146,7 @@ TEST(Sensors, JointsAreMissingByTheShareAsked) {
   EXPECT_NEAR(seen / all, 0.7, 0.012);
 }
 
-TEST(Sensors, OneArmOnly) {
+TEST(Sensors, one_arm_only) {
   SensorSettings s = plain();
   s.joints = {"r_shoulder", "r_elbow", "r_wrist", "r_hand"};
   for (const auto& d : watch(s, {person_at("anna", 1.4, 0)}, 1)) {
@@ -155,7 +155,7 @@ TEST(Sensors, OneArmOnly) {
   }
 }
 
-TEST(Sensors, GazeIsMissingByTheShareAskedOrComesAloneOrNotAtAll) {
+TEST(Sensors, gaze_is_missing_by_the_share_asked_or_comes_alone_or_not_at_all) {
   SensorSettings s = plain();
   s.gaze_dropout = 0.4;
   double with = 0, all = 0;
@@ -173,7 +173,7 @@ TEST(Sensors, GazeIsMissingByTheShareAskedOrComesAloneOrNotAtAll) {
   }
 }
 
-TEST(Sensors, AWallHidesWhatIsBehindItAndOnlyThat) {
+TEST(Sensors, a_wall_hides_what_is_behind_it_and_only_that) {
   SensorSettings s = plain();
   s.T_world_sensor = make_pose({0, 0, 1.6});
   s.occlusion = true;
@@ -192,7 +192,7 @@ TEST(Sensors, AWallHidesWhatIsBehindItAndOnlyThat) {
   EXPECT_TRUE(shows(watch(s, {anna}, 0.1, 3, {beyond}).at(0).message, "r_ankle"));
 }
 
-TEST(Sensors, RobotAndOtherPeopleHideToo) {
+TEST(Sensors, robot_and_other_people_hide_too) {
   SensorSettings s = plain();
   s.T_world_sensor = make_pose({0, 0, 1.4});
   s.occlusion = true;
@@ -207,7 +207,7 @@ TEST(Sensors, RobotAndOtherPeopleHideToo) {
     }
 }
 
-TEST(Sensors, EyesAreNotSeenFromBehind) {
+TEST(Sensors, eyes_are_not_seen_from_behind) {
   SensorSettings s = plain();
   s.T_world_sensor = make_pose({0, 0, 1.6});
   s.occlusion = true;
@@ -215,7 +215,7 @@ TEST(Sensors, EyesAreNotSeenFromBehind) {
   EXPECT_FALSE(watch(s, {person_at("anna", 2, 0, 0)}, 0.1).at(0).message.people.at(0).has_gaze);
 }
 
-TEST(Sensors, FieldOfViewAndRangeLimitWhatIsSeen) {
+TEST(Sensors, field_of_view_and_range_limit_what_is_seen) {
   SensorSettings s = plain();
   s.T_world_sensor = make_pose({0, 0, 1.2});
   s.fov_horizontal = 1.0;
@@ -231,7 +231,7 @@ TEST(Sensors, FieldOfViewAndRangeLimitWhatIsSeen) {
   EXPECT_EQ(claims_too_much(s), "");
 }
 
-TEST(Sensors, OneThatIsCarriedSeesWhatIsBeforeItAndClaimsNothing) {
+TEST(Sensors, one_that_is_carried_sees_what_is_before_it_and_claims_nothing) {
   SensorSettings s = plain();
   s.link = "head";
   s.fov_horizontal = 1.0;
@@ -256,7 +256,7 @@ TEST(Sensors, OneThatIsCarriedSeesWhatIsBeforeItAndClaimsNothing) {
   EXPECT_FALSE(sees_her(M_PI));
 }
 
-TEST(Sensors, InTheWorldTheHeadSeesWhereItLooks) {
+TEST(Sensors, in_the_world_the_head_sees_where_it_looks) {
   const auto gazes = [](double pan) {
     config::Scenario scenario = mug_in_hand();
     add_person(scenario, config::STILL)->set_x(in_hand().x() + 1.0);
@@ -286,7 +286,7 @@ TEST(Sensors, InTheWorldTheHeadSeesWhereItLooks) {
   EXPECT_EQ(gazes(toward + 1.0), 0);
 }
 
-TEST(Sensors, IdentitySwapsHappenAsOftenAsAskedAndPlacesStay) {
+TEST(Sensors, identity_swaps_happen_as_often_as_asked_and_places_stay) {
   SensorSettings s = plain();
   s.swap_rate = 0.5;
   int swaps = 0;
@@ -305,7 +305,7 @@ TEST(Sensors, IdentitySwapsHappenAsOftenAsAskedAndPlacesStay) {
   EXPECT_GT(names.size(), 10u) << "a single body gets new names";
 }
 
-TEST(Sensors, FaultsInTimeDoWhatTheySay) {
+TEST(Sensors, faults_in_time_do_what_they_say) {
   const Person anna = person_at("anna", 1.4, 0);
   const auto with = [&](SensorFaultKind kind) {
     SensorSettings s = plain();
@@ -393,7 +393,7 @@ TEST(Sensors, a_disturbance_comes_and_goes_while_it_runs) {
   }
 }
 
-TEST(Sensors, TheSameSeedGivesTheSameStream) {
+TEST(Sensors, the_same_seed_gives_the_same_stream) {
   SensorSettings s = plain();
   s.noise = 0.01;
   s.jitter = 0.02;
@@ -412,7 +412,7 @@ TEST(Sensors, TheSameSeedGivesTheSameStream) {
   EXPECT_TRUE(a.size() != other.size() || a[0].message.people[0].joints[0].position != other[0].message.people[0].joints[0].position);
 }
 
-TEST(Sensors, InTheWorldTheRobotsOwnArmHidesThePersonFromASourceBehindIt) {
+TEST(Sensors, in_the_world_the_robots_own_arm_hides_the_person_from_a_source_behind_it) {
   config::Scenario scenario = mug_in_hand();
   add_person(scenario, config::STILL);
   const auto sensor = [&](const char* name, bool occlusion) {
@@ -455,7 +455,7 @@ std::string refusal(const std::function<void(config::SensorDescription&)>& spoil
   return "";
 }
 
-TEST(Sensors, SettingsThatMakeNoSenseAreRefusedInOneSentence) {
+TEST(Sensors, settings_that_make_no_sense_are_refused_in_one_sentence) {
   using D = config::SensorDescription;
   EXPECT_EQ(refusal([](D&) {}), "");
   EXPECT_EQ(refusal([](D& d) { d.set_rate(0); }), "scenario s: sensor camera: rate is 0, must be between 1 and 1000");

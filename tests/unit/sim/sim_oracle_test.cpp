@@ -45,7 +45,7 @@ struct Judge {
   void see(const JointCommand& c, std::uint64_t writer = 1) { oracle.observe(c, writer, now += 0.001, c.position); }
 };
 
-TEST(LimitsOracleTest, ALegalStreamHasNoViolationAndItsTrueShares) {
+TEST(LimitsOracleTest, a_legal_stream_has_no_violation_and_its_true_shares) {
   Judge judge;
   Stream stream(0.9);
   for (int i = 0; i < 2000; ++i) judge.see(stream.next());
@@ -57,7 +57,7 @@ TEST(LimitsOracleTest, ALegalStreamHasNoViolationAndItsTrueShares) {
   EXPECT_EQ(judge.oracle.writers(), 1u);
 }
 
-TEST(LimitsOracleTest, LateSetPointsAreNoViolation) {
+TEST(LimitsOracleTest, late_set_points_are_no_violation) {
   Judge judge;
   Stream stream(0.99);
   for (int i = 0; i < 5000; ++i) {
@@ -68,7 +68,7 @@ TEST(LimitsOracleTest, LateSetPointsAreNoViolation) {
   EXPECT_DOUBLE_EQ(judge.oracle.period(), 0.001);
 }
 
-TEST(LimitsOracleTest, LeftOutCyclesAndAClockThatFallsBehindAreNoViolation) {
+TEST(LimitsOracleTest, left_out_cycles_and_a_clock_that_falls_behind_are_no_violation) {
   LimitsOracle oracle{jido(), 0.02};
   Stream stream(0.99);
   double simulated = 0.0;
@@ -84,7 +84,7 @@ TEST(LimitsOracleTest, LeftOutCyclesAndAClockThatFallsBehindAreNoViolation) {
   EXPECT_DOUBLE_EQ(oracle.period(), 0.001);
 }
 
-TEST(LimitsOracleTest, LostSetPointsAreNoViolation) {
+TEST(LimitsOracleTest, lost_set_points_are_no_violation) {
   Judge judge;
   Stream stream(0.99);
   for (int i = 0; i < 2000; ++i) {
@@ -99,7 +99,7 @@ TEST(LimitsOracleTest, LostSetPointsAreNoViolation) {
   EXPECT_LE(judge.oracle.share_jerk(), 1 + 1e-6);
 }
 
-TEST(LimitsOracleTest, ShareIsJustAboveOneWhenJerkIs) {
+TEST(LimitsOracleTest, share_is_just_above_one_when_jerk_is) {
   Judge judge;
   Stream stream(1.0 + 1e-5);
   for (int i = 0; i < 200; ++i) judge.see(stream.next());
@@ -120,7 +120,7 @@ std::string broken_by(const Break& mutate, int at = 500) {
   return judge.oracle.violations() == 1 ? judge.oracle.last_violation() : "not caught";
 }
 
-TEST(LimitsOracleTest, EveryMutantIsCaughtByName) {
+TEST(LimitsOracleTest, every_mutant_is_caught_by_name) {
   const KinematicLimits& limits = jido().guard_limits();
   EXPECT_EQ(broken_by([](JointCommand& c) { c.position[0] += 1e-6; }).substr(0, 13), "position step");
   EXPECT_NE(broken_by([](JointCommand& c) { c.velocity[0] += 1e-3; }), "not caught");
@@ -130,7 +130,7 @@ TEST(LimitsOracleTest, EveryMutantIsCaughtByName) {
   EXPECT_NE(broken_by([](JointCommand& c) { c.position[5] = 9; }), "not caught");
 }
 
-TEST(LimitsOracleTest, TheFirstHundredAreJudgedToo) {
+TEST(LimitsOracleTest, the_first_hundred_are_judged_too) {
   Judge judge;
   Stream stream(0.5);
   for (int i = 0; i < 300; ++i) {
@@ -184,7 +184,7 @@ TEST(LimitsOracleTest, judges_two_writers_that_alternate) {
   EXPECT_GT(judge.oracle.violations(), 790u);
 }
 
-TEST(LimitsOracleTest, ASecondWriterAndALongGapAreSeen) {
+TEST(LimitsOracleTest, a_second_writer_and_a_long_gap_are_seen) {
   Judge judge;
   Stream stream(0.5);
   for (int i = 0; i < 300; ++i) judge.see(stream.next());
@@ -210,7 +210,7 @@ TEST(LimitsOracleTest, ASecondWriterAndALongGapAreSeen) {
   EXPECT_EQ(judge.oracle.violations(), 2u);
 }
 
-TEST(SeparationOracleTest, ItsStopAgreesWithTheStopOfTheTrajectoryRoom) {
+TEST(SeparationOracleTest, its_stop_agrees_with_the_stop_of_the_trajectory_room) {
   std::mt19937_64 random(20240607);
   const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   for (int i = 0; i < 20000; ++i) {
@@ -224,7 +224,7 @@ TEST(SeparationOracleTest, ItsStopAgreesWithTheStopOfTheTrajectoryRoom) {
   }
 }
 
-TEST(PeakSpeedTest, AJumpWithinOneStepIsNoMotion) {
+TEST(PeakSpeedTest, a_jump_within_one_step_is_no_motion) {
   PeakSpeed peak;
   for (int step = 0; step < 100; ++step) peak.add(step == 50 ? 65.0 : 0.4 + 0.001 * step);
   EXPECT_NEAR(peak.peak(), 0.4 + 0.001 * 97, 1e-12);
@@ -232,7 +232,7 @@ TEST(PeakSpeedTest, AJumpWithinOneStepIsNoMotion) {
   EXPECT_DOUBLE_EQ(peak.peak(), 1.5);
 }
 
-TEST(SeparationOracleTest, ApproachingFastIsAViolationStandingIsNot) {
+TEST(SeparationOracleTest, approaching_fast_is_a_violation_standing_is_not) {
   config::Scenario scenario;
   scenario.set_name("near");
   auto* person = add_person(scenario, config::STILL);
@@ -252,7 +252,7 @@ TEST(SeparationOracleTest, ApproachingFastIsAViolationStandingIsNot) {
   EXPECT_GT(truth_of(world).ssm_violations, 0u);
 }
 
-TEST(HandoverOracleTest, DemandsLiftContactAndASecondAlone) {
+TEST(HandoverOracleTest, demands_lift_contact_and_a_second_alone) {
   const auto run = [](double lift, double contact, double alone, bool floor) {
     HandoverOracle oracle(0.8, false);
     const auto pass = [&](const ObjectSituation& s, double seconds) {
@@ -278,7 +278,7 @@ TEST(HandoverOracleTest, DemandsLiftContactAndASecondAlone) {
   EXPECT_FALSE(run(0.12, 0.3, 1.0, true));
 }
 
-TEST(HandoverOracleTest, WhatAPersonGivesMustBeInBothHandsThenInTheRobotsAlone) {
+TEST(HandoverOracleTest, what_a_person_gives_must_be_in_both_hands_then_in_the_robots_alone) {
   const auto run = [](double both, double alone, bool floor) {
     HandoverOracle oracle(1.0, true);
     const auto pass = [&](const ObjectSituation& s, double seconds) {

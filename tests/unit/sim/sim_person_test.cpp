@@ -26,7 +26,7 @@ PersonView offer(const Vector3& where) {
 
 int joint(const char* name) { return body_joint_index(name); }
 
-TEST(SimPerson, ReachesSmoothlyAndItsHandEndsAtTheMug) {
+TEST(SimPerson, reaches_smoothly_and_its_hand_ends_at_the_mug) {
   PersonSettings settings;
   settings.id = "anna";
   settings.feet = Vector3(1.5, 0, 0);
@@ -56,7 +56,7 @@ TEST(SimPerson, ReachesSmoothlyAndItsHandEndsAtTheMug) {
   EXPECT_NEAR(gap, PersonModel::kPalm, 0.013);
 }
 
-TEST(SimPerson, NoJointEverJumps) {
+TEST(SimPerson, no_joint_ever_jumps) {
   for (const bool recorded : {false, true}) {
     if (recorded && recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
     PersonSettings settings;
@@ -78,7 +78,7 @@ TEST(SimPerson, NoJointEverJumps) {
   }
 }
 
-TEST(SimPerson, DoesNotReachForWhatMovesOrIsOutOfReach) {
+TEST(SimPerson, does_not_reach_for_what_moves_or_is_out_of_reach) {
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);
   settings.yaw = M_PI;
@@ -115,7 +115,7 @@ void live(PersonModel& person, double seconds, const Vector3& robot_hand, bool r
   for (int i = 0; i < static_cast<int>(seconds * 1000); ++i) person.step(0.001, holding(person, robot_hand, robot_holds_it));
 }
 
-TEST(SimPerson, WhoGivesHoldsItOutTowardTheRobotAndLetsGoOnceTheRobotHasIt) {
+TEST(SimPerson, who_gives_holds_it_out_toward_the_robot_and_lets_go_once_the_robot_has_it) {
   PersonModel person(giver());
   const Vector3 robot_hand(0.4, 0.3, 1.0);
   const double before = (person.hand().T_world_body.translation() - robot_hand).norm();
@@ -131,13 +131,13 @@ TEST(SimPerson, WhoGivesHoldsItOutTowardTheRobotAndLetsGoOnceTheRobotHasIt) {
   EXPECT_EQ(person.phase(), PersonPhase::watching);
 }
 
-TEST(SimPerson, WhoGivesNeverHoldsItIntoTheRobotsHand) {
+TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
   PersonModel person(giver());
   live(person, 3, {1.0, -0.2, 1.2});
   EXPECT_GT((person.hand().T_world_body.translation() - Vector3(1.0, -0.2, 1.2)).norm(), 0.3);
 }
 
-TEST(SimPerson, WhoHoldsSomethingKeepsItAboveTheTableTheySitAt) {
+TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
   PersonSettings settings = giver();
   settings.manner.seated = true;
   PersonModel free(settings);
@@ -160,7 +160,7 @@ TEST(SimPerson, WhoHoldsSomethingKeepsItAboveTheTableTheySitAt) {
   }
 }
 
-TEST(SimPerson, WhoIsIgnoredComesNearerAndHoldsItOutAnewTwice) {
+TEST(SimPerson, who_is_ignored_comes_nearer_and_holds_it_out_anew_twice) {
   PersonModel person(giver());
   const double before = person.body().joints[joint("torso")].position.x();
   live(person, 40, {0.3, 0, 1.0});
@@ -169,7 +169,7 @@ TEST(SimPerson, WhoIsIgnoredComesNearerAndHoldsItOutAnewTwice) {
 }
 
 /// Whatever the steps of people are to be answered by assumes that a trunk accelerates by at most 10 m/s^2 (StopProofSettings::people).
-TEST(SimPerson, AStepNearerIsNoFasterThanPeopleStep) {
+TEST(SimPerson, a_step_nearer_is_no_faster_than_people_step) {
   PersonModel person(giver());
   Vector3 before = Vector3::Zero();
   double fastest = 0, most = 0;
@@ -184,7 +184,7 @@ TEST(SimPerson, AStepNearerIsNoFasterThanPeopleStep) {
   EXPECT_GT(fastest, 0.3) << "no step was made";
 }
 
-TEST(SimPerson, WhoChangesTheirMindDrawsItBackOnceAndOffersAgain) {
+TEST(SimPerson, who_changes_their_mind_draws_it_back_once_and_offers_again) {
   PersonSettings settings = giver();
   settings.manner.withdraws = true;
   PersonModel person(settings);
@@ -198,7 +198,7 @@ TEST(SimPerson, WhoChangesTheirMindDrawsItBackOnceAndOffersAgain) {
   EXPECT_EQ(person.phase(), PersonPhase::offering) << "and now stays";
 }
 
-TEST(SimPerson, WhoHesitatesTakesItLaterAndWhoIsEarlyTakesItWhileItMoves) {
+TEST(SimPerson, who_hesitates_takes_it_later_and_who_is_early_takes_it_while_it_moves) {
   const auto taken_after = [](const Manner& manner, double speed) {
     PersonSettings settings;
     settings.feet = Vector3(1.5, 0, 0);
@@ -221,7 +221,7 @@ TEST(SimPerson, WhoHesitatesTakesItLaterAndWhoIsEarlyTakesItWhileItMoves) {
   EXPECT_LT(taken_after(early, 0.2), 2.5);
 }
 
-TEST(SimPerson, LooksAtWhatTheRobotHolds) {
+TEST(SimPerson, looks_at_what_the_robot_holds) {
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);
   settings.yaw = M_PI;
@@ -233,7 +233,7 @@ TEST(SimPerson, LooksAtWhatTheRobotHolds) {
   EXPECT_GT(body.gaze_direction.dot(want), 0.98);
 }
 
-TEST(SimPerson, WalksInFromBehindItsPlace) {
+TEST(SimPerson, walks_in_from_behind_its_place) {
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);
   settings.yaw = M_PI;
@@ -245,7 +245,7 @@ TEST(SimPerson, WalksInFromBehindItsPlace) {
   EXPECT_EQ(person.phase(), PersonPhase::watching);
 }
 
-TEST(SimRecording, TheTakerOfTheKthSampleFacesForwardAndReachesWithTheRightHand) {
+TEST(SimRecording, the_taker_of_the_kth_sample_faces_forward_and_reaches_with_the_right_hand) {
   if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const Recording recording = load_recording(recording_folder());
   EXPECT_EQ(recording.frames.size(), 801u);
@@ -261,7 +261,7 @@ TEST(SimRecording, TheTakerOfTheKthSampleFacesForwardAndReachesWithTheRightHand)
   EXPECT_GT(reaching[joint("r_hand")].x(), 0.45);
 }
 
-TEST(SimRecording, TheHandIsWarpedByAtMostTenCentimetresInTheLastHalfSecondAndTheFeetMoveLessThanThirty) {
+TEST(SimRecording, the_hand_is_warped_by_at_most_ten_centimetres_in_the_last_half_second_and_the_feet_move_less_than_thirty) {
   if (recording_folder().empty()) GTEST_SKIP() << "HANDSEL_DATA is not set";
   PersonSettings settings;
   settings.feet = Vector3(1.5, 0, 0);
@@ -298,7 +298,7 @@ TEST(SimRecording, TheHandIsWarpedByAtMostTenCentimetresInTheLastHalfSecondAndTh
   }
 }
 
-TEST(SimWorld, WhoFetchesAMugTakesItFromWhereItStandsAndGoes) {
+TEST(SimWorld, who_fetches_a_mug_takes_it_from_where_it_stands_and_goes) {
   config::Scenario scenario = mug_in_hand();
   config::PersonDescription* anna = add_person(scenario, config::FETCHER);
   anna->set_object("mug");
@@ -318,7 +318,7 @@ TEST(SimWorld, WhoFetchesAMugTakesItFromWhereItStandsAndGoes) {
   EXPECT_GT((world.T_world_object("mug").translation() - before).norm(), 0.5);
 }
 
-TEST(SimWorld, WhoFetchesWhatIsNotThereIsRefused) {
+TEST(SimWorld, who_fetches_what_is_not_there_is_refused) {
   config::Scenario scenario = mug_in_hand();
   add_person(scenario, config::FETCHER)->set_object("vase");
   try {
@@ -354,7 +354,7 @@ class BadRecording : public ::testing::Test {
   }
 };
 
-TEST_F(BadRecording, NamesFileLineAndFault) {
+TEST_F(BadRecording, names_file_line_and_fault) {
   EXPECT_EQ(sentence(), "accepted");
   write("neck", "x,y,z,q0,q1,q2,q3\n0,0,1,0,0,0,1\n0,0,oops,0,0,0,1\n");
   EXPECT_EQ(sentence(), "taker_neck_pose_saved.csv:3: column 3 is not a finite number");
@@ -374,7 +374,7 @@ TEST_F(BadRecording, NamesFileLineAndFault) {
   EXPECT_NE(sentence().find("cannot be opened"), std::string::npos);
 }
 
-TEST(SimRecording, AMissingFolderIsMissing) { EXPECT_THROW(load_recording("no/such/folder"), MissingError); }
+TEST(SimRecording, a_missing_folder_is_missing) { EXPECT_THROW(load_recording("no/such/folder"), MissingError); }
 
 }  // namespace
 }  // namespace handsel::sim

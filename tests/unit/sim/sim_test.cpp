@@ -20,7 +20,7 @@ config::Scenario from_open(config::Scenario scenario) {
   return scenario;
 }
 
-TEST(SimServo, FollowsAMotionOfAllAxesWithinThreeMilliradians) {
+TEST(SimServo, follows_a_motion_of_all_axes_within_three_milliradians) {
   SimWorld world = make(from_open(config::Scenario{}));
   Driver driver(world, start());
   Vector to = start();
@@ -37,7 +37,7 @@ TEST(SimServo, FollowsAMotionOfAllAxesWithinThreeMilliradians) {
   EXPECT_LT((state.position - to).cwiseAbs().maxCoeff(), 2e-4) << "gravity must not make it sag";
 }
 
-TEST(SimServo, ReportsEffortsWithinTheTorqueLimits) {
+TEST(SimServo, reports_efforts_within_the_torque_limits) {
   SimWorld world = make(from_open(config::Scenario{}));
   Driver driver(world, start());
   Vector to = start();
@@ -50,7 +50,7 @@ TEST(SimServo, ReportsEffortsWithinTheTorqueLimits) {
   });
 }
 
-TEST(SimRobotSide, StopsSoftlyTwentyMillisecondsAfterTheLastSetPointAndResumesWithMatchingOnes) {
+TEST(SimRobotSide, stops_softly_twenty_milliseconds_after_the_last_set_point_and_resumes_with_matching_ones) {
   RobotSide side(jido(), start(), RobotSideSettings{});
   JointCommand c;
   c.position = start();
@@ -90,7 +90,7 @@ TEST(SimRobotSide, StopsSoftlyTwentyMillisecondsAfterTheLastSetPointAndResumesWi
   EXPECT_EQ(side.refusal(), "");
 }
 
-TEST(SimRobotSide, FollowsSetPointsAtTheMeasuredPostureThoughTheHeldOneIsElsewhere) {
+TEST(SimRobotSide, follows_set_points_at_the_measured_posture_though_the_held_one_is_elsewhere) {
   RobotSide side(jido(), start(), RobotSideSettings{});
   JointCommand c;
   c.position = start();
@@ -114,7 +114,7 @@ TEST(SimRobotSide, FollowsSetPointsAtTheMeasuredPostureThoughTheHeldOneIsElsewhe
   EXPECT_EQ(side.position()[3], bent[3]);
 }
 
-TEST(SimRobotSide, AUserStopWhileSetPointsAreAwayStillEndsOnlyByEnable) {
+TEST(SimRobotSide, a_user_stop_while_set_points_are_away_still_ends_only_by_enable) {
   RobotSide side(jido(), start(), RobotSideSettings{});
   JointCommand c;
   c.position = start();
@@ -148,7 +148,7 @@ TEST(SimRobotSide, a_protective_stop_at_rest_lasts_until_every_process_has_heard
   EXPECT_NEAR(ended, RobotSideSettings{}.min_stop, 0.01);
 }
 
-TEST(SimRobotSide, UserStopEndsOnlyByEnable) {
+TEST(SimRobotSide, user_stop_ends_only_by_enable) {
   RobotSide side(jido(), start(), RobotSideSettings{});
   side.user_stop();
   JointCommand c;
@@ -164,7 +164,7 @@ TEST(SimRobotSide, UserStopEndsOnlyByEnable) {
   EXPECT_TRUE(side.command(c, now));
 }
 
-TEST(SimGrasp, ExistsOnlyWhileTheContactsAreForceClosed) {
+TEST(SimGrasp, exists_only_while_the_contacts_are_force_closed) {
   SimWorld world = make(from_open(mug_in_hand()));
   Driver driver(world, start());
   driver.hold(0.2);
@@ -177,7 +177,7 @@ TEST(SimGrasp, ExistsOnlyWhileTheContactsAreForceClosed) {
   EXPECT_FALSE(world.robot_grips());
 }
 
-TEST(SimGrasp, TwoPointsDoNotHoldButTwoPatchesOrThreePointsDo) {
+TEST(SimGrasp, two_points_do_not_hold_but_two_patches_or_three_points_do) {
   btDefaultCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;
@@ -202,7 +202,7 @@ TEST(SimGrasp, TwoPointsDoNotHoldButTwoPatchesOrThreePointsDo) {
   EXPECT_FALSE(grasp.closed({touch(0, 5, 0.003), touch(M_PI, 5, 0.003)}, 1, Vector3::Zero())) << "another object";
 }
 
-TEST(SimGrasp, CarriesTheMugAndMeasuresItsWeight) {
+TEST(SimGrasp, carries_the_mug_and_measures_its_weight) {
   SimWorld world = make(from_open(mug_in_hand()));
   Driver driver(world, start());
   driver.move(closed(start()), 1.5);
@@ -240,7 +240,7 @@ GroundTruth perform(SimWorld& world, double patience = 8) {
   return truth_of(world);
 }
 
-TEST(SimHandover, ATakerReachesPullsAndCarriesTheMugAlone) {
+TEST(SimHandover, a_taker_reaches_pulls_and_carries_the_mug_alone) {
   config::Scenario scenario = from_open(mug_in_hand());
   add_person(scenario, config::TAKER);
   SimWorld world = make(scenario);
@@ -253,7 +253,7 @@ TEST(SimHandover, ATakerReachesPullsAndCarriesTheMugAlone) {
   EXPECT_EQ(truth.limit_violations, 0u) << world.last_limit_violation();
 }
 
-TEST(SimHandover, FailsWithAPersonWhoNeverMoves) {
+TEST(SimHandover, fails_with_a_person_who_never_moves) {
   config::Scenario scenario = from_open(mug_in_hand());
   add_person(scenario, config::STILL);
   SimWorld world = make(scenario);
@@ -262,7 +262,7 @@ TEST(SimHandover, FailsWithAPersonWhoNeverMoves) {
   EXPECT_EQ(truth.carrier, "robot");
 }
 
-TEST(SimHandover, FailsWithARobotThatNeverReleases) {
+TEST(SimHandover, fails_with_a_robot_that_never_releases) {
   config::Scenario scenario = from_open(mug_in_hand());
   add_person(scenario, config::TAKER);
   scenario.set_robot_never_releases(true);
@@ -272,7 +272,7 @@ TEST(SimHandover, FailsWithARobotThatNeverReleases) {
   EXPECT_NE(truth.carrier, "human");
 }
 
-TEST(SimWorldTest, SameSeedSameHashOtherSeedOtherHash) {
+TEST(SimWorldTest, same_seed_same_hash_other_seed_other_hash) {
   config::Scenario scenario = from_open(mug_in_hand());
   add_person(scenario, config::TAKER)->set_jitter(0.05);
   const auto run = [&](std::uint64_t seed) {
@@ -287,7 +287,7 @@ TEST(SimWorldTest, SameSeedSameHashOtherSeedOtherHash) {
   EXPECT_NE(run(7), run(8));
 }
 
-TEST(SimWorldTest, ADartingHandTouchesTheRobotAndTheTouchIsCounted) {
+TEST(SimWorldTest, a_darting_hand_touches_the_robot_and_the_touch_is_counted) {
   config::Scenario scenario = from_open(config::Scenario{});
   add_person(scenario, config::TAKER);
   SimWorld world = make(scenario);
@@ -303,7 +303,7 @@ TEST(SimWorldTest, ADartingHandTouchesTheRobotAndTheTouchIsCounted) {
   EXPECT_LT(truth.contact_force, 5000.0);
 }
 
-TEST(SimWorldTest, HittingATableIsACollisionWithAName) {
+TEST(SimWorldTest, hitting_a_table_is_a_collision_with_a_name) {
   config::Scenario scenario = from_open(mug_in_hand());
   scenario.mutable_boxes(0)->mutable_size()->set_x(0.6);
   SimWorld world = make(scenario);
@@ -318,7 +318,7 @@ TEST(SimWorldTest, HittingATableIsACollisionWithAName) {
   EXPECT_NE(world.last_collision().find("hits column"), std::string::npos) << world.last_collision();
 }
 
-TEST(SimSensors, SilenceEndsByItself) {
+TEST(SimSensors, silence_ends_by_itself) {
   config::Scenario scenario = from_open(config::Scenario{});
   add_person(scenario, config::STILL);
   auto* sensor = scenario.add_human_sensors();
@@ -347,7 +347,7 @@ TEST(SimSensors, SilenceEndsByItself) {
   EXPECT_GT(count(0.5), 10u);
 }
 
-TEST(SimScenario, WhatIsWrongIsNamed) {
+TEST(SimScenario, what_is_wrong_is_named) {
   const auto sentence = [](config::Scenario scenario) -> std::string {
     scenario.set_name("s");
     try {
@@ -371,7 +371,7 @@ TEST(SimScenario, WhatIsWrongIsNamed) {
   EXPECT_NE(sentence(s).find("disturbance earthquake is unknown; there are pause, resume"), std::string::npos);
 }
 
-TEST(SimScenario, PeopleDifferFromTrialToTrialAndTheSameSeedGivesTheSame) {
+TEST(SimScenario, people_differ_from_trial_to_trial_and_the_same_seed_gives_the_same) {
   config::Scenario s = mug_in_hand();
   s.set_name("s");
   s.clear_people();
@@ -410,7 +410,7 @@ TEST(SimScenario, PeopleDifferFromTrialToTrialAndTheSameSeedGivesTheSame) {
   EXPECT_THROW(set_up(s, jido(), library(), 4, {}, 1), ConfigError);
 }
 
-TEST(SimRobotBody, ABareUrdfHoldsItsPostureToo) {
+TEST(SimRobotBody, a_bare_urdf_holds_its_posture_too) {
   const char* data = std::getenv("HANDSEL_DATA");
   if (data == nullptr) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const std::filesystem::path folder = std::filesystem::path(data) / "robots/kuka_lwr4plus";

@@ -25,7 +25,7 @@ int turn(TimeKeeper& keeper, double wall, bool set_points) {
   return steps;
 }
 
-TEST(TimeKeeper, KeepsThePaceOfTheMachineWhenNobodyIsLate) {
+TEST(TimeKeeper, keeps_the_pace_of_the_machine_when_nobody_is_late) {
   TimeKeeper keeper(settings());
   int steps = 0;
   for (int i = 0; i <= 1000; ++i) {
@@ -36,7 +36,7 @@ TEST(TimeKeeper, KeepsThePaceOfTheMachineWhenNobodyIsLate) {
   EXPECT_EQ(keeper.waited(), Duration::zero());
 }
 
-TEST(TimeKeeper, WaitsForASetPointOnlyAsLongAsTheyCome) {
+TEST(TimeKeeper, waits_for_a_set_point_only_as_long_as_they_come) {
   TimeKeeper keeper(settings());
   EXPECT_EQ(turn(keeper, 5, false), 1) << "none has ever come";
   EXPECT_EQ(turn(keeper, 5.001, true), 1);
@@ -49,7 +49,7 @@ TEST(TimeKeeper, WaitsForASetPointOnlyAsLongAsTheyCome) {
   EXPECT_NEAR(to_seconds(keeper.waited()), 0.5, 0.02);
 }
 
-TEST(TimeKeeper, TimeStandsStillUntilEverybodyHasAnswered) {
+TEST(TimeKeeper, time_stands_still_until_everybody_has_answered) {
   TimeKeeper keeper(settings());
   keeper.answered("spark", 1, 0);
   int steps = 0;
@@ -64,7 +64,7 @@ TEST(TimeKeeper, TimeStandsStillUntilEverybodyHasAnswered) {
   EXPECT_NEAR(to_seconds(keeper.waited()), 0.185, 0.002);
 }
 
-TEST(TimeKeeper, OneThatDoesNotAnswerHoldsTheOthersUpOnce) {
+TEST(TimeKeeper, one_that_does_not_answer_holds_the_others_up_once) {
   TimeKeeper keeper(settings());
   keeper.answered("spark", 1, 0);
   int steps = 0;
@@ -76,7 +76,7 @@ TEST(TimeKeeper, OneThatDoesNotAnswerHoldsTheOthersUpOnce) {
   EXPECT_EQ(keeper.grant_number(), grant + 1);
 }
 
-TEST(TimeKeeper, AStoppedProcessIsNotWaitedFor) {
+TEST(TimeKeeper, a_stopped_process_is_not_waited_for) {
   TimeKeeper keeper(settings());
   keeper.answered("spark", 7, 0);
   int steps = 0;
@@ -87,7 +87,7 @@ TEST(TimeKeeper, AStoppedProcessIsNotWaitedFor) {
   EXPECT_GT(steps, 930) << "it is held up for 50 ms, once";
 }
 
-TEST(TimeKeeper, AStarvedSimulatorNeitherRushesNorGivesUpOnOthers) {
+TEST(TimeKeeper, a_starved_simulator_neither_rushes_nor_gives_up_on_others) {
   TimeKeeper keeper(settings());
   keeper.answered("spark", 1, 0);
   turn(keeper, 5, true);
@@ -97,7 +97,7 @@ TEST(TimeKeeper, AStarvedSimulatorNeitherRushesNorGivesUpOnOthers) {
   EXPECT_NEAR(to_seconds(at(10) - keeper.time()), to_seconds(keeper.waited()), 2) << "the time of a step is wall less waited";
 }
 
-TEST(TimeKeeper, NobodysTimeIsEverMoreThanTwoPeriodsAheadOfAStep) {
+TEST(TimeKeeper, nobodys_time_is_ever_more_than_two_periods_ahead_of_a_step) {
   std::mt19937 random(4711);
   std::uniform_real_distribution<double> wait(0, 0.03);
   TimeKeeper keeper(settings());

@@ -71,7 +71,7 @@ void each_joint(HumanObservation& m, const std::function<void(ObservedJoint&)>& 
     for (ObservedJoint& joint : person.joints) act(joint);
 }
 
-TEST(PerceptionReview, SaysNothingButGoodOfAGoodSource) {
+TEST(PerceptionReview, says_nothing_but_good_of_a_good_source) {
   for (const double rate : {15.0, 30.0, 120.0}) {
     const auto all = findings({.rate = rate});
     ASSERT_EQ(all.size(), 2u);
@@ -81,7 +81,7 @@ TEST(PerceptionReview, SaysNothingButGoodOfAGoodSource) {
   }
 }
 
-TEST(PerceptionReview, NamesRatesAgesAndClocks) {
+TEST(PerceptionReview, names_rates_ages_and_clocks) {
   expect_fault({.rate = 4}, "rate", "4.0 times a second");
   expect_fault({.rate = 500}, "rate", "500 times a second");
   expect_fault({.age = 0.6}, "age", "0.60 s old");
@@ -95,7 +95,7 @@ TEST(PerceptionReview, NamesRatesAgesAndClocks) {
                "since something was started");
 }
 
-TEST(PerceptionReview, NamesFramesAndUnits) {
+TEST(PerceptionReview, names_frames_and_units) {
   const auto frame = [](const std::function<Vector3(const Vector3&)>& map) {
     return Case{.spoil = [map](HumanObservation& m, int, double&) {
       each_joint(m, [&](ObservedJoint& joint) { joint.position = map(joint.position); });
@@ -112,7 +112,7 @@ TEST(PerceptionReview, NamesFramesAndUnits) {
   expect_fault(frame([](const Vector3& p) { return Vector3(p + Vector3(40, 0, 0)); }), "reach", "out of reach");
 }
 
-TEST(PerceptionReview, NamesNamesIdsAndStandstill) {
+TEST(PerceptionReview, names_names_ids_and_standstill) {
   expect_fault({.spoil = [](HumanObservation& m, int, double&) { each_joint(m, [](ObservedJoint& j) { j.name = "RIGHT_" + j.name; }); }},
                "names", "RIGHT_head");
   expect_fault({.spoil =
@@ -144,7 +144,7 @@ TEST(PerceptionReview, NamesNamesIdsAndStandstill) {
   EXPECT_EQ(joint_meant("nose"), "");
 }
 
-TEST(PerceptionReview, NamesCoverage) {
+TEST(PerceptionReview, names_coverage) {
   expect_fault({.spoil = [](HumanObservation& m, int, double&) { m.coverage = {}; }}, "coverage", "no volume");
   expect_fault({.spoil =
                     [](HumanObservation& m, int, double&) {
@@ -153,7 +153,7 @@ TEST(PerceptionReview, NamesCoverage) {
                "coverage", "does not contain the robot's reach");
 }
 
-TEST(PerceptionReview, NamesWhatIsMalformedAndWhatObjectsLack) {
+TEST(PerceptionReview, names_what_is_malformed_and_what_objects_lack) {
   PerceptionReview review({{Vector3::Zero(), Vector3::Ones()}, Vector3::Zero(), {"mug"}});
   review.on_malformed("handsel/human_observation", "HumanObservation.people[0].joints[3].position.z is not finite");
   review.on_malformed("handsel/human_observation", "HumanObservation.people[0].joints[3].position.z is not finite");

@@ -51,7 +51,7 @@ TimePoint at(double t) { return TimePoint(from_seconds(t)); }
 
 const BodyJoint& torso(const Person& person) { return person.joints[static_cast<std::size_t>(body_joint_index("torso"))]; }
 
-TEST(PeopleTracker, NobodyIsAFactOnlyWhileTheReachIsCovered) {
+TEST(PeopleTracker, nobody_is_a_fact_only_while_the_reach_is_covered) {
   PeopleTracker tracker(settings());
   EXPECT_FALSE(tracker.state(at(0), kReach).covered);
   tracker.observe(seen({}), at(0));
@@ -61,7 +61,7 @@ TEST(PeopleTracker, NobodyIsAFactOnlyWhileTheReachIsCovered) {
   EXPECT_FALSE(tracker.state(at(1.0), kReach).covered);
 }
 
-TEST(PeopleTracker, AWalkingPersonHasTheVelocityTheyWalkWith) {
+TEST(PeopleTracker, a_walking_person_has_the_velocity_they_walk_with) {
   PeopleTracker tracker(settings());
   for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at("b", 1.0 + 0.8 * i / 30.0, 0)}), at(i / 30.0));
   const HumanState state = tracker.state(at(2.0), kReach);
@@ -69,7 +69,7 @@ TEST(PeopleTracker, AWalkingPersonHasTheVelocityTheyWalkWith) {
   EXPECT_NEAR(torso(state.people[0]).velocity.x(), 0.8, 0.02);
 }
 
-TEST(PeopleTracker, APersonKeepsTheirNameWhenTheTrackerRenamesTheBody) {
+TEST(PeopleTracker, a_person_keeps_their_name_when_the_tracker_renames_the_body) {
   PeopleTracker tracker(settings());
   tracker.observe(seen({body_at("anna", 1.5, 0), body_at("bert", -1.5, 0)}), at(0));
   tracker.observe(seen({body_at("7", -1.52, 0), body_at("8", 1.52, 0)}), at(0.03));
@@ -78,7 +78,7 @@ TEST(PeopleTracker, APersonKeepsTheirNameWhenTheTrackerRenamesTheBody) {
   for (const auto& person : state.people) EXPECT_GT(torso(person).position.x() * (person.id == "anna" ? 1 : -1), 1.0);
 }
 
-TEST(PeopleTracker, ALostPersonGrowsUntilTheirVolumeIsSeenEmpty) {
+TEST(PeopleTracker, a_lost_person_grows_until_their_volume_is_seen_empty) {
   PeopleTracker tracker(settings());
   tracker.observe(seen({body_at("anna", 1.5, 0)}), at(0));
   const Coverage elsewhere{{-4, -4, -0.5}, {1.0, 4, 2.6}};
@@ -93,7 +93,7 @@ TEST(PeopleTracker, ALostPersonGrowsUntilTheirVolumeIsSeenEmpty) {
   EXPECT_TRUE(state.people.empty());
 }
 
-TEST(PeopleTracker, APersonMissedForOneFrameIsStillThereAsTheyWere) {
+TEST(PeopleTracker, a_person_missed_for_one_frame_is_still_there_as_they_were) {
   PeopleTracker tracker(settings());
   tracker.observe(seen({body_at("anna", 1.5, 0)}), at(0));
   tracker.observe(seen({}), at(0.033));
@@ -102,7 +102,7 @@ TEST(PeopleTracker, APersonMissedForOneFrameIsStillThereAsTheyWere) {
   EXPECT_EQ(state.people[0].inflation, 0.0);
 }
 
-TEST(PeopleTracker, OneArmOnlyStillMakesACompleteBody) {
+TEST(PeopleTracker, one_arm_only_still_makes_a_complete_body) {
   PeopleTracker tracker(settings());
   ObservedPerson whole = body_at("anna", 1.5, 0), part = whole;
   tracker.observe(seen({whole}), at(0));
@@ -115,7 +115,7 @@ TEST(PeopleTracker, OneArmOnlyStillMakesACompleteBody) {
   for (const auto& joint : state.people[0].joints) EXPECT_TRUE(joint.position.allFinite()) << joint.name;
 }
 
-TEST(PeopleTracker, AnObservationFromThePastChangesNothing) {
+TEST(PeopleTracker, an_observation_from_the_past_changes_nothing) {
   PeopleTracker tracker(settings());
   tracker.observe(seen({body_at("anna", 1.5, 0)}), at(1.0));
   tracker.observe(seen({body_at("anna", 1.0, 0)}), at(0.5));
@@ -150,7 +150,7 @@ bool occupied(const HumanState& state, const Vector3& p) {
   return false;
 }
 
-TEST(PeopleTracker, ASwapOfNamesMovesNobody) {
+TEST(PeopleTracker, a_swap_of_names_moves_nobody) {
   PeopleTracker tracker(settings());
   look(tracker, {body_at("anna", 1.5, 0.4), body_at("bert", 1.5, -0.4)}, 0, 1);
   look(tracker, {body_at("bert", 1.5, 0.4), body_at("anna", 1.5, -0.4)}, 1.033, 2);
@@ -160,7 +160,7 @@ TEST(PeopleTracker, ASwapOfNamesMovesNobody) {
   EXPECT_LT(torso(*named(state, "bert")).position.y(), -0.3);
 }
 
-TEST(PeopleTracker, AfterATeleportBothPlacesCountUntilOneIsSeenEmpty) {
+TEST(PeopleTracker, after_a_teleport_both_places_count_until_one_is_seen_empty) {
   PeopleTracker tracker(settings());
   look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
   look(tracker, {body_at("anna", 1.2, 2.5)}, 1.033, 1.5);
@@ -176,7 +176,7 @@ TEST(PeopleTracker, AfterATeleportBothPlacesCountUntilOneIsSeenEmpty) {
   EXPECT_NEAR(torso(state.people[0]).position.y(), 2.5, 0.1);
 }
 
-TEST(PeopleTracker, AShortJumpLeavesTheOldPlaceOccupiedForAWhile) {
+TEST(PeopleTracker, a_short_jump_leaves_the_old_place_occupied_for_a_while) {
   PeopleTracker tracker(settings());
   look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
   look(tracker, {body_at("anna", 1.5, 0)}, 1.033, 1.3);
@@ -187,7 +187,7 @@ TEST(PeopleTracker, AShortJumpLeavesTheOldPlaceOccupiedForAWhile) {
   EXPECT_EQ(tracker.state(at(2.0), kReach).people[0].inflation, 0.0);
 }
 
-TEST(PeopleTracker, DataToldAgainIsNoNews) {
+TEST(PeopleTracker, data_told_again_is_no_news) {
   PeopleTracker tracker(settings());
   look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
   for (int i = 1; i <= 30; ++i) tracker.observe(seen({body_at("anna", 1.2, 0)}), at(1 + i / 30.0));
@@ -199,14 +199,14 @@ TEST(PeopleTracker, DataToldAgainIsNoNews) {
   EXPECT_NE(tracker.trouble(at(2)).find("source camera repeats itself"), std::string::npos);
 }
 
-TEST(PeopleTracker, ASilentSourceIsNamed) {
+TEST(PeopleTracker, a_silent_source_is_named) {
   PeopleTracker tracker(settings());
   look(tracker, {body_at("anna", 1.2, 0)}, 0, 1);
   EXPECT_EQ(tracker.trouble(at(1.1)), "");
   EXPECT_EQ(tracker.trouble(at(3)), "source camera is silent for 2.0 s");
 }
 
-TEST(PeopleTracker, TwoSourcesThatSeeHalfABodyEachMakeOnePerson) {
+TEST(PeopleTracker, two_sources_that_see_half_a_body_each_make_one_person) {
   PeopleTracker tracker(settings());
   ObservedPerson left = body_at("7", 1.5, 0), right = body_at("track-b", 1.5, 0);
   std::erase_if(left.joints, [](const ObservedJoint& j) { return j.name[0] == 'r'; });
@@ -228,7 +228,7 @@ TEST(PeopleTracker, TwoSourcesThatSeeHalfABodyEachMakeOnePerson) {
   }
 }
 
-TEST(PeopleTracker, GazeMayComeFromAnotherSourceAndGoMissingForAMoment) {
+TEST(PeopleTracker, gaze_may_come_from_another_source_and_go_missing_for_a_moment) {
   PeopleTracker tracker(settings());
   ObservedPerson body = body_at("anna", 1.5, 0), eyes;
   eyes.body = "gaze-1";
@@ -247,7 +247,7 @@ TEST(PeopleTracker, GazeMayComeFromAnotherSourceAndGoMissingForAMoment) {
   EXPECT_FALSE(tracker.state(at(1.2), kReach).people[0].gaze_known);
 }
 
-TEST(PeopleTracker, EyesWithoutABodyAreSomebody) {
+TEST(PeopleTracker, eyes_without_a_body_are_somebody) {
   PeopleTracker tracker(settings());
   ObservedPerson eyes;
   eyes.body = "gaze-1";
@@ -257,7 +257,7 @@ TEST(PeopleTracker, EyesWithoutABodyAreSomebody) {
   EXPECT_TRUE(occupied(tracker.state(at(0.1), kReach), {1.4, 0, 1.2}));
 }
 
-TEST(PeopleTracker, WhatTheSourceCannotSeeIsNotSeenEmpty) {
+TEST(PeopleTracker, what_the_source_cannot_see_is_not_seen_empty) {
   const Obstacles wall{{}, {{make_pose({0.7, 0, 1.25}), {0.1, 6, 2.5}}}};
   PeopleTracker with_eye(settings(), {{"camera", {0, 0, 1.6}}}), without(settings());
   for (PeopleTracker* tracker : {&with_eye, &without}) {
@@ -275,7 +275,7 @@ void walk_out(PeopleTracker& tracker, const std::string& name = "anna") {
   for (int i = 0; i <= 60; ++i) tracker.observe(seen({body_at(name, 2.9 + i / 60.0, 0)}), at(i / 30.0));
 }
 
-TEST(PeopleTracker, WhoLeavesThroughTheEdgeGrowsNoFartherThanTheEdgeAndIsNotDropped) {
+TEST(PeopleTracker, who_leaves_through_the_edge_grows_no_farther_than_the_edge_and_is_not_dropped) {
   PeopleTracker tracker(settings());
   walk_out(tracker);
   look(tracker, {}, 2.033, 60.0);
@@ -289,7 +289,7 @@ TEST(PeopleTracker, WhoLeavesThroughTheEdgeGrowsNoFartherThanTheEdgeAndIsNotDrop
   EXPECT_LE(tracker.state(at(63), kReach).people[0].inflation, 0.51) << "what it looks at again is empty";
 }
 
-TEST(PeopleTracker, WhoComesInThroughAnEdgeIsTheOneWhoLeft) {
+TEST(PeopleTracker, who_comes_in_through_an_edge_is_the_one_who_left) {
   PeopleTracker tracker(settings());
   walk_out(tracker);
   look(tracker, {}, 2.033, 10.0);
@@ -300,7 +300,7 @@ TEST(PeopleTracker, WhoComesInThroughAnEdgeIsTheOneWhoLeft) {
   EXPECT_LT(torso(state.people[0]).position.x(), -3);
 }
 
-TEST(PeopleTracker, WhoAppearsInTheMiddleIsNotTheOneWhoLeft) {
+TEST(PeopleTracker, who_appears_in_the_middle_is_not_the_one_who_left) {
   PeopleTracker tracker(settings());
   walk_out(tracker);
   look(tracker, {}, 2.033, 10.0);
@@ -308,7 +308,7 @@ TEST(PeopleTracker, WhoAppearsInTheMiddleIsNotTheOneWhoLeft) {
   EXPECT_EQ(tracker.state(at(10.5), kReach).people.size(), 2u);
 }
 
-TEST(PeopleTracker, AnOperatorClearsWhoIsLostAndNobodyElse) {
+TEST(PeopleTracker, an_operator_clears_who_is_lost_and_nobody_else) {
   PeopleTracker tracker(settings());
   walk_out(tracker);
   look(tracker, {body_at("bert", 0, 1)}, 2.033, 3.0);
@@ -323,7 +323,7 @@ TEST(PeopleTracker, AnOperatorClearsWhoIsLostAndNobodyElse) {
   EXPECT_EQ(tracker.clear("", at(3.6)), 2u) << "everybody lost";
 }
 
-TEST(PeopleTracker, TwoHalvesCoverTheWhole) {
+TEST(PeopleTracker, two_halves_cover_the_whole) {
   PeopleTracker tracker(settings());
   look(tracker, {}, 0, 0.1, "left", {{-4, 0, -0.5}, {4, 4, 2.6}});
   EXPECT_FALSE(tracker.state(at(0.1), kReach).covered);
@@ -333,7 +333,7 @@ TEST(PeopleTracker, TwoHalvesCoverTheWhole) {
   EXPECT_FALSE(tracker.state(at(0.2), kReach).covered) << "a slit is left";
 }
 
-TEST(PeopleTracker, NoisyHandsAtRestAreAtRest) {
+TEST(PeopleTracker, noisy_hands_at_rest_are_at_rest) {
   PeopleTracker tracker(settings());
   std::mt19937_64 random(5);
   std::normal_distribution<double> noise(0, 0.01);
@@ -353,7 +353,7 @@ TEST(PeopleTracker, NoisyHandsAtRestAreAtRest) {
 }
 
 /// Somebody who stood and sets off at 9 m/s^2 to 1.1 m/s: known for what it is within three looks, and not for more.
-TEST(PeopleTracker, WhoStartsToWalkIsKnownToWithinAFewLooks) {
+TEST(PeopleTracker, who_starts_to_walk_is_known_to_within_a_few_looks) {
   constexpr double kStart = 2, kSpeed = 1.1, kAcceleration = 9;
   for (const double deviation : {0.004, 0.01}) {
     SCOPED_TRACE("noise " + std::to_string(deviation));
@@ -383,7 +383,7 @@ TEST(PeopleTracker, WhoStartsToWalkIsKnownToWithinAFewLooks) {
   }
 }
 
-TEST(PeopleTracker, ADartIsKnownWithinAFewLooks) {
+TEST(PeopleTracker, a_dart_is_known_within_a_few_looks) {
   PeopleTracker tracker(settings());
   look(tracker, {body_at("anna", 1.4, 0)}, 0, 1);
   double clock = 1;
@@ -398,7 +398,7 @@ TEST(PeopleTracker, ADartIsKnownWithinAFewLooks) {
 }
 
 /// Any part of a body at 15 Hz with confidences, a gaze from elsewhere or none: a complete body, as tall as it is, near where it is.
-TEST(PeopleTracker, AnySubsetOfJointsMakesABodyOfItsOwnSize) {
+TEST(PeopleTracker, any_subset_of_joints_makes_a_body_of_its_own_size) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937 random(seed);
@@ -441,7 +441,7 @@ TEST(PeopleTracker, AnySubsetOfJointsMakesABodyOfItsOwnSize) {
   }
 }
 
-TEST(PeopleTracker, WhoseHeightIsKnownIsThatTallWhateverIsSeenOfThem) {
+TEST(PeopleTracker, whose_height_is_known_is_that_tall_whatever_is_seen_of_them) {
   config::SparkSettings known = settings();
   auto* profile = known.add_people();
   profile->set_id("anna");
@@ -456,7 +456,7 @@ TEST(PeopleTracker, WhoseHeightIsKnownIsThatTallWhateverIsSeenOfThem) {
   }
 }
 
-TEST(PeopleTracker, ABodyWithoutJointsIsNobody) {
+TEST(PeopleTracker, a_body_without_joints_is_nobody) {
   PeopleTracker tracker(settings());
   ObservedPerson empty;
   empty.body = "ghost";
@@ -474,14 +474,14 @@ Vector3 mug_after(SceneModel& model, int looks, const std::function<Vector3(int)
   return model.scene(at(looks / 30.0), HumanState{}).objects.at(0).T_world_object.translation();
 }
 
-TEST(SceneModel, WhatStandsStillIsKnownBetterThanOneLook) {
+TEST(SceneModel, what_stands_still_is_known_better_than_one_look) {
   SceneModel model(settings(), std::make_shared<const RobotModel>(), ObjectLibrary{}, {});
   const Vector3 mug(0.7, -0.4, 0.77);
   const Vector3 known = mug_after(model, 60, [&](int i) { return Vector3(mug + 0.0015 * Vector3(i % 2 ? 1 : -1, i % 3 - 1, 0)); });
   EXPECT_LT((known - mug).norm(), 3e-4);
 }
 
-TEST(SceneModel, WhatMovesIsTakenAsSeen) {
+TEST(SceneModel, what_moves_is_taken_as_seen) {
   SceneModel model(settings(), std::make_shared<const RobotModel>(), ObjectLibrary{}, {});
   const Vector3 known = mug_after(model, 30, [](int i) { return Vector3(0.7 + 0.2 * i / 30.0, -0.4, 0.77); });
   EXPECT_LT((known - Vector3(0.7 + 0.2 * 29 / 30.0, -0.4, 0.77)).norm(), 5e-3);

@@ -5,7 +5,7 @@
 namespace handsel::supervisor {
 namespace {
 
-TEST(Supervisor, GivesAMugInThreeActionsOneAfterTheOther) {
+TEST(Supervisor, gives_a_mug_in_three_actions_one_after_the_other) {
   TaskRig rig(true);
   rig.run(0.5);
   EXPECT_TRUE(rig.go.allowed);
@@ -29,7 +29,7 @@ TEST(Supervisor, GivesAMugInThreeActionsOneAfterTheOther) {
   EXPECT_EQ(rig.last().cost, 0);
 }
 
-TEST(Supervisor, FactsMayLagBehindAnActionThatSucceeded) {
+TEST(Supervisor, facts_may_lag_behind_an_action_that_succeeded) {
   TaskRig rig(true);
   rig.run(0.5);
   rig.give(1);
@@ -40,7 +40,7 @@ TEST(Supervisor, FactsMayLagBehindAnActionThatSucceeded) {
   EXPECT_EQ(rig.goals[1].kind, ActionKind::give);
 }
 
-TEST(Supervisor, AGiftForNobodyInParticularWaitsForSomebodyAndIsPickedForThem) {
+TEST(Supervisor, a_gift_for_nobody_in_particular_waits_for_somebody_and_is_picked_for_them) {
   TaskRig rig(true);
   rig.world.people.clear();
   rig.run(0.5);
@@ -56,7 +56,7 @@ TEST(Supervisor, AGiftForNobodyInParticularWaitsForSomebodyAndIsPickedForThem) {
   EXPECT_EQ(rig.last().plan[1], "give mug to bert");
 }
 
-TEST(Supervisor, WhenNobodyComesTheGiftFailsBeforeAnythingMoves) {
+TEST(Supervisor, when_nobody_comes_the_gift_fails_before_anything_moves) {
   TaskRig rig;
   rig.world.people.clear();
   rig.run(0.5);
@@ -67,7 +67,7 @@ TEST(Supervisor, WhenNobodyComesTheGiftFailsBeforeAnythingMoves) {
   EXPECT_NE(rig.last().reason.find("nobody is in sight"), std::string::npos) << rig.last().reason;
 }
 
-TEST(Supervisor, WhoIsOutOfSightForAMomentIsWaitedForWhoWasNeverThereIsNot) {
+TEST(Supervisor, who_is_out_of_sight_for_a_moment_is_waited_for_who_was_never_there_is_not) {
   TaskRig rig;
   rig.run(3.0);
   rig.world.people.clear();
@@ -82,7 +82,7 @@ TEST(Supervisor, WhoIsOutOfSightForAMomentIsWaitedForWhoWasNeverThereIsNot) {
   EXPECT_EQ(rig.last().state, TaskState::refused);
 }
 
-TEST(Supervisor, AnUntakenObjectIsPutBackAndTheTaskFailsWithTheFirstReason) {
+TEST(Supervisor, an_untaken_object_is_put_back_and_the_task_fails_with_the_first_reason) {
   TaskRig rig;
   rig.fails = [](const ActionGoal& goal) {
     if (goal.kind != ActionKind::give) return Failure();
@@ -99,7 +99,7 @@ TEST(Supervisor, AnUntakenObjectIsPutBackAndTheTaskFailsWithTheFirstReason) {
   EXPECT_EQ(rig.last().tree.front().state, StepState::failed);
 }
 
-TEST(Supervisor, WhenNobodyIsNamedAnotherPersonIsAsked) {
+TEST(Supervisor, when_nobody_is_named_another_person_is_asked) {
   TaskRig rig;
   rig.world.people["bert"] = false;
   rig.fails = [](const ActionGoal& goal) {
@@ -138,7 +138,7 @@ TEST(Supervisor, a_failure_is_answered_by_its_kind) {
   EXPECT_EQ(other.last().reason, "pick mug: no grasp for mug: none is left");
 }
 
-TEST(Supervisor, ClearsATableWhileSomebodyTakesOneThingAway) {
+TEST(Supervisor, clears_a_table_while_somebody_takes_one_thing_away) {
   TaskRig rig;
   rig.world.on.clear();
   for (const char* object : {"a", "b", "c", "d", "e", "f"}) rig.world.on[object] = "table";
@@ -162,7 +162,7 @@ TEST(Supervisor, ClearsATableWhileSomebodyTakesOneThingAway) {
   for (const auto& [object, surface] : rig.world.on) EXPECT_EQ(surface, "shelf") << object;
 }
 
-TEST(Supervisor, WhatIsTakenWhileTheRobotReachesForItIsLetBe) {
+TEST(Supervisor, what_is_taken_while_the_robot_reaches_for_it_is_let_be) {
   TaskRig rig;
   rig.world.on["box"] = "table";
   rig.action_time = 3.0;
@@ -179,7 +179,7 @@ TEST(Supervisor, WhatIsTakenWhileTheRobotReachesForItIsLetBe) {
   EXPECT_EQ(rig.last().reason, "anna took box");
 }
 
-TEST(Supervisor, WhatComesOntoTheTableMeanwhileIsClearedToo) {
+TEST(Supervisor, what_comes_onto_the_table_meanwhile_is_cleared_too) {
   TaskRig rig;
   rig.run(2.5);
   rig.ask(TaskKind::clear, "", "", "table");
@@ -190,7 +190,7 @@ TEST(Supervisor, WhatComesOntoTheTableMeanwhileIsClearedToo) {
   EXPECT_EQ(rig.world.on["cup"], "shelf");
 }
 
-TEST(Supervisor, WhatCannotBeGraspedIsLeftAndTold) {
+TEST(Supervisor, what_cannot_be_grasped_is_left_and_told) {
   TaskRig rig;
   rig.world.on["box"] = "table";
   rig.fails = [](const ActionGoal& goal) { return goal.object == "box" ? "no grasp for box: too wide" : ""; };
@@ -202,7 +202,7 @@ TEST(Supervisor, WhatCannotBeGraspedIsLeftAndTold) {
   EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no grasp for box: too wide");
 }
 
-TEST(Supervisor, WhatCannotBePutAwayGoesBackAndTheRestIsCleared) {
+TEST(Supervisor, what_cannot_be_put_away_goes_back_and_the_rest_is_cleared) {
   TaskRig rig;
   rig.world.on["box"] = "table";
   rig.fails = [](const ActionGoal& goal) {
@@ -216,7 +216,7 @@ TEST(Supervisor, WhatCannotBePutAwayGoesBackAndTheRestIsCleared) {
   EXPECT_EQ(rig.last().reason, "not all of it was done: clear box away: no free place on shelf");
 }
 
-TEST(Supervisor, ATableIsNotClearWhileItsLastThingIsInTheHand) {
+TEST(Supervisor, a_table_is_not_clear_while_its_last_thing_is_in_the_hand) {
   TaskRig rig;
   int failures = 0;
   rig.fails = [&](const ActionGoal& goal) {
@@ -229,7 +229,7 @@ TEST(Supervisor, ATableIsNotClearWhileItsLastThingIsInTheHand) {
   EXPECT_EQ(rig.last().state == TaskState::succeeded, rig.world.on["mug"] == "shelf") << rig.last().reason;
 }
 
-TEST(Supervisor, ReceivesAndPutsDownWhateverItIs) {
+TEST(Supervisor, receives_and_puts_down_whatever_it_is) {
   TaskRig rig;
   rig.world.on.clear();
   rig.world.held_by["cup"] = "anna";
@@ -250,7 +250,7 @@ TEST(Supervisor, ReceivesAndPutsDownWhateverItIs) {
   EXPECT_TRUE(rig.world.on.contains("ball"));
 }
 
-TEST(Supervisor, WhatIsSoAlreadyIsDoneWithASentence) {
+TEST(Supervisor, what_is_so_already_is_done_with_a_sentence) {
   TaskRig rig;
   rig.run(2.5);
   rig.ask(TaskKind::place, "mug", "", "table");
@@ -260,7 +260,7 @@ TEST(Supervisor, WhatIsSoAlreadyIsDoneWithASentence) {
   EXPECT_TRUE(rig.goals.empty());
 }
 
-TEST(Supervisor, WhatIsNotThereIsRefusedAtOnceButSightIsGivenAMomentAfterTheStart) {
+TEST(Supervisor, what_is_not_there_is_refused_at_once_but_sight_is_given_a_moment_after_the_start) {
   TaskRig rig;
   rig.world.on.clear();
   rig.run(0.5);
@@ -278,7 +278,7 @@ TEST(Supervisor, WhatIsNotThereIsRefusedAtOnceButSightIsGivenAMomentAfterTheStar
   EXPECT_NE(rig.last().reason.find("nothing called cup here; there is mug"), std::string::npos) << rig.last().reason;
 }
 
-TEST(Supervisor, AnActionGoalIsRepeatedUntilTakenUp) {
+TEST(Supervisor, an_action_goal_is_repeated_until_taken_up) {
   TaskRig rig(true);
   rig.planner_alive = false;
   rig.run(0.5);
@@ -288,7 +288,7 @@ TEST(Supervisor, AnActionGoalIsRepeatedUntilTakenUp) {
   EXPECT_EQ(rig.goals.front().id, rig.goals.back().id);
 }
 
-TEST(Supervisor, APlannerThatWasStartedAnewIsToldAgain) {
+TEST(Supervisor, a_planner_that_was_started_anew_is_told_again) {
   TaskRig rig;
   rig.run(0.5);
   rig.give(1);
@@ -298,7 +298,7 @@ TEST(Supervisor, APlannerThatWasStartedAnewIsToldAgain) {
   EXPECT_EQ(rig.last().state, TaskState::succeeded) << rig.last().reason;
 }
 
-TEST(Supervisor, ASupervisorThatWasStartedAnewGoesOnWhenAskedAgain) {
+TEST(Supervisor, a_supervisor_that_was_started_anew_goes_on_when_asked_again) {
   TaskRig before(true), after;
   before.run(0.5);
   before.give(1);
@@ -319,7 +319,7 @@ TEST(Supervisor, ASupervisorThatWasStartedAnewGoesOnWhenAskedAgain) {
   EXPECT_EQ(after.done(), "go to rest");
 }
 
-TEST(Supervisor, ATaskNobodyAsksForAgainAfterARestartIsDeclaredOver) {
+TEST(Supervisor, a_task_nobody_asks_for_again_after_a_restart_is_declared_over) {
   TaskRig rig(true);
   rig.action.id = 7;
   rig.action.task = 9;
@@ -330,7 +330,7 @@ TEST(Supervisor, ATaskNobodyAsksForAgainAfterARestartIsDeclaredOver) {
   EXPECT_EQ(rig.last().state, TaskState::failed);
 }
 
-TEST(Supervisor, TheSameGoalTwiceIsOneTaskAndAnotherIsRefusedWhileBusy) {
+TEST(Supervisor, the_same_goal_twice_is_one_task_and_another_is_refused_while_busy) {
   TaskRig rig(true);
   rig.run(0.5);
   rig.give(1);
@@ -343,7 +343,7 @@ TEST(Supervisor, TheSameGoalTwiceIsOneTaskAndAnotherIsRefusedWhileBusy) {
   EXPECT_EQ(refused, 1);
 }
 
-TEST(Supervisor, CancelStopsTheActionAndEndsTheTask) {
+TEST(Supervisor, cancel_stops_the_action_and_ends_the_task) {
   TaskRig rig(true);
   rig.run(0.5);
   rig.give(1);
@@ -356,7 +356,7 @@ TEST(Supervisor, CancelStopsTheActionAndEndsTheTask) {
   EXPECT_TRUE(cancelled);
 }
 
-TEST(Supervisor, PausedNothingIsBegunAndItGoesOnWhereItWas) {
+TEST(Supervisor, paused_nothing_is_begun_and_it_goes_on_where_it_was) {
   TaskRig rig;
   rig.run(0.5);
   rig.give(1);
@@ -372,7 +372,7 @@ TEST(Supervisor, PausedNothingIsBegunAndItGoesOnWhereItWas) {
   ASSERT_TRUE(rig.finish());
 }
 
-TEST(Supervisor, AttentionMaySuspendResumeAndTurnATaskIntoAGift) {
+TEST(Supervisor, attention_may_suspend_resume_and_turn_a_task_into_a_gift) {
   TaskRig rig;
   rig.run(2.5);
   rig.ask(TaskKind::place, "mug", "", "shelf");
@@ -413,7 +413,7 @@ TEST(Supervisor, a_component_that_stays_away_ends_the_task_with_its_name) {
   EXPECT_EQ(rig.last().state, TaskState::running) << "the next task goes on";
 }
 
-TEST(Permission, IsWithdrawnWhenARequiredComponentIsGoneButOnlyAfterTheTrajectoryEnded) {
+TEST(Permission, is_withdrawn_when_a_required_component_is_gone_but_only_after_the_trajectory_ended) {
   TaskRig rig(true);
   rig.run(0.5);
   ASSERT_TRUE(rig.go.allowed);
@@ -432,7 +432,7 @@ TEST(Permission, IsWithdrawnWhenARequiredComponentIsGoneButOnlyAfterTheTrajector
   EXPECT_GT(rig.go.epoch, epoch);
 }
 
-TEST(Permission, AfterAFaultOnlyAPersonResumes) {
+TEST(Permission, after_a_fault_only_a_person_resumes) {
   TaskRig rig(true);
   rig.run(0.5);
   rig.execution.mode = Mode::fault;
@@ -447,7 +447,7 @@ TEST(Permission, AfterAFaultOnlyAPersonResumes) {
   EXPECT_GT(rig.go.epoch, epoch);
 }
 
-TEST(Permission, APersonsWordReachesADriveThatWaitsForItAndPermissionComesAfter) {
+TEST(Permission, a_persons_word_reaches_a_drive_that_waits_for_it_and_permission_comes_after) {
   TaskRig rig(true);
   rig.run(0.5);
   rig.execution.mode = Mode::stop;
@@ -469,7 +469,7 @@ TEST(Permission, APersonsWordReachesADriveThatWaitsForItAndPermissionComesAfter)
   EXPECT_FALSE(rig.go.acknowledge);
 }
 
-TEST(Permission, NoNewEpochWhileACauseStands) {
+TEST(Permission, no_new_epoch_while_a_cause_stands) {
   TaskRig rig(true);
   rig.run(0.5);
   rig.execution.mode = Mode::stop;

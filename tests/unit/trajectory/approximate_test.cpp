@@ -33,7 +33,7 @@ Samples sine(double seconds, double period) {
   return out;
 }
 
-TEST(Approximate, StaysWithinTheToleranceAndIsSmaller) {
+TEST(Approximate, stays_within_the_tolerance_and_is_smaller) {
   const Samples s = sine(6, 0.002);
   const Approximation a = approximate(s.times, s.states, {1e-3, 1e-2});
   ASSERT_TRUE(a.ok()) << a.reason;
@@ -49,7 +49,7 @@ TEST(Approximate, StaysWithinTheToleranceAndIsSmaller) {
   EXPECT_LT(approximate(s.times, s.states, {1e-5, 1e-4}).compression, a.compression);
 }
 
-TEST(Approximate, RefusesBadSamples) {
+TEST(Approximate, refuses_bad_samples) {
   Samples s = sine(1, 0.1);
   EXPECT_NE(approximate({}, {}, {}).reason, "");
   EXPECT_NE(approximate(s.times, s.states, {0, 1}).reason, "");
@@ -90,7 +90,7 @@ void expect_within(const Approximation& a, const Samples& s, const Approximation
   EXPECT_EQ(a.trajectory.axes[0].segments.size(), 3u * a.pieces);
 }
 
-TEST(Approximate, RandomMotionsOfSevenAxesKeepTheToleranceOnEveryAxis) {
+TEST(Approximate, random_motions_of_seven_axes_keep_the_tolerance_on_every_axis) {
   const std::uint64_t seed = 61;
   std::mt19937_64 random(seed);
   double pieces = 0, compression = 0;
@@ -105,7 +105,7 @@ TEST(Approximate, RandomMotionsOfSevenAxesKeepTheToleranceOnEveryAxis) {
          compression / 20);
 }
 
-TEST(Approximate, DerivativesOfExactSamplesAreRight) {
+TEST(Approximate, derivatives_of_exact_samples_are_right) {
   std::mt19937_64 random(62);
   const Samples s = random_motion(random, 3, 4, 0.005);
   std::vector<Eigen::VectorXd> positions;
@@ -124,7 +124,7 @@ TEST(Approximate, DerivativesOfExactSamplesAreRight) {
   EXPECT_NE(differentiate(s.times, positions).reason, "");
 }
 
-TEST(Approximate, AxesBeyondTheirLimitsAreSlowedDownAndOnlyThere) {
+TEST(Approximate, axes_beyond_their_limits_are_slowed_down_and_only_there) {
   const std::uint64_t seed = 63;
   std::mt19937_64 random(seed);
   double stretch = 0;
@@ -159,7 +159,7 @@ TEST(Approximate, AxesBeyondTheirLimitsAreSlowedDownAndOnlyThere) {
   EXPECT_NE(slow_down(easy.times, easy.states, {wide, wide, Eigen::VectorXd::Zero(2)}).reason, "");
 }
 
-TEST(Approximate, HandOfARealHandover) {
+TEST(Approximate, hand_of_a_real_handover) {
   const char* data = std::getenv("HANDSEL_DATA");
   const std::string path = std::string(data ? data : "") + "/motion/kth_handover/handover_sample/giver_RHand_pose_saved.csv";
   std::ifstream file(path);

@@ -155,7 +155,7 @@ std::string draw() {
   return d.finish();
 }
 
-TEST(Corner127, DrawingInTheDocumentationIsWhatTheCodeDraws) {
+TEST(Corner127, drawing_in_the_documentation_is_what_the_code_draws) {
   const std::string path = std::string(HANDSEL_SOURCE_DIR) + "/docs/figures/corner_127.svg", drawn = draw();
   if (std::getenv("HANDSEL_WRITE_FIGURES")) std::ofstream(path) << drawn;
   std::ifstream file(path);
@@ -182,7 +182,7 @@ TEST(Corner127, DrawingInTheDocumentationIsWhatTheCodeDraws) {
   EXPECT_FALSE(std::getline(now, b)) << "the file is shorter than the drawing";
 }
 
-TEST(Corner127, LongerTransitionsSaveMoreAndKeepTheirLimits) {
+TEST(Corner127, longer_transitions_save_more_and_keep_their_limits) {
   const double stop = run(0.0).duration_ptp;
   EXPECT_NEAR(run(0.0).trajectory.duration(), stop, 1e-9);
   for (const double tau : {0.25, 0.5, 0.75, 1.0}) {

@@ -16,7 +16,7 @@ using test::Case;
 using test::Cases;
 using test::why_wrong;
 
-TEST(MinTime, EqualsTheSlowSolverOnRandomCases) {
+TEST(MinTime, equals_the_slow_solver_on_random_cases) {
   const int count = std::getenv("HANDSEL_CASES") ? std::atoi(std::getenv("HANDSEL_CASES")) : 20000;
   const std::uint64_t seed = 11;
   Cases cases(seed);
@@ -35,7 +35,7 @@ TEST(MinTime, EqualsTheSlowSolverOnRandomCases) {
   RecordProperty("largest_gain_over_slow", std::to_string(worst));
 }
 
-TEST(MinTime, ImposedDurationsAreExactAndInside) {
+TEST(MinTime, imposed_durations_are_exact_and_inside) {
   const std::uint64_t seed = 12;
   Cases cases(seed);
   int blocked = 0;
@@ -57,7 +57,7 @@ TEST(MinTime, ImposedDurationsAreExactAndInside) {
   EXPECT_GT(blocked, 500);
 }
 
-TEST(MinTime, StartsOutsideTheLimitsComeBackInside) {
+TEST(MinTime, starts_outside_the_limits_come_back_inside) {
   const std::uint64_t seed = 13;
   Cases cases(seed);
   for (int k = 0; k < 100000; ++k) {
@@ -73,7 +73,7 @@ TEST(MinTime, StartsOutsideTheLimitsComeBackInside) {
   }
 }
 
-TEST(MinTime, AStateOnTheWayNeedsTheRestOfTheTime) {
+TEST(MinTime, a_state_on_the_way_needs_the_rest_of_the_time) {
   const std::uint64_t seed = 14;
   Cases cases(seed);
   for (int k = 0; k < 20000; ++k) {
@@ -103,7 +103,7 @@ TEST(MinTime, AStateOnTheWayNeedsTheRestOfTheTime) {
   }
 }
 
-TEST(MinTime, RestToRestClosedForm) {
+TEST(MinTime, rest_to_rest_closed_form) {
   EXPECT_NEAR(rest_to_rest_time(1.0, {0.1, 0.3, 0.9}), 10.0 + 2.0 / 3.0, 1e-12);
   Cases cases(15);
   for (int k = 0; k < 100000; ++k) {
@@ -115,7 +115,7 @@ TEST(MinTime, RestToRestClosedForm) {
   }
 }
 
-TEST(MinTime, AHairFromTheTarget) {
+TEST(MinTime, a_hair_from_the_target) {
   AxisProfile p;
   ASSERT_EQ(solve_axis({0.0049921875, 0, 0}, {0.005, 0, 0}, {1e6, 1e6, 1e6}, p), AxisOutcome::ok);
   EXPECT_EQ(why_wrong({{0.0049921875, 0, 0}, {0.005, 0, 0}, {1e6, 1e6, 1e6}}, p), "");
@@ -130,7 +130,7 @@ TEST(MinTime, AHairFromTheTarget) {
   }
 }
 
-TEST(MinTime, BadInputHasAReason) {
+TEST(MinTime, bad_input_has_a_reason) {
   AxisProfile p;
   const double nan = std::nan("");
   EXPECT_EQ(solve_axis({nan, 0, 0}, {}, {1, 1, 1}, p), AxisOutcome::not_finite);

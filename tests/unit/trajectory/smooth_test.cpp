@@ -21,7 +21,7 @@ VectorXd point(std::initializer_list<double> x) {
 
 const KinematicLimits kFigure18{VectorXd::Constant(2, 0.1), VectorXd::Constant(2, 0.3), VectorXd::Constant(2, 0.9)};
 
-TEST(Smooth, StraightMetreOfFigure18) {
+TEST(Smooth, straight_metre_of_figure18) {
   EXPECT_NEAR(straight_motion(point({0, 0}), point({1, 0}), kFigure18).duration(), 10.0 + 2.0 / 3.0, 1e-12);
 }
 
@@ -68,7 +68,7 @@ double smooth_corners(int corners, const SmoothSettings& settings, const char* t
   return total / stops;
 }
 
-TEST(Smooth, CornersKeepTheirLimitsAndNeverCostTime) {
+TEST(Smooth, corners_keep_their_limits_and_never_cost_time) {
   const int corners = 10000;
   const double all = smooth_corners(corners, {}, "best of all");
   SmoothSettings three, stretched, overlap;
@@ -81,7 +81,7 @@ TEST(Smooth, CornersKeepTheirLimitsAndNeverCostTime) {
   EXPECT_GT(all, 0.1);
 }
 
-TEST(Smooth, ThePredicateIsOfferedExactlyWhatIsThenRun) {
+TEST(Smooth, the_predicate_is_offered_exactly_what_is_then_run) {
   std::mt19937_64 random(42);
   const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
   std::map<std::string, int> seen;
@@ -116,7 +116,7 @@ TEST(Smooth, ThePredicateIsOfferedExactlyWhatIsThenRun) {
   EXPECT_GT(seen["three_segment"] + seen["stretched"], 20);
 }
 
-TEST(Smooth, TauZeroStopsAtTheNode) {
+TEST(Smooth, tau_zero_stops_at_the_node) {
   const std::vector<VectorXd> nodes{point({0, 0}), point({1, 0}), point({0.4, 0.8})};
   SmoothSettings settings;
   settings.tau = 0;
@@ -145,7 +145,7 @@ std::pair<double, double> place_on(const VectorXd& a, const VectorXd& b, const V
   return {s, (q - a - s * (b - a)).norm()};
 }
 
-TEST(Smooth, SpeedFollowsTheZonesOfTheLegsExactly) {
+TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
   const std::uint64_t seed = 43;
   std::mt19937_64 random(seed);
   const auto draw = [&](double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(random); };
@@ -215,7 +215,7 @@ TEST(Smooth, SpeedFollowsTheZonesOfTheLegsExactly) {
   EXPECT_LT(stops, smoothed / 20);
 }
 
-TEST(Smooth, OneShareEverywhereIsThatLimit) {
+TEST(Smooth, one_share_everywhere_is_that_limit) {
   const std::vector<VectorXd> nodes = {point({0, 0}), point({1, 0}), point({1, 1})};
   KinematicLimits half = kFigure18;
   half.velocity *= 0.5;
@@ -225,7 +225,7 @@ TEST(Smooth, OneShareEverywhereIsThatLimit) {
   EXPECT_NE(smooth(nodes, kFigure18, {}, {}, {zones, {{1, 0}}}).reason, "");
 }
 
-TEST(Smooth, AForbiddenCornerKeepsItsStopAndSaysWhy) {
+TEST(Smooth, a_forbidden_corner_keeps_its_stop_and_says_why) {
   const std::vector<VectorXd> nodes{point({0, 0}), point({1, 0}), point({1, 1}), point({2, 1})};
   int asked = 0;
   const SmoothResult r = smooth(nodes, kFigure18, {}, [&asked](const Trajectory& corner) {
@@ -241,7 +241,7 @@ TEST(Smooth, AForbiddenCornerKeepsItsStopAndSaysWhy) {
   EXPECT_NE(none.corners[1].reason, "");
 }
 
-TEST(Smooth, RefusesBadNodesAndLimits) {
+TEST(Smooth, refuses_bad_nodes_and_limits) {
   EXPECT_NE(smooth({}, kFigure18).reason, "");
   EXPECT_NE(smooth({point({0, 0}), point({1})}, kFigure18).reason, "");
   EXPECT_NE(smooth({point({0, 0}), point({1, std::nan("")})}, kFigure18).reason, "");

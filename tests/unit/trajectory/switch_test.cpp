@@ -40,7 +40,7 @@ double distance(const MotionState3& x, const MotionState3& y) {
                    (x.acceleration - y.acceleration).lpNorm<Eigen::Infinity>()});
 }
 
-TEST(Switch, LeadsFromAnyMotionOntoATrajectoryThatStartsElsewhereOrMoving) {
+TEST(Switch, leads_from_any_motion_onto_a_trajectory_that_starts_elsewhere_or_moving) {
   const std::uint64_t seed = 51;
   Draw draw{std::mt19937_64(seed)};
   for (int k = 0; k < 400; ++k) {
@@ -63,7 +63,7 @@ TEST(Switch, LeadsFromAnyMotionOntoATrajectoryThatStartsElsewhereOrMoving) {
   }
 }
 
-TEST(Switch, MeetsATrajectoryThatRunsAlready) {
+TEST(Switch, meets_a_trajectory_that_runs_already) {
   const std::uint64_t seed = 52;
   Draw draw{std::mt19937_64(seed)};
   int sooner = 0, looked = 0;
@@ -90,7 +90,7 @@ TEST(Switch, MeetsATrajectoryThatRunsAlready) {
   EXPECT_LT(sooner, looked / 50);
 }
 
-TEST(Switch, NothingLeadsOverWhereOnlyRoundingIsBetween) {
+TEST(Switch, nothing_leads_over_where_only_rounding_is_between) {
   const std::uint64_t seed = 57;
   Draw draw{std::mt19937_64(seed)};
   SwitchSettings at_its_beginning;
@@ -115,7 +115,7 @@ TEST(Switch, NothingLeadsOverWhereOnlyRoundingIsBetween) {
   }
 }
 
-TEST(Switch, SaysWhyNot) {
+TEST(Switch, says_why_not) {
   const KinematicLimits guard{VectorXd::Ones(2), VectorXd::Ones(2), VectorXd::Ones(2)};
   const Trajectory next = straight_motion(VectorXd::Zero(2), VectorXd::Ones(2), {guard.velocity / 1.1, guard.acceleration, guard.jerk});
   MotionState3 now = rest_state(VectorXd::Zero(2));
@@ -138,7 +138,7 @@ TEST(Switch, SaysWhyNot) {
   EXPECT_EQ(idle.switch_to(SegmentTable(next)), SwitchOutcome::wrong_size);
 }
 
-TEST(Switch, KeepsThePathBehindAndTheOwnTimeOfWhatRuns) {
+TEST(Switch, keeps_the_path_behind_and_the_own_time_of_what_runs) {
   Draw draw{std::mt19937_64(53)};
   for (int k = 0; k < 15; ++k) {
     const KinematicLimits guard = draw.limits(3);
@@ -162,7 +162,7 @@ TEST(Switch, KeepsThePathBehindAndTheOwnTimeOfWhatRuns) {
   }
 }
 
-TEST(Switch, IsPlannedAheadAndTakenBackWithoutATrace) {
+TEST(Switch, is_planned_ahead_and_taken_back_without_a_trace) {
   Draw draw{std::mt19937_64(54)};
   for (int k = 0; k < 15; ++k) {
     const KinematicLimits guard = draw.limits(3);
@@ -197,7 +197,7 @@ TEST(Switch, IsPlannedAheadAndTakenBackWithoutATrace) {
   }
 }
 
-TEST(Switch, WhatMayNotRunBackStandsWhenAskedTo) {
+TEST(Switch, what_may_not_run_back_stands_when_asked_to) {
   Draw draw{std::mt19937_64(56)};
   for (int k = 0; k < 30; ++k) {
     const KinematicLimits guard = draw.limits(3);
@@ -215,7 +215,7 @@ TEST(Switch, WhatMayNotRunBackStandsWhenAskedTo) {
   }
 }
 
-TEST(Replan, DoesNotJumpWhenStartAndEndAccelerateAlike) {
+TEST(Replan, does_not_jump_when_start_and_end_accelerate_alike) {
   const std::uint64_t seed = 55;
   Draw draw{std::mt19937_64(seed)};
   const double dt = 0.004;
@@ -253,7 +253,7 @@ TEST(Replan, DoesNotJumpWhenStartAndEndAccelerateAlike) {
   EXPECT_LE(jumps, 1);
 }
 
-TEST(Switch, NothingThatRunsInACycleAllocates) {
+TEST(Switch, nothing_that_runs_in_a_cycle_allocates) {
   Draw draw{std::mt19937_64(54)};
   const KinematicLimits guard = draw.limits(7);
   const SegmentTable next(draw.path(guard)), other(draw.path(guard));

@@ -17,7 +17,7 @@ using test::Draw;
 using test::runs;
 using test::scaled;
 
-TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
+TEST(TimeLaw, every_step_is_within_the_guard_whatever_is_asked_for) {
   const std::uint64_t seed = 31;
   Draw draw{std::mt19937_64(seed)};
   double largest = 0;
@@ -56,7 +56,7 @@ TEST(TimeLaw, EveryStepIsWithinTheGuardWhateverIsAskedFor) {
   RecordProperty("largest_share", std::to_string(largest));
 }
 
-TEST(TimeLaw, CornersThatUseTheWholeGuardAreKeptToo) {
+TEST(TimeLaw, corners_that_use_the_whole_guard_are_kept_too) {
   const std::uint64_t seed = 34;
   Draw draw{std::mt19937_64(seed)};
   for (int k = 0; k < runs(25); ++k) {
@@ -85,7 +85,7 @@ TEST(TimeLaw, CornersThatUseTheWholeGuardAreKeptToo) {
   }
 }
 
-TEST(TimeLaw, StopsNearlyAsFastAsTheAxesCould) {
+TEST(TimeLaw, stops_nearly_as_fast_as_the_axes_could) {
   Draw draw{std::mt19937_64(32)};
   double along = 0, own = 0, worst = 0;
   int stops = 0;
@@ -112,7 +112,7 @@ TEST(TimeLaw, StopsNearlyAsFastAsTheAxesCould) {
   EXPECT_LT(along / stops, 2.0 * own / stops);
 }
 
-TEST(TimeLaw, HoldsResumesAndRunsBack) {
+TEST(TimeLaw, holds_resumes_and_runs_back) {
   const KinematicLimits guard{VectorXd::Ones(2), VectorXd::Ones(2) * 2, VectorXd::Ones(2) * 8};
   const VectorXd a = VectorXd::Zero(2), b = (VectorXd(2) << 1.0, -0.4).finished();
   const Trajectory t = solve(rest_state(a), rest_state(b), scaled(guard, 0.9)).trajectory;
@@ -133,7 +133,7 @@ TEST(TimeLaw, HoldsResumesAndRunsBack) {
   EXPECT_LT((law.state().position - b).norm(), 1e-9);
 }
 
-TEST(TimeLaw, RefusesWhatItCannotRun) {
+TEST(TimeLaw, refuses_what_it_cannot_run) {
   const KinematicLimits guard{VectorXd::Ones(1), VectorXd::Ones(1), VectorXd::Ones(1)};
   Trajectory t = solve(rest_state(VectorXd::Zero(1)), rest_state(VectorXd::Ones(1)), guard).trajectory;
   TimeLaw law;
@@ -146,7 +146,7 @@ TEST(TimeLaw, RefusesWhatItCannotRun) {
   EXPECT_EQ(law.target(), 0);
 }
 
-TEST(SetpointFilter, StaysWithinLimitsAndArrives) {
+TEST(SetpointFilter, stays_within_limits_and_arrives) {
   Draw draw{std::mt19937_64(33)};
   for (int k = 0; k < 300; ++k) {
     const AxisLimits l{draw(0.2, 2), draw(0.3, 5), draw(1, 30)};
@@ -162,7 +162,7 @@ TEST(SetpointFilter, StaysWithinLimitsAndArrives) {
   }
 }
 
-TEST(SetpointFilter, CatchesAMovingTarget) {
+TEST(SetpointFilter, catches_a_moving_target) {
   SetpointFilter filter({0, 0, 0}, {1, 2, 10});
   AxisState target{0.5, 0.3, 0};
   for (int i = 0; i < 4000; ++i) {
@@ -175,7 +175,7 @@ TEST(SetpointFilter, CatchesAMovingTarget) {
   EXPECT_NEAR(filter.state().velocity, 0.3, 1e-3);
 }
 
-TEST(SetpointFilter, CatchesWhatAHandHoldsAndStaysOnIt) {
+TEST(SetpointFilter, catches_what_a_hand_holds_and_stays_on_it) {
   const std::uint64_t seed = 35;
   Draw draw{std::mt19937_64(seed)};
   const double dt = 0.001;
@@ -205,7 +205,7 @@ TEST(SetpointFilter, CatchesWhatAHandHoldsAndStaysOnIt) {
   EXPECT_LT(worst, 2e-3);
 }
 
-TEST(SetpointFilter, NumbersThatAreNoneLeadToRest) {
+TEST(SetpointFilter, numbers_that_are_none_lead_to_rest) {
   SetpointFilter filter({0, 0.5, 0}, {1, 2, 10});
   for (int i = 0; i < 3000; ++i) filter.toward({std::nan(""), std::nan(""), std::nan("")}, 0.001);
   EXPECT_NEAR(filter.state().velocity, 0, 1e-9);

@@ -54,7 +54,7 @@ std::string error_of(const std::string& kind, const std::string& text) {
   return r.answers[0]["error"];
 }
 
-TEST(TrajectoryLines, EveryFaultHasItsOwnSentence) {
+TEST(TrajectoryLines, every_fault_has_its_own_sentence) {
   const auto has = [](const std::string& text, const std::string& part) { EXPECT_NE(text.find(part), std::string::npos) << text; };
   has(error_of("solve", with("p0", "[0,null]")), "\"p0\" must be a finite number");
   has(error_of("solve", with("v0", "[0]")), "velocities");
@@ -87,7 +87,7 @@ TEST(TrajectoryLines, a_line_too_deep_or_too_long_is_refused_and_the_next_one_an
   }
 }
 
-TEST(TrajectoryLines, StartsBeyondTheLimitsComeBackInside) {
+TEST(TrajectoryLines, starts_beyond_the_limits_come_back_inside) {
   const Answers r = run("solve", with("v0", "[1.5,0]"));
   ASSERT_EQ(r.exit_code, 0);
   const Trajectory t = trajectory_in(r.answers[0]);
@@ -95,7 +95,7 @@ TEST(TrajectoryLines, StartsBeyondTheLimitsComeBackInside) {
   EXPECT_NEAR(final_state(t).position[0], 1, 1e-9);
 }
 
-TEST(TrajectoryLines, AnswersHaveWhatTheContractNames) {
+TEST(TrajectoryLines, answers_have_what_the_contract_names) {
   json imposed = json::parse(with("impose", "true"));
   imposed["duration"] = 12.5;
   const Answers solved = run("solve", with("sync", "\"time\"") + with("sync", "\"none\"") + "\n" + imposed.dump() + "\n");
@@ -124,7 +124,7 @@ TEST(TrajectoryLines, AnswersHaveWhatTheContractNames) {
   EXPECT_NEAR(s["p"].back()[1].get<double>(), 1, 1e-9);
 }
 
-TEST(TrajectoryLines, ABadLineIsAnsweredAndTheRestStillRuns) {
+TEST(TrajectoryLines, a_bad_line_is_answered_and_the_rest_still_runs) {
   const Answers r = run("solve", with("p0", "[0,0]") + "{\n" + with("p0", "[0,0]"));
   EXPECT_EQ(r.exit_code, 2);
   ASSERT_EQ(r.answers.size(), 3u);
@@ -146,7 +146,7 @@ void expect_sound(const std::string& kind, const std::string& text, const std::s
   }
 }
 
-TEST(TrajectoryLines, CorpusAndWhatBecomesOfItWhenDamaged) {
+TEST(TrajectoryLines, corpus_and_what_becomes_of_it_when_damaged) {
   const std::uint64_t seed = 71;
   std::mt19937_64 random(seed);
   const auto pick = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
@@ -209,7 +209,7 @@ bool same(const Trajectory& a, const Trajectory& b) {
   return true;
 }
 
-TEST(TrajectoryForms, JsonAndWireGiveBackEveryBit) {
+TEST(TrajectoryForms, json_and_wire_give_back_every_bit) {
   std::mt19937_64 random(72);
   const MessageType& type = message_type<TrajectoryCommand>();
   for (int k = 0; k < 200; ++k) {

@@ -56,7 +56,7 @@ TrajectoryRequest tool_motion(const RobotModel& robot, const Group& arm, const s
   return request;
 }
 
-TEST(TrajectorySize, OfJidoIsBelow64kB) {
+TEST(TrajectorySize, of_jido_is_below64k_b) {
   const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   const Group& arm = robot.require_group("arm");
   CollisionWorld world(robot, nullptr);
@@ -85,7 +85,7 @@ TEST(TrajectorySize, OfJidoIsBelow64kB) {
   measure("Jido, the same beside a person", robot, beside.reply);
 }
 
-TEST(TrajectorySize, OfTheIiwaIsBelow64kB) {
+TEST(TrajectorySize, of_the_iiwa_is_below64k_b) {
   const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf");
   if (!file) GTEST_SKIP() << "HANDSEL_DATA is not set";
   const RobotModel robot = RobotModel::load_urdf(*file);

@@ -34,7 +34,7 @@ struct Draw : test::Draw {
   }
 };
 
-TEST(Solve, SevenAxesEndTogetherInsideTheLimits) {
+TEST(Solve, seven_axes_end_together_inside_the_limits) {
   const std::uint64_t seed = 21;
   Draw draw{std::mt19937_64(seed)};
   int blocked = 0;
@@ -56,7 +56,7 @@ TEST(Solve, SevenAxesEndTogetherInsideTheLimits) {
   EXPECT_GT(blocked, 100);
 }
 
-TEST(Solve, RefusesWhatItCannotDo) {
+TEST(Solve, refuses_what_it_cannot_do) {
   const KinematicLimits l{VectorXd::Ones(2), VectorXd::Ones(2), VectorXd::Ones(2)};
   const MotionState3 a = rest_state(VectorXd::Zero(2)), b = rest_state(VectorXd::Ones(2));
   EXPECT_NE(solve(a, rest_state(VectorXd::Ones(3)), l).reason, "");
@@ -71,7 +71,7 @@ TEST(Solve, RefusesWhatItCannotDo) {
   EXPECT_NEAR(solve(a, b, l, Sync::time, 30.0).trajectory.duration(), 30.0, 1e-9);
 }
 
-TEST(Edit, CutAndAppendGiveTheSameMotion) {
+TEST(Edit, cut_and_append_give_the_same_motion) {
   Draw draw{std::mt19937_64(22)};
   for (int k = 0; k < 300; ++k) {
     const KinematicLimits l = draw.limits(3);
@@ -90,7 +90,7 @@ TEST(Edit, CutAndAppendGiveTheSameMotion) {
   }
 }
 
-TEST(Edit, ShiftedReversedStretchedAndTabledMotionsAreTheSameWay) {
+TEST(Edit, shifted_reversed_stretched_and_tabled_motions_are_the_same_way) {
   Draw draw{std::mt19937_64(27)};
   for (int k = 0; k < 300; ++k) {
     const KinematicLimits l = draw.limits(3);
@@ -117,7 +117,7 @@ TEST(Edit, ShiftedReversedStretchedAndTabledMotionsAreTheSameWay) {
   }
 }
 
-TEST(ThreeSegment, MeetsBothEnds) {
+TEST(ThreeSegment, meets_both_ends) {
   Draw draw{std::mt19937_64(23)};
   for (int k = 0; k < 10000; ++k) {
     const AxisState a{draw(-1, 1), draw(-1, 1), draw(-1, 1)}, b{draw(-1, 1), draw(-1, 1), draw(-1, 1)};
@@ -129,7 +129,7 @@ TEST(ThreeSegment, MeetsBothEnds) {
   }
 }
 
-TEST(SoftStop, ComesToRestInTheMeasuredTime) {
+TEST(SoftStop, comes_to_rest_in_the_measured_time) {
   Draw draw{std::mt19937_64(24)};
   for (int k = 0; k < 10000; ++k) {
     const AxisLimits l{1, draw(0.5, 4), draw(1, 20)};
@@ -153,7 +153,7 @@ TEST(SoftStop, ComesToRestInTheMeasuredTime) {
   }
 }
 
-TEST(SoftStop, CriticalMovementEndsAtItsEndForSmallSpeedsToo) {
+TEST(SoftStop, critical_movement_ends_at_its_end_for_small_speeds_too) {
   Draw draw{std::mt19937_64(26)};
   for (int k = 0; k < 100000; ++k) {
     const double A = draw(0.5, 4), J = draw(1, 20);
@@ -167,7 +167,7 @@ TEST(SoftStop, CriticalMovementEndsAtItsEndForSmallSpeedsToo) {
   }
 }
 
-TEST(Limits, ExtremesAreExact) {
+TEST(Limits, extremes_are_exact) {
   Draw draw{std::mt19937_64(25)};
   for (int k = 0; k < 300; ++k) {
     const KinematicLimits l = draw.limits(2);
