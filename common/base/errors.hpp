@@ -1,4 +1,4 @@
-// Errors by who must act. Run-time outcomes are values, not exceptions; see Refusal.
+// Errors by the action they require. Run-time outcomes are values, not exceptions; see Refusal.
 #pragma once
 
 #include <stdexcept>
@@ -7,8 +7,8 @@
 
 namespace handsel {
 
-/// Bad input or configuration: one sentence naming file, line and key, what is wrong and what would be right.
-/// The command turns it into exit code 2.
+/// Bad input or configuration: one sentence naming file, line and key, what is wrong and what would
+/// be right. The command turns it into exit code 2.
 struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -18,7 +18,8 @@ struct MissingError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Why something was turned down: which grasp, path, corner, trajectory or message, and for what reason.
+/// Why something was turned down: which grasp, path, corner, trajectory or message, and for what
+/// reason.
 struct Refusal {
   std::string what;    ///< the thing refused, e.g. "grasp 12"
   std::string reason;  ///< one sentence

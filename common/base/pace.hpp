@@ -7,20 +7,27 @@
 
 namespace handsel {
 
+/// The period of a recurring piece of work, adapted to advice.
 class Pace {
  public:
-  /// `fastest`: its period without advice, and the least there is [s] > 0; `slowest` >= fastest: the longest, whatever is advised [s];
-  /// `tick`: how often due() is asked [s]: periods are rounded to it.
+  /// `fastest`: period without advice and lower bound of advice [s], > 0; `slowest` >= `fastest`:
+  /// upper bound of advice [s]; `tick`: period at which due() is called [s], to which periods are
+  /// rounded.
   Pace(double fastest, double slowest, double tick) : fastest_(fastest), slowest_(std::max(fastest, slowest)), slack_(0.5 * tick) {}
 
-  /// The period that is wanted [s]; 0: as fast as it can be. It holds for `kHeard`; then the fastest again.
+  /// Sets the advised period [s]; 0: the fastest. The advice expires after 0.3 s.
   void advise(double period, TimePoint now) {
     advised_ = period;
     advised_at_ = now;
   }
-  bool heard(TimePoint now) const { return now - advised_at_ <= kHeard; }  ///< advice that still holds
+  /// Returns whether the last advice still holds.
+  bool heard(TimePoint now) const { return now - advised_at_ <= kHeard; }
+  /// Returns the period in force [s]: the advised one within [fastest, slowest], else the fastest.
   double period(TimePoint now) const { return heard(now) ? std::clamp(advised_, fastest_, slowest_) : fastest_; }
+  /// Returns whether the period has passed since done(), up to half a tick early; true before the
+  /// first done().
   bool due(TimePoint now) const { return !begun_ || to_seconds(now - done_) + slack_ >= period(now); }
+  /// Starts the period anew: the work was done at `now`.
   void done(TimePoint now) {
     begun_ = true;
     done_ = now;

@@ -1,4 +1,5 @@
-// Requests of several clients and the answers to them: asking twice is harmless, a client may cancel, and both lists are bounded. Pure.
+// Requests of several clients and the answers to them: a repeated request is harmless, a client may
+// cancel, and both lists are bounded. No I/O, no clock.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,8 @@ namespace handsel {
 struct RequestLimits {
   std::size_t open{64};        ///< requests that are admitted and not answered
   std::size_t remembered{64};  ///< answers kept for a client that asks again
-  std::size_t clients{64};     ///< whose numbers are remembered; the one that has asked least recently is forgotten
+  /// Clients whose numbers are remembered; the least recent one is forgotten
+  std::size_t clients{64};
 };
 
 /// What a newer request of a client means for its older ones.
@@ -23,7 +25,8 @@ enum class Newer {
   replaces,  ///< they are superseded
 };
 
-/// `Reply::id` has the fields `client` and `number`; the numbers of a client grow.
+/// Open requests and kept replies. `Reply::id` has the fields `client` and `number`; the numbers of
+/// a client grow.
 template <class Reply>
 class RequestQueue {
  public:
@@ -31,13 +34,15 @@ class RequestQueue {
   explicit RequestQueue(Newer newer, const RequestLimits& limits = {}) : newer_(newer), limits_(limits) {}
 
   enum class Admission {
-    fresh,       ///< work on it
-    under_way,   ///< asked before, the answer will come
-    answered,    ///< asked before, see answer()
-    superseded,  ///< the client has asked something newer since
-    cancelled,   ///< the client wants it no more
-    full,        ///< as many as may wait do: refuse it
+    fresh,       ///< new: to be worked on
+    under_way,   ///< a repeated request whose answer is still to come
+    answered,    ///< a repeated request, see answer()
+    superseded,  ///< the client has sent a newer request since
+    cancelled,   ///< withdrawn by the client
+    full,        ///< the limit of open requests is reached: to be refused
   };
+  /// Registers a request and returns what to do with it; only `fresh` opens it. May forget the
+  /// client that asked least recently.
   Admission admit(const Id& id) {
     if (answer(id) != nullptr) return Admission::answered;
     if (std::find(open_.begin(), open_.end(), id) != open_.end()) return Admission::under_way;
@@ -49,11 +54,13 @@ class RequestQueue {
     open_.push_back(id);
     return Admission::fresh;
   }
+  /// Returns whether the client has sent a newer request that replaces this one; false under
+  /// Newer::beside and for unknown clients.
   bool superseded(const Id& id) const {
     const auto client = find(id.client);
     return newer_ == Newer::replaces && client != clients_.end() && client->newest > id.number;
   }
-  /// This request and all older ones of the client are wanted no more. Returns those that are not answered yet.
+  /// Marks this request and all older ones of the client as cancelled. Returns those that are open.
   std::vector<Id> cancel(const Id& id) {
     Client& client = client_of(id);
     client.cancelled = std::max(client.cancelled, id.number);
@@ -63,18 +70,24 @@ class RequestQueue {
       if (open.client == id.client && open.number <= id.number) unanswered.push_back(open);
     return unanswered;
   }
+  /// Removes the request from the open ones and keeps the reply for repeated requests; the oldest
+  /// reply is dropped at the bound.
   void close(const Reply& reply) {
     std::erase(open_, reply.id);
     answers_.push_back(reply);
     if (answers_.size() > limits_.remembered) answers_.pop_front();
   }
+  /// Returns the reply that is kept for the request, valid until the next close(); nullptr if there
+  /// is none.
   const Reply* answer(const Id& id) const {
     const auto found = std::find_if(answers_.begin(), answers_.end(), [&id](const Reply& reply) { return reply.id == id; });
     return found == answers_.end() ? nullptr : &*found;
   }
-  /// Why a request was not admitted because the queue is full, one sentence.
+  /// Returns the reason for Admission::full, one sentence.
   std::string why_full() const { return std::to_string(limits_.open) + " requests wait already, which is the limit; ask again later"; }
+  /// Returns the number of requests that are admitted and not answered.
   std::size_t open() const { return open_.size(); }
+  /// Returns the number of clients that are remembered.
   std::size_t clients() const { return clients_.size(); }
 
  private:

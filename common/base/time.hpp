@@ -9,13 +9,14 @@ namespace handsel {
 
 using Duration = std::chrono::nanoseconds;
 
-/// The clock every age and deadline is judged on: CLOCK_MONOTONIC on DdsBus, virtual time on LocalBus.
+/// The clock of every age and deadline: CLOCK_MONOTONIC on DdsBus, virtual time on LocalBus.
 /// Deliberately without now(): a core is given the time.
 struct MonotonicClock {
   using duration = Duration;
   using rep = Duration::rep;
   using period = Duration::period;
   using time_point = std::chrono::time_point<MonotonicClock, Duration>;
+  /// Requirement of a standard clock: the time never decreases
   static constexpr bool is_steady = true;
 };
 using TimePoint = MonotonicClock::time_point;
@@ -23,6 +24,7 @@ using TimePoint = MonotonicClock::time_point;
 /// Nanoseconds of the system clock (UTC), for people and logs only; 0 means unknown.
 using Stamp = std::int64_t;
 
+/// Converts to seconds.
 constexpr double to_seconds(Duration d) { return static_cast<double>(d.count()) * 1e-9; }
 /// Rounds to the nearest nanosecond.
 inline Duration from_seconds(double s) { return Duration(std::llround(s * 1e9)); }

@@ -1,5 +1,5 @@
-// The one thread a component's callbacks run on: timers, wake-ups from other threads, jobs on a worker thread. Its time is the monotonic
-// clock, or what the simulator grants (paced_clock.hpp).
+// The one thread a component's callbacks run on: timers, wake-ups from other threads, jobs on a
+// worker thread. Its time is the monotonic clock, or what the simulator grants (paced_clock.hpp).
 #pragma once
 
 #include <sched.h>
@@ -33,8 +33,8 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  /// The callbacks' time. While a timer is served with granted time: the instant it was due at, so that a process that gets its turn late
-  /// does what it would have done in time.
+  /// The callbacks' time. While a timer is served with granted time: the instant it was due at, so
+  /// that a process that gets its turn late does what it would have done in time.
   TimePoint now();
   /// The time at which the monotonic clock showed `wall`, which is past.
   TimePoint past(TimePoint wall) { return clock_.past(wall); }
@@ -43,10 +43,14 @@ class Executor {
   /// PacedClock::grant().
   bool grant(const TimeGrant& grant);
 
+  /// As Bus::every(). Throws std::invalid_argument unless the period is > 0.
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick);
   /// On the monotonic clock, whatever is granted; the callback gets that clock's time.
   void every_real(Duration period, std::function<void(TimePoint)> on_tick);
+  /// As Bus::after(); a delay below 1 ns counts as 1 ns.
   void after(Duration delay, std::function<void(TimePoint)> on_time);
+  /// As Bus::run_job() on a worker thread at normal priority; after end_jobs() the job is dropped
+  /// and `done` not called.
   CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done);
 
   /// Called on the executor after wake(); set once before running.
@@ -54,10 +58,15 @@ class Executor {
   /// From any thread; wake-ups that come together are one.
   void wake() noexcept;
 
+  /// Serves callbacks on the calling thread until stop().
   void run();
+  /// Serves callbacks until `done` holds (asked before each turn) or the real time `limit` is over
+  /// or stop() was called; returns whether it held.
   bool run_until(const std::function<bool()>& done, Duration limit);
+  /// Ends run() after the current turn. Any thread, or a signal handler.
   void stop() noexcept;
-  /// Cancels all jobs, drops those that wait, and waits for the running one; false if it is still at work after `limit`.
+  /// Cancels all jobs, drops those that wait, and waits for the running one; false if it is still
+  /// at work after `limit`.
   bool end_jobs(Duration limit);
 
   /// Returns whether the running job has given no sign of life for two seconds.

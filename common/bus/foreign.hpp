@@ -1,4 +1,5 @@
-// Topics that others define travel on a bus too, with a row and a MessageType of their own that live as long as the bus runs.
+// Topics that others define travel on a bus too, with a row and a MessageType of their own that
+// live as long as the bus runs.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,8 @@
 
 namespace handsel {
 
-/// Is the row one of the table's own? Of the others no equality of types is asked for: their writers may not even tell theirs.
+/// Is the row one of the table's own? Of the others no equality of types is asked for: their
+/// writers may not even tell theirs.
 inline bool in_table(const TopicRow& row) { return !std::less<>()(&row, std::begin(kTopics)) && std::less<>()(&row, std::end(kTopics)); }
 
 }  // namespace handsel

@@ -12,10 +12,13 @@ namespace handsel {
 
 class Intake;
 
-/// Counts by name. Names beyond the bound of ComponentHealth.left_out are counted together as "other".
+/// Counts by name. Names beyond the bound of ComponentHealth.left_out are counted together as
+/// "other".
 class LeftOutCounts {
  public:
+  /// Adds to the count of this cause; nothing for 0.
   void add(const std::string& what, std::uint64_t more);
+  /// Returns all counts in order of their names, at most 24.
   std::vector<NamedCount> counts() const;
 
  private:

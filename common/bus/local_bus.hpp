@@ -1,5 +1,6 @@
-// A whole system in one process and virtual time: same seed, same order, bit for bit. Every sample passes the wire conversions, travels
-// for a seeded delay and meets the same depths, ownership and late-join rules as over DDS.
+// A whole system in one process and virtual time: same seed, same order, bit for bit. Every sample
+// passes the wire conversions, travels for a seeded delay and meets the same depths, ownership and
+// late-join rules as over DDS.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +15,11 @@
 namespace handsel {
 
 struct LocalNetworkSettings {
-  std::uint64_t seed{1};
-  double delay_min{0.0001};  ///< transport delay of a sample, uniform between these [s]; order per writer and reader is kept
+  std::uint64_t seed{1};  ///< of the transport delays and losses
+  /// Transport delay of a sample, uniform between these [s]; order per writer and reader is kept
+  double delay_min{0.0001};
   double delay_max{0.0003};  ///< [s]
-  double loss{};             ///< share of best-effort samples lost, [0, 1)
+  double loss{};             ///< fraction of best-effort samples lost, [0, 1)
   double lease{0.3};         ///< a killed component is noticed by its readers after this [s]
 };
 
@@ -29,41 +31,54 @@ class LocalNetwork {
   LocalNetwork(const LocalNetwork&) = delete;
   LocalNetwork& operator=(const LocalNetwork&) = delete;
 
-  /// The bus of a new component; lives as long as the network. The node built on it must not be destroyed before its last event unless
-  /// the component was killed.
+  /// The bus of a new component; lives as long as the network. The node built on it must not be
+  /// destroyed before its last event unless the component was killed.
   Bus& add(const std::string& component);
 
+  /// Returns the virtual time; it starts at zero.
   TimePoint now() const;
   /// Handles every event up to and including t. Throws std::logic_error for a t before now().
   void run_until(TimePoint t);
+  /// Handles every event of the next `d`; see run_until().
   void run_for(Duration d) { run_until(now() + d); }
-  /// Handles events until `done` holds (asked after each event) or `limit` is reached; true if it held.
+  /// Handles events until `done` holds (asked after each event) or `limit` is reached; true if it
+  /// held.
   bool run_until(const std::function<bool()>& done, TimePoint limit);
-  std::uint64_t events() const;  ///< handled so far
+  std::uint64_t events() const;  ///< number of events handled so far
 
-  /// Who talks about what: every writer and reader there is or was.
+  /// A writer or reader that exists or existed.
   struct Endpoint {
-    std::string component;
-    std::string type;  ///< message type, as in the table of topics
-    bool writes{};
+    std::string component;    ///< name given to LocalNetwork::add()
+    std::string type;         ///< message type, as in the table of topics
+    bool writes{};            ///< true: a writer; false: a reader
     std::uint64_t samples{};  ///< sent, or received and valid
   };
+  /// Returns all writers, then all readers, those of killed components included.
   std::vector<Endpoint> endpoints() const;
 
-  /// From now on the CPU time of these components' callbacks and jobs is counted. It enters nothing that is computed here.
+  /// From now on the CPU time of these components' callbacks and jobs is counted. It enters nothing
+  /// that is computed here.
   void meter(const std::set<std::string>& components);
-  /// CPU time counted so far [s].
+  /// Returns the CPU time counted so far [s]. Throws std::invalid_argument without such a living
+  /// component.
   double cpu(const std::string& component) const;
-  /// From now on every value that is sent, and when, goes into one number: equal numbers, equal runs.
+  /// From now on every value that is sent, and when, goes into one number: equal numbers, equal
+  /// runs.
   void hash_outputs();
+  /// Returns that number; without hash_outputs() a constant.
   std::uint64_t output_hash() const;
-  /// From now on calls with every sample that is sent, in its IDL struct, and when. What it does enters nothing that is computed here.
+  /// From now on calls with every sample that is sent, in its IDL struct, and when. What it does
+  /// enters nothing that is computed here.
   void tap(std::function<void(const MessageType&, const void* wire, Stamp sent)> on_sample);
 
-  /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after the lease.
+  /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after
+  /// the lease.
   void kill(const std::string& component);
-  /// As SIGSTOP and SIGCONT: while paused nothing of it runs; samples wait for it within the depth of their topic.
+  /// As SIGSTOP and SIGCONT: while paused nothing of it runs; samples wait for it within the depth
+  /// of their topic.
   void pause(const std::string& component);
+  /// Runs a paused component again: what waited is handled now. Throws std::invalid_argument
+  /// without such a living component.
   void resume(const std::string& component);
   /// Cuts all its traffic both ways; it runs on.
   void isolate(const std::string& component, bool cut);

@@ -12,25 +12,31 @@ namespace handsel {
 struct TimeGrant {
   std::uint64_t incarnation{};  ///< of the simulator
   TimePoint until{};            ///< no component's time passes this instant
-  Duration waited{};            ///< for how long time has stood still since the simulator started
+  Duration waited{};            ///< total time the clock was halted since the simulator started
 };
 
-/// The machine's monotonic clock ("wall") less the time for which time has stood still. It stands still where no more is granted, goes back
-/// at no other time than at the first grant, and is the machine's clock until then. A grant that ended more than 50 ms ago lets time
-/// advance no further: a process that has been stopped meanwhile first hears whether the simulator has waited for it. When the simulator
-/// has been silent for a second in which this component could have heard it, time continues from where it stands.
+/// The machine's monotonic clock ("wall") less the total halt. Time halts where no more is granted,
+/// goes back only at the first grant, and is the machine's clock until then. A grant that ended
+/// more than 50 ms ago lets time advance no further: a process that was stopped meanwhile first
+/// learns whether the simulator has waited for it. When the simulator has been silent for a second
+/// in which this component was able to receive a grant, time continues from its current value.
 class PacedClock {
  public:
-  /// Returns false when the grant is of another simulator than the one heard within the last second, and was ignored.
+  /// Applies a grant; returns false and ignores the grant when another simulator has sent one
+  /// within the last second.
   bool grant(const TimeGrant& grant, TimePoint wall);
-  /// The time now.
+  /// Returns the time at `wall`, which must not decrease between calls; the result never decreases
+  /// after the first grant.
   TimePoint at(TimePoint wall);
   /// Returns the time at a `wall` since the grant before the last one, at most the last at().
   TimePoint past(TimePoint wall) const;
   /// Returns whether the newest grant is so old that how far time has advanced is not known.
   bool stale(TimePoint wall) const;
-  /// When to look at the clock again for `instant`: when it will be there, or earlier as long as that is not granted.
+  /// Returns the wall time at which to check for `instant` again: when it is reached, or 20 ms
+  /// after `wall` while it is not granted.
   TimePoint look_at(TimePoint instant, TimePoint wall) const;
+  /// Returns whether a simulator gives the time; false before its first grant and after a second of
+  /// its silence.
   bool paced() const { return paced_; }
 
  private:

@@ -7,7 +7,8 @@ namespace handsel {
 
 /// Returns $XDG_STATE_HOME/handsel, ~/.local/state/handsel, or handsel in the temporary directory.
 std::filesystem::path state_directory();
-/// Returns the folder of what survives the processes of a domain: $HANDSEL_STATE, else state_directory()/domain-N.
+/// Returns the folder of what survives the processes of a domain: $HANDSEL_STATE, else
+/// state_directory()/domain-N.
 std::filesystem::path domain_state_directory(int domain);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// Keeps the samples of a second writer out of a DDS reader's cache, where they would replace those of the accepted writer.
+// Keeps the samples of a second writer out of a DDS reader's cache, where they would replace those
+// of the accepted writer.
 #pragma once
 
 #include <atomic>
@@ -13,12 +14,13 @@ namespace handsel {
 
 class WriterGate {
  public:
-  /// Sets the filter of a topic entity that no reader uses yet. `on_refusal` is called on a thread of the transport, at most every 5 ms, so
-  /// that the executor calls hear().
+  /// Sets the filter of a topic entity that no reader uses yet. `on_refusal` is called on a thread
+  /// of the transport, at most every 5 ms, so that the executor calls hear().
   void filter(dds_entity_t topic, std::function<void()> on_refusal);
   /// From now on only samples of `writer` pass; 0: all.
   void open_for(std::uint64_t writer) { pinned_.store(writer, std::memory_order_release); }
-  /// Tells the intake what was refused; it may accept the refused writer from now on. On the executor.
+  /// Reports the refusals since the last call to the intake, which may accept the refused writer
+  /// from now on. On the executor.
   void hear(Intake& intake, TimePoint now);
 
  private:

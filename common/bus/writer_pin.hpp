@@ -13,19 +13,24 @@ namespace handsel {
 
 /// What discovery knows of a writer.
 struct WriterIdentity {
-  std::string components;       ///< entity name of its participant: the components it speaks for, separated by spaces
-  std::string name;             ///< for a person: "spark (pid 7 on host desk)"
-  bool matches{true};           ///< type and QoS let its samples arrive
-  std::function<bool()> ended;  ///< returns whether its process has ended; empty: that cannot be known from here
+  /// Entity name of its participant: the components it speaks for, separated by spaces
+  std::string components;
+  std::string name;    ///< for a person: "spark (pid 7 on host desk)"
+  bool matches{true};  ///< type and QoS let its samples arrive
+  /// Returns whether its process has ended; empty: that cannot be known from here
+  std::function<bool()> ended;
 };
 
-/// Whether a participant with this entity name may write the topic: one of its words is in the row's column `writers`.
+/// Whether a participant with this entity name may write the topic: one of its words is in the
+/// row's column `writers`.
 bool may_write(const TopicRow& row, const std::string& components);
 
-/// Pins the first eligible writer of a topic and keeps the pin while that writer lives, also while it is silent. Another one follows at
-/// once when the pinned writer has left or its process has ended. Where the process cannot be observed (another host), a writer of the same
-/// component that appeared after the last sample follows when the silence is longer than the deadline and 0.3 s. Of a trajectory, ros2_lane
-/// takes the pin from the manipulation planner for as long as it has a writer, which it has only while it hands over a command.
+/// Pins the first eligible writer of a topic and keeps the pin while that writer lives, also while
+/// it is silent. Another one follows at once when the pinned writer has left or its process has
+/// ended. Where the process cannot be observed (another host), a writer of the same component that
+/// appeared after the last sample follows when the silence is longer than the deadline and 0.3 s.
+/// Of a trajectory, ros2_lane takes the pin from the manipulation planner for as long as it has a
+/// writer, which it has only while it hands over a command.
 class WriterPin {
  public:
   explicit WriterPin(const TopicRow& row) : row_(row) {}
@@ -34,13 +39,17 @@ class WriterPin {
   void appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now);
   /// A writer was deleted, or its participant lost its lease.
   void left(std::uint64_t writer, TimePoint now);
+  /// Returns whether the writer has appeared and not left.
   bool knows(std::uint64_t writer) const { return known_.contains(writer); }
-  /// Whether a sample of `writer` is accepted. Samples of writers that have not appeared are refused.
+  /// Whether a sample of `writer` is accepted. Samples of writers that have not appeared are
+  /// refused.
   bool accepts(std::uint64_t writer, TimePoint arrival);
-  /// Notices writers whose process has ended before discovery reports them as gone. Called at the rate of health.
+  /// Notices writers whose process has ended before discovery reports them as gone. Called at the
+  /// rate of health.
   void watch(TimePoint now);
   std::uint64_t pinned() const { return pinned_; }  ///< 0: none
-  /// Name of a living writer beside the pinned one, with the count of further ones; empty: there is none.
+  /// Name of a living writer beside the pinned one, with the count of further ones; empty: there is
+  /// none.
   const std::string& second_writer() const { return second_; }
 
  private:

@@ -1,4 +1,5 @@
-// The attentional system's state and advice (chapter abstract, sections 1 and 2.1; the behaviour model is ours).
+// The attentional system's state and advice (chapter abstract, sections 1 and 2.1; the behaviour
+// model is this project's own).
 #pragma once
 
 #include <cstdint>
@@ -11,26 +12,29 @@
 namespace handsel {
 
 enum class Behaviour : std::uint8_t { search, track, avoid, pick, place, give, receive, watch };
+/// Returns the word of kBehaviourNames; "unknown" for a value outside the enumeration.
 const char* name(Behaviour);
 
-/// What attention wants of the task that runs.
+/// Change of the running task that attention asks for.
 enum class TaskChange : std::uint8_t {
   none,
   suspend,
   resume,
   abort,
-  give,  ///< hand what is held to `person`: they reach for it
+  give,  ///< hand the held object to `person`, as that person reaches for it
 };
+/// Returns the word of kTaskChangeNames; "unknown" for a value outside the enumeration.
 const char* name(TaskChange);
 
+/// State of one behaviour of the attentional system.
 struct BehaviourState {
   std::string name;                        ///< as described in the settings
   Behaviour behaviour{};                   ///< its kind
-  double period{};                         ///< of its clock now [s]
+  double period{};                         ///< of its adaptive clock now [s]
   std::uint64_t activations{};             ///< of its perceptual schema since start
   std::uint64_t activations_at_fastest{};  ///< had the clock always run at its shortest period
-  bool released{};
-  double stimulus{};         ///< what it watches, SI
+  bool released{};           ///< its releaser and the conditions of its description hold
+  double stimulus{};         ///< perceived quantity that drives its clock, SI unit by kind
   double speed_factor{1.0};  ///< what it asks for, [-1, 1]
   bool winner{};             ///< decides the speed or the gaze now
   std::string reason;        ///< of its speed factor, one phrase for people
@@ -38,28 +42,29 @@ struct BehaviourState {
 
 /// Topic AttentionState, profile state, 10 Hz.
 struct AttentionState {
-  Stamp stamp{};
-  std::vector<BehaviourState> behaviours;
+  Stamp stamp{};                           ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::vector<BehaviourState> behaviours;  ///< every behaviour of the settings, released or not
 };
 
 /// Topic AttentionAdvice, profile advice, 50 Hz.
 struct AttentionAdvice {
-  Stamp stamp{};
-  double speed_factor{1.0};  ///< minimum over the released behaviours, [-1, 1]
-  std::string limiting;      ///< name of the behaviour that asked for it; empty: none
-  std::string reason;        ///< one phrase for people
-  bool has_gaze_target{};
-  Vector3 gaze_target{Vector3::Zero()};  ///< world [m]
-  bool has_target_shift{};
-  Vector3 target_shift{Vector3::Zero()};  ///< of the exchange point, world [m]
-  double cost_gain{1.0};                  ///< on the human-aware costs
-  double people_period{};                 ///< how often interpretation of people is wanted [s]; 0 = as it comes, here and below
-  double objects_period{};                ///< the same of things [s]
-  double forecast_period{};               ///< how often the forecast of the running trajectory is wanted [s]
-  double cost_map_period{};               ///< how often the cost map is wanted [s]
-  double replan_period{};                 ///< how often a better path for the running motion is wanted [s]
-  TaskChange change{};                    ///< of the task that runs
-  std::string person;                     ///< whom the change is about; empty: nobody
+  Stamp stamp{};                          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  double speed_factor{1.0};               ///< minimum over the released behaviours, [-1, 1]
+  std::string limiting;                   ///< name of the behaviour that asked for it; empty: none
+  std::string reason;                     ///< one phrase for people
+  bool has_gaze_target{};                 ///< false: `gaze_target` has no meaning
+  Vector3 gaze_target{Vector3::Zero()};   ///< world [m]
+  bool has_target_shift{};                ///< false: `target_shift` has no meaning
+  Vector3 target_shift{Vector3::Zero()};  ///< of the handover point, world [m]
+  double cost_gain{1.0};                  ///< factor on the human-aware costs
+  /// Wanted period of the interpretation of people [s]; 0: the fastest, here and below
+  double people_period{};
+  double objects_period{};   ///< wanted period of the interpretation of objects [s]
+  double forecast_period{};  ///< wanted period of the forecast of the running trajectory [s]
+  double cost_map_period{};  ///< wanted period of the cost map [s]
+  double replan_period{};    ///< wanted period of the search for a better path [s]
+  TaskChange change{};       ///< of the task that runs
+  std::string person;        ///< id of the person the change concerns; empty: nobody
 };
 
 }  // namespace handsel

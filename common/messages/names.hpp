@@ -1,5 +1,5 @@
-// The names of the enumerators, each table in the order of its enum: the only ones there are. The wire, the page, reports and settings use
-// them.
+// The only names of the enumerators, each table in the order of its enum. The wire, the page,
+// reports and settings use them.
 #pragma once
 
 #include <cstddef>
@@ -83,8 +83,11 @@ inline constexpr const char* kActionFailureNames[] = {
 std::string text_of(ActionPhase phase);
 /// Returns the phase in words, with the person it waits for.
 std::string phase_text(const ActionStatus& action);
+/// Returns the word of kActionFailureNames; "unknown" for a value outside the enumeration.
 const char* name(ActionFailure);
+/// Returns the word of kHolderNames; "unknown" for a value outside the enumeration.
 const char* name(Holder);
+/// Returns the word of kHealthStateNames; "unknown" for a value outside the enumeration.
 const char* name(HealthState);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// What sensors say: external perception connects here. All poses and points in frame "world".
+// Measurements of sensors: external perception connects here. All poses and points in frame
+// "world".
 #pragma once
 
 #include <cstdint>
@@ -10,63 +11,68 @@
 
 namespace handsel {
 
-/// A tracked point of a body. Names are REP-155 joints and links: head, neck, torso (chest), waist, l_shoulder, l_elbow, l_wrist,
-/// l_hand, r_..., l_hip, l_knee, l_ankle, r_...
+/// A tracked point of a body. Names are REP-155 joints and links: head, neck, torso (chest), waist,
+/// l_shoulder, l_elbow, l_wrist, l_hand, r_..., l_hip, l_knee, l_ankle, r_...
 struct ObservedJoint {
-  std::string name;
+  std::string name;     ///< REP-155 name
   Vector3 position;     ///< world [m]
   double confidence{};  ///< [0, 1]
 };
 
+/// A person as one tracker sees them.
 struct ObservedPerson {
-  std::string body;  ///< transient id of the tracker
-  std::vector<ObservedJoint> joints;
-  bool has_gaze{};
+  std::string body;                          ///< transient id of the tracker
+  std::vector<ObservedJoint> joints;         ///< any subset of the body
+  bool has_gaze{};                           ///< false: the two gaze fields have no meaning
   Vector3 gaze_origin{Vector3::Zero()};      ///< between the eyes, world [m]
   Vector3 gaze_direction{Vector3::UnitX()};  ///< unit, world
 };
 
-/// The volume a source has looked at: what makes "nobody there" a fact. Axis-aligned box in world [m].
+/// The volume a source has observed: inside, "nobody there" is a fact. Axis-aligned box in world
+/// [m].
 struct Coverage {
+  /// Lowest and highest corner; equal corners: nothing is covered
   Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};
 };
 
 /// Topic HumanObservation, profile sensor, keyed by source.
 struct HumanObservation {
-  Stamp stamp{};
-  std::string source;
-  Coverage coverage;
-  std::vector<ObservedPerson> people;
+  Stamp stamp{};                       ///< time of measurement, UTC [ns]; 0: filled in by the bus
+  std::string source;                  ///< name of the sensor
+  Coverage coverage;                   ///< volume observed in this measurement
+  std::vector<ObservedPerson> people;  ///< everybody seen, at most 256
 };
 
-/// What a force sensor in an object feels where a hand grips it.
+/// Measurement of a force sensor in an object where a hand grips it.
 struct ObservedGrip {
   Vector3 position{Vector3::Zero()};  ///< of the sensor, world [m]
-  double force{};                     ///< [N]
+  double force{};                     ///< grip force [N]
 };
 
 enum class PrimitiveKind : std::uint8_t { none, box, cylinder, sphere };
 
-/// Shape of a thing nobody has described, centred in its own frame; cylinders along z.
+/// Shape of an object without description, centred in its own frame; cylinders along z.
 struct Primitive {
-  PrimitiveKind kind{PrimitiveKind::none};
-  Vector3 size{Vector3::Zero()};  ///< full extents along the axes of its frame [m]
+  PrimitiveKind kind{PrimitiveKind::none};  ///< none: no shape is known, and `size` has no meaning
+  Vector3 size{Vector3::Zero()};            ///< full extents along the axes of its frame [m]
 };
 
+/// An object as one source sees it.
 struct ObservedObject {
-  std::string id;     ///< persistent name of this object, e.g. "mug"
-  std::string model;  ///< object description it was recognised as; empty: unknown, its primitive is what is known
-  Pose T_world_object{Pose::Identity()};
-  double confidence{};
-  std::vector<ObservedGrip> grips{};  ///< of an object with force sensors; else empty
-  Primitive primitive{};              ///< of an unknown object; else none
+  std::string id;  ///< persistent name of this object, e.g. "mug"
+  /// Object description it was recognised as; empty: unknown, its primitive is what is known
+  std::string model;
+  Pose T_world_object{Pose::Identity()};  ///< object frame in the world
+  double confidence{};                    ///< [0, 1]
+  std::vector<ObservedGrip> grips{};      ///< of an object with force sensors; else empty
+  Primitive primitive{};                  ///< of an unknown object; else none
 };
 
 /// Topic ObjectObservation, profile sensor, keyed by source.
 struct ObjectObservation {
-  Stamp stamp{};
-  std::string source;
-  std::vector<ObservedObject> objects;
+  Stamp stamp{};                        ///< time of measurement, UTC [ns]; 0: filled in by the bus
+  std::string source;                   ///< name of the sensor
+  std::vector<ObservedObject> objects;  ///< everything seen, at most 1024
 };
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// Requests between the planners and their replies. A reply carries the id of its request; asking twice is harmless.
+// Requests between the planners and their replies. A reply carries the id of its request; a
+// repeated request is harmless.
 #pragma once
 
 #include <array>
@@ -13,10 +14,10 @@
 
 namespace handsel {
 
-/// Who asks: unique over the system; the reply repeats it.
+/// Identity of a request: unique over the system; the reply repeats it.
 struct RequestId {
   std::uint64_t client{};  ///< random per process start
-  std::uint64_t number{};
+  std::uint64_t number{};  ///< grows with each request of the client
   bool operator==(const RequestId&) const = default;
 };
 
@@ -29,162 +30,185 @@ struct Attachment {
 
 enum class PlannerKind : std::uint8_t { automatic, rrt, rrt_connect, trrt, bitrrt };
 
-/// What is sampled: the axes of the group, or place of the tool and angle of the elbow (chapter section 4.6.1).
+/// What is sampled: the axes of the group, or place of the tool and angle of the elbow (chapter
+/// section 4.6.1).
 enum class PlanSpace : std::uint8_t { joint, cartesian };
 
-/// A place of the group's tip, or the region around it.
+/// A goal pose of the group's tip, or the region around it.
 struct TipGoal {
-  Pose T_world_tip{Pose::Identity()};
-  Vector3 slack{Vector3::Zero()};  ///< half extents of a box along the pose's axes [m]
-  double turn{};                   ///< about the pose's z axis either way [rad]
+  Pose T_world_tip{Pose::Identity()};  ///< pose of the tip, the centre of the region
+  Vector3 slack{Vector3::Zero()};      ///< half extents of a box along the pose's axes [m]
+  double turn{};  ///< largest rotation about the pose's z axis, both directions [rad]
 };
 
-/// Topic PathRequest, profile request. Plans for one group of axes; the other axes stay as in `start`. Beside the groups of the
-/// description there are "platform" (x, y [m], heading [rad] in the world) and "robot" (the platform, then the arm).
+/// Topic PathRequest, profile request. Plans for one group of axes; the other axes stay as in
+/// `start`. Beside the groups of the description there are "platform" (x, y [m], heading [rad] in
+/// the world) and "robot" (the platform, then the arm).
 struct PathRequest {
-  Stamp stamp{};
-  RequestId id;
-  std::string group;  ///< "arm"
-  PlanSpace space{PlanSpace::joint};
-  /// All axes of the robot [rad]; where the platform is planned for, its x, y, heading may follow: else it starts where it stands.
+  Stamp stamp{};                      ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                       ///< repeated by the reply
+  std::string group;                  ///< "arm"
+  PlanSpace space{PlanSpace::joint};  ///< what is sampled
+  /// All axes of the robot [rad]; where the platform is planned for, its x, y [m], heading [rad]
+  /// may follow; without them it starts from its current pose.
   Vector start;
-  std::vector<Vector> goals;        ///< alternatives, group axes only [rad]; or
-  std::vector<TipGoal> poses;       ///< alternatives, places of the tip
-  std::vector<std::uint32_t> also;  ///< Cartesian: robot axes that move along with the arm (hand, head), and
-  Vector also_goal;                 ///< where those end [rad]
-  bool upright{};                   ///< `upright_axis` (tool frame) stays within `most_tilt` [rad] of up everywhere on the path
+  std::vector<Vector> goals;  ///< alternatives, group axes only [rad]; empty: `poses` are the goals
+  std::vector<TipGoal> poses;  ///< alternatives, goal poses of the tip
+  /// Cartesian space: robot axes that move along with the arm (hand, head)
+  std::vector<std::uint32_t> also;
+  Vector also_goal;  ///< goal of those axes [rad]
+  bool upright{};    ///< `upright_axis` keeps a bounded angle to up everywhere on the path
+  /// unit, tool frame; +x as received where `upright` is false
   Vector3 upright_axis{Vector3::UnitZ()};
-  double most_tilt{};
-  Attachment attachment;
-  /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms are no obstacle because
-  /// the exchange with them is engaged. The same meaning wherever this field appears.
+  double most_tilt{};     ///< largest angle of that axis to up, [0, 3.1416] [rad]
+  Attachment attachment;  ///< what the hand holds on the path
+  /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms
+  /// are no obstacle because the exchange with them is engaged. The same meaning wherever this
+  /// field appears.
   std::vector<std::string> allowed_contacts;
-  PlannerKind planner{PlannerKind::automatic};
-  double time_limit{2.0};  ///< [s] a budget in checks is derived from it
-  std::uint64_t seed{};
-  bool straight{};  ///< only the straight line from start to goals[0] is wanted, checked
-  /// The path that runs: it is gone on along from `start`, a place on it that the arm has not reached yet. Empty: plan from nothing.
+  PlannerKind planner{PlannerKind::automatic};  ///< algorithm; automatic: the planner chooses
+  double time_limit{2.0};  ///< [s]; a budget of collision checks is derived from it
+  std::uint64_t seed{};    ///< of the random choices
+  /// Only the straight line from `start` to goals[0] is wanted, collision-checked
+  bool straight{};
+  /// The running path, to be continued from `start`, a point on it that the arm has not reached
+  /// yet. Empty: plan anew.
   std::vector<Vector> running;
-  bool cancel{};  ///< stop the request of this id and all older ones of the client; their replies say so
+  /// Stop the request of this id and all older ones of the client; their replies say so
+  bool cancel{};
 };
 
-/// How a path came about; all but the first are of live requests.
+/// How a path came about; all but the first belong to online replanning.
 enum class PathOutcome : std::uint8_t {
-  planned,
+  planned,    ///< a request without a running path
   kept,       ///< free, and nothing cheaper was found
   improved,   ///< free, and cheaper than before
   repaired,   ///< was blocked; led around what blocks it
   replanned,  ///< another goal, or nothing of it could be saved
-  blocked,    ///< no way was found: the arm must stop
+  blocked,    ///< no path was found: the arm must stop
 };
 
 /// Topic PathReply, profile reply.
 struct PathReply {
-  Stamp stamp{};
-  RequestId id;
-  bool solved{};
-  std::string reason;         ///< why not, one sentence
-  std::string start_touches;  ///< id of the object, box or person the robot touches at the start; empty: none
-  PathOutcome outcome{PathOutcome::planned};
-  std::uint32_t goal{};             ///< index of the goal or pose reached
-  std::vector<Vector> path;         ///< group axes, then those of `also`; path.front() = start
-  double cost{}, work{}, length{};  ///< integral human-aware cost, the sum of its rises; joint-space length [rad]
-  std::uint64_t checks{};           ///< states judged
+  Stamp stamp{};       ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;        ///< of the request
+  bool solved{};       ///< `path` leads from the start to a goal
+  std::string reason;  ///< why not, one sentence
+  /// Id of the object, box or person the robot touches at the start; empty: none
+  std::string start_touches;
+  PathOutcome outcome{PathOutcome::planned};  ///< see PathOutcome
+  std::uint32_t goal{};                       ///< index of the goal or pose reached
+  std::vector<Vector> path;  ///< group axes, then those of `also`; path.front() = start
+  /// Integral human-aware cost; mechanical work, the sum of its rises; joint-space length [rad]
+  double cost{}, work{}, length{};
+  std::uint64_t checks{};  ///< configurations checked for collision
 };
 
 /// A node of a motion of the tool (chapter section 4.6.1).
 struct TipNode {
-  Pose T_world_tip{Pose::Identity()};
-  bool has_elbow{};
-  double elbow{};  ///< angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad]
-  Vector also;     ///< where the further active axes are to be [rad]
+  Pose T_world_tip{Pose::Identity()};  ///< pose of the tip at the node
+  bool has_elbow{};  ///< false: `elbow` is chosen such that the joints stay clear of their limits
+  /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad]
+  double elbow{};
+  Vector also;  ///< positions of the axes `also` of the request at the node [rad]
 };
 
-/// Topic TrajectoryRequest, profile request: a broken line to soft motion, of joints or of the tool.
+/// Topic TrajectoryRequest, profile request: from a polyline to jerk-limited motion, of joints or
+/// of the tool.
 struct TrajectoryRequest {
-  Stamp stamp{};
-  RequestId id;
-  std::string group;
+  Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;               ///< repeated by the reply
+  std::string group;          ///< axes of the nodes, e.g. "arm"
   std::vector<Vector> nodes;  ///< group axes [rad]
-  Vector start;               ///< all axes, for the collision checks of corners
-  Attachment attachment;
-  std::vector<std::string> allowed_contacts;
-  double speed_scale{1.0};  ///< (0, 1] on the comfort velocity limits
-  /// Nodes of the tool after `start`; empty: `nodes` are those of joints, and what follows is not used.
+  Vector start;               ///< all axes, for the collision checks of blends
+  Attachment attachment;      ///< what the hand holds during the motion
+  std::vector<std::string> allowed_contacts;  ///< as PathRequest::allowed_contacts
+  double speed_scale{1.0};                    ///< factor on the comfort velocity limits, (0, 1]
+  /// Nodes of the tool after `start`; empty: `nodes` are those of joints, and the fields below are
+  /// unused.
   std::vector<TipNode> poses;
   std::vector<std::uint32_t> also;  ///< robot axes that are active besides the arm (hand, head)
   bool upright{};                   ///< as in PathRequest
-  Vector3 upright_axis{Vector3::UnitZ()};
-  double most_tilt{};
-  std::string follower{};  ///< arm whose tip is rigidly joined to the group's (two hands on one object); empty: none
-  Pose T_tip_follower{Pose::Identity()};
+  Vector3 upright_axis{Vector3::UnitZ()};  ///< unit, tool frame
+  double most_tilt{};                      ///< largest angle of that axis to up, [0, 3.1416] [rad]
+  /// Arm whose tip is rigidly joined to the group's (two hands on one object); empty: none
+  std::string follower{};
+  Pose T_tip_follower{Pose::Identity()};  ///< tip of the follower in the frame of the group's tip
 };
 
 /// Topic TrajectoryReply, profile reply.
 struct TrajectoryReply {
-  Stamp stamp{};
-  RequestId id;
-  bool solved{};
-  std::string reason;
-  Trajectory trajectory;            ///< of `axes`; of a motion of the tool that is not solved: as far as it goes
-  double duration_ptp{};            ///< with a stop at each node [s]
-  Refusals corners;                 ///< corners that keep their stop, and why
+  Stamp stamp{};          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;           ///< of the request
+  bool solved{};          ///< `trajectory` reaches the last node
+  std::string reason;     ///< why not, one sentence
+  Trajectory trajectory;  ///< of `axes`; an unsolved motion of the tool: as far as it goes
+  double duration_ptp{};  ///< duration with a full stop at each node [s]
+  Refusals corners;       ///< nodes that keep a full stop instead of a blend, and why
   std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
-  std::uint32_t reached{};          ///< nodes on the way given; all of them when solved
-  Vector speeds;                    ///< share of the comfort velocity limits on each leg, because of people; empty: 1 everywhere
+  std::uint32_t reached{};  ///< number of nodes the trajectory passes; all of them when solved
+  /// Factor on the comfort velocity limits per path segment because of people; empty: 1
+  Vector speeds;
 };
 
+/// Contact of one finger with the object.
 struct Contact {
-  std::uint32_t finger{};
-  Vector3 position{Vector3::Zero()};  ///< object frame [m]
-  Vector3 normal{Vector3::UnitZ()};   ///< plane normal of its triangle, outward, object frame
-  std::uint32_t triangle{};
-  Vector3 barycentric{Vector3::Zero()};
-  double friction{};   ///< Coulomb coefficient
-  double curvature{};  ///< interpolated mean curvature, normalised to [0, 1]
+  std::uint32_t finger{};                ///< index in the hand description; the thumb is 0
+  Vector3 position{Vector3::Zero()};     ///< object frame [m]
+  Vector3 normal{Vector3::UnitZ()};      ///< plane normal of its triangle, outward, object frame
+  std::uint32_t triangle{};              ///< index in the mesh of the object
+  Vector3 barycentric{Vector3::Zero()};  ///< of the position in that triangle, sum 1
+  double friction{};                     ///< Coulomb coefficient
+  double curvature{};                    ///< interpolated mean curvature, normalised to [0, 1]
 };
 
 /// A grasp of one hand on one object (chapter section 3.2.1).
 struct Grasp {
-  std::uint64_t id{};
+  std::uint64_t id{};                    ///< unique per object
   Pose T_object_hand{Pose::Identity()};  ///< hand frame = tool link of the robot
   Vector hand_joints;                    ///< actuated hand axes at contact [rad]
   Vector pregrasp_joints;                ///< opened before the approach [rad]
-  Vector hand_effort;                    ///< of the actuated hand axes that squeezes inside the friction cones [Nm]; 0: the axis only holds
-  std::vector<Contact> contacts;
-  double epsilon{};        ///< Ferrari-Canny, L1
-  double margin{};         ///< least force left inside the contacts' cones under that squeeze, whichever way the load pulls [N]
+  /// Torque per actuated hand axis for a grip force inside the friction cones [Nm]; 0: the axis
+  /// only holds
+  Vector hand_effort;
+  std::vector<Contact> contacts;  ///< one per finger that touches the object
+  double epsilon{};               ///< Ferrari-Canny, L1
+  /// Smallest force reserve inside the contacts' cones at that grip, over all load directions [N]
+  double margin{};
   double quality{};        ///< weighted sum of the four parts, [0, 1]
   Vector arm_joints;       ///< arm axes reaching the grasp; empty until a robot was considered
   Vector approach_joints;  ///< arm axes at the stand-off before it
-  bool has_platform{};     ///< the arm reaches it from `platform` (x, y [m], heading [rad], world), not from where it stands
+  bool has_platform{};     ///< the arm reaches it from `platform`, not from the current base pose
+  /// x, y [m], heading [rad], world; no meaning unless `has_platform`
   Vector3 platform{Vector3::Zero()};
-  double visible{};  ///< share of the object that the person it is for (else the robot's head) sees past the hand
+  /// Fraction of the object that its receiver (else the robot's head) sees past the hand
+  double visible{};
 };
 
 /// Topic GraspRequest, profile request.
 struct GraspRequest {
-  Stamp stamp{};
-  RequestId id;
-  std::string object;     ///< scene object id
-  Vector start;           ///< all axes of the robot; IK is seeded from it
-  std::string for_human;  ///< person who will take it, or empty: leave room for that hand
-  std::uint32_t max_grasps{20};
-  std::uint64_t seed{};
-  std::string group;                    ///< axes of the arm; empty: "arm"
-  bool has_goal{};                      ///< it is to be put down again: the grasp must serve at `T_world_goal` too
-  Pose T_world_goal{Pose::Identity()};  ///< the object where it will stand
-  double least_visible{};               ///< of Grasp::visible, [0, 1]
-  bool move_platform{};                 ///< where no grasp is in reach, places of the platform are searched
+  Stamp stamp{};                 ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                  ///< repeated by the reply
+  std::string object;            ///< scene object id
+  Vector start;                  ///< all axes of the robot; IK is seeded from it
+  std::string for_human;         ///< id of the receiver, whose hand needs free space; empty: nobody
+  std::uint32_t max_grasps{20};  ///< longest list wanted, 1 to 200
+  std::uint64_t seed{};          ///< of the random choices
+  std::string group;             ///< axes of the arm; empty: "arm"
+  /// The object is to be put down again: the grasp must be reachable at `T_world_goal` too
+  bool has_goal{};
+  Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
+  double least_visible{};               ///< lower bound of Grasp::visible, [0, 1]
+  bool move_platform{};  ///< platform poses are searched when no grasp is within reach
 };
 
 /// Topic GraspReply, profile reply: reachable, collision-free, best first.
 struct GraspReply {
-  Stamp stamp{};
-  RequestId id;
-  std::string reason;  ///< set when the list is empty
-  std::vector<Grasp> grasps;
-  Refusals rejected;  ///< counts per reason, e.g. {"113 frames", "thumb finds no contact"}
+  Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;               ///< of the request
+  std::string reason;         ///< why the list is empty, one sentence
+  std::vector<Grasp> grasps;  ///< best first
+  Refusals rejected;          ///< counts per reason, e.g. {"113 frames", "thumb finds no contact"}
 };
 
 enum class RegraspKind : std::uint8_t {
@@ -194,60 +218,65 @@ enum class RegraspKind : std::uint8_t {
   join,   ///< `to` takes hold besides `from`
 };
 
-/// Topic RegraspRequest, profile request: hands to take an object with, one after the other or two at once.
+/// Topic RegraspRequest, profile request: hands to take an object with, one after the other or two
+/// at once.
 struct RegraspRequest {
-  Stamp stamp{};
-  RequestId id;
-  std::string object;  ///< scene object id
-  Vector start;        ///< all axes of the robot
-  Pose T_world_goal{Pose::Identity()};
+  Stamp stamp{};                        ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                         ///< repeated by the reply
+  std::string object;                   ///< scene object id
+  Vector start;                         ///< all axes of the robot
+  Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
   bool both{};  ///< two hands at once, which carry it there together; else from hand to hand
-  std::uint64_t seed{};
+  std::uint64_t seed{};  ///< of the random choices
 };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
-  RegraspKind kind{};
-  std::string from, to;                   ///< groups of the arms: who has it or lets go, who takes; empty: none
+  RegraspKind kind{};  ///< see RegraspKind
+  /// Groups of the arms: the holding or releasing one, the taking one; empty: none
+  std::string from, to;
   Pose T_world_object{Pose::Identity()};  ///< the object meanwhile
-  Grasp grasp;                            ///< of `to`; of `from` where nobody takes
+  Grasp grasp;                            ///< of `to`; of `from` where no arm takes
   Vector q;                               ///< all hands that touch the object closed on it
-  Vector before;                          ///< the hand that comes, opened, off the object; empty: none comes
-  Vector after;                           ///< the hand that went, opened, off the object; empty: none goes
+  Vector before;  ///< the hand that comes, opened, off the object; empty: none comes
+  Vector after;   ///< the hand that went, opened, off the object; empty: none goes
 };
 
 /// Topic RegraspReply, profile reply.
 struct RegraspReply {
-  Stamp stamp{};
-  RequestId id;
-  bool solved{};
-  std::string reason;
-  std::vector<RegraspStep> steps;
-  Refusals rejected;
+  Stamp stamp{};                   ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                    ///< of the request
+  bool solved{};                   ///< `steps` lead to the goal
+  std::string reason;              ///< why not, one sentence
+  std::vector<RegraspStep> steps;  ///< changes of hands in order, at most 32
+  Refusals rejected;               ///< counts per reason
 };
 
 /// Topic GraspCandidates, profile advice, 2 Hz: better grasps for the task that runs.
 struct GraspCandidates {
-  Stamp stamp{};
-  std::string object;
-  std::vector<Grasp> grasps;
+  Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::string object;         ///< scene object id; the key of the topic
+  std::vector<Grasp> grasps;  ///< best first
 };
 
-/// Topic StateQuery, profile request, and StateVerdict, profile reply: may the robot be in these configurations?
+/// Topic StateQuery, profile request, and StateVerdict, profile reply: may the robot be in these
+/// configurations?
 struct StateQuery {
-  Stamp stamp{};
-  RequestId id;
-  std::vector<Vector> states;  ///< all axes
-  Attachment attachment;
-  std::vector<std::string> allowed_contacts;
+  Stamp stamp{};               ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                ///< repeated by the verdict
+  std::vector<Vector> states;  ///< configurations, all axes each
+  Attachment attachment;       ///< what the hand holds
+  std::vector<std::string> allowed_contacts;  ///< as PathRequest::allowed_contacts
 };
 
+/// Reply to StateQuery.
 struct StateVerdict {
-  Stamp stamp{};
-  RequestId id;
+  Stamp stamp{};                   ///< time of sending, UTC [ns]; 0: filled in by the bus
+  RequestId id;                    ///< of the query
   std::vector<std::uint8_t> free;  ///< 1 = free, one a state
-  std::string reason;              ///< what touches what in the first that is not
-  double clearance{};              ///< least distance of all the free states [m]
+  std::string reason;  ///< which bodies touch in the first configuration that is not free
+  /// Smallest distance over all free configurations [m]; infinity: nothing near
+  double clearance{};
 };
 
 }  // namespace handsel

@@ -1,4 +1,4 @@
-// Health of the processes, control of the simulator, and the truth only tests may see.
+// Health of the processes, control of the simulator, and the ground truth for tests.
 #pragma once
 
 #include <cstdint>
@@ -13,67 +13,73 @@ namespace handsel {
 
 enum class HealthState : std::uint8_t { starting, ok, degraded, stopping };
 
+/// Reception of one topic by one component.
 struct TopicHealth {
-  std::string topic;
-  std::uint64_t received{};  ///< samples accepted since start
-  double rate{};             ///< [Hz]
-  double age{};              ///< since the last one [s]; negative: never seen
-  std::uint64_t deadline_misses{};
-  std::uint64_t rejected{};
-  std::string last_rejection;   ///< one sentence
-  std::uint64_t refused{};      ///< samples of another writer than the accepted one, on a topic with one writer
-  std::string second_writer{};  ///< identity of that other writer (process, host), while it is there; else empty
+  std::string topic;                ///< name on the wire
+  std::uint64_t received{};         ///< samples accepted since start
+  double rate{};                    ///< mean over about the last half second [Hz]
+  double age{};                     ///< since the last one [s]; negative: never seen
+  std::uint64_t deadline_misses{};  ///< silences longer than the topic's deadline
+  std::uint64_t rejected{};         ///< malformed samples dropped
+  std::string last_rejection;       ///< one sentence
+  /// Samples of another writer than the accepted one, on a topic with one writer
+  std::uint64_t refused{};
+  /// Identity of that other writer (process, host), while it is there; else empty
+  std::string second_writer{};
 };
 
 /// How often something was left out or dropped, by cause.
 struct NamedCount {
-  std::string name;  ///< what and why, e.g. "people: farther than the nearest 16"
-  std::uint64_t count{};
+  std::string name;       ///< what and why, e.g. "people: farther than the nearest 16"
+  std::uint64_t count{};  ///< since the start of the process
 };
 
 /// Topic ComponentHealth, profile health, 10 Hz, keyed by component.
 struct ComponentHealth {
-  Stamp stamp{};
-  std::string component;
-  std::uint64_t incarnation{};  ///< random per process start
-  std::uint32_t pid{};
-  HealthState state{HealthState::starting};
-  std::string reason;  ///< of degradation
+  Stamp stamp{};                             ///< time of sending, UTC [ns]
+  std::string component;                     ///< name of the component; the key of the topic
+  std::uint64_t incarnation{};               ///< random per process start
+  std::uint32_t pid{};                       ///< operating-system process; 0: none
+  HealthState state{HealthState::starting};  ///< degraded: `reason` says why
+  std::string reason;                        ///< of degradation
   bool job_silent{};   ///< a job in the background has given no sign of life for two seconds
-  double cpu{};        ///< share of one core
-  double memory_mb{};
-  double uptime{};  ///< [s]
-  std::vector<TopicHealth> topics;
+  double cpu{};        ///< load of one core, 1: fully used
+  double memory_mb{};  ///< resident memory [MB]
+  double uptime{};     ///< since the start of the process [s]
+  std::vector<TopicHealth> topics;     ///< one entry per subscription, at most 64
   std::vector<NamedCount> left_out{};  ///< what quotas have left out since start
 };
 
-/// Latches that outlive every process: what a person, a fault or a stop has decided. Topic SafetyState, profile latch, from the supervisor,
-/// which keeps it on disk.
+/// Latches that outlive every process: what a person, a fault or a stop has decided. Topic
+/// SafetyState, profile latch, from the supervisor, which keeps it on disk.
 struct SafetyState {
-  Stamp stamp{};
+  Stamp stamp{};  ///< time of the state, UTC [ns]; `age` of the lost people counts from it
   std::uint64_t revision{};     ///< grows with every change, also over restarts; 0: never valid
   bool paused{};                ///< a person paused the robot
   double override_factor{1.0};  ///< speed override a person asked for, [0, 1]
   bool fault{};                 ///< a fault nobody has acknowledged
-  bool awaits_person{};         ///< a protective, user or emergency stop after which nobody has resumed
-  std::string reason;           ///< why it does not permit motion, one sentence; empty: it does
-  std::vector<Person> lost{};   ///< people lost from sight and not seen to be gone, as they were last known; `age` counts from `stamp`
+  bool awaits_person{};  ///< a protective, user or emergency stop after which nobody has resumed
+  std::string reason;    ///< why it does not permit motion, one sentence; empty: it does
+  /// People out of sight and not known to have left, in their last known state
+  std::vector<Person> lost{};
 };
 
-/// The simulator gives the pace. Time of the system is CLOCK_MONOTONIC of the simulator's machine less `waited`, and stands still at
-/// `granted_until`. Topic SimClock, profile advice, 100 Hz.
+/// Time grant of the simulator. Time of the system is CLOCK_MONOTONIC of the simulator's machine
+/// less `waited`, and halts at `granted_until`. Topic SimClock, profile advice, 100 Hz.
 struct SimClock {
-  Stamp stamp{};
+  Stamp stamp{};                ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::uint64_t incarnation{};  ///< of the simulator
-  std::uint64_t sequence{};     ///< grows by one with each grant; the same one again while the simulator waits
-  double granted_until{};       ///< no component's time passes this instant [s], [0, 1e9]
-  double waited{};              ///< for how long time has stood still since the simulator started [s], [0, 1e9]
+  /// Grows by one with each grant; the same one again while the simulator waits
+  std::uint64_t sequence{};
+  double granted_until{};  ///< no component's time passes this instant [s], [0, 1e9]
+  double waited{};         ///< total halt of time since the simulator started [s], [0, 1e9]
 };
 
-/// A process has received a grant of SimClock, and handled what came before it. Topic ClockReached, profile advice, keyed by component.
+/// A process has received a grant of SimClock, and handled what came before it. Topic ClockReached,
+/// profile advice, keyed by component.
 struct ClockReached {
-  Stamp stamp{};
-  std::string component;
+  Stamp stamp{};                ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::string component;        ///< name of the component; the key of the topic
   std::uint64_t incarnation{};  ///< process id: one that the kernel has stopped is not waited for
   std::uint64_t sequence{};     ///< of that grant
 };
@@ -95,58 +101,63 @@ enum class SimAction : std::uint8_t {
   human_frozen,     ///< the source repeats its last picture for `value` seconds, with new stamps
   human_empty,      ///< the source repeats an empty picture for `value` seconds
   human_late,       ///< the source is late by `value` seconds until restored
-  human_elsewhere,  ///< the source looks elsewhere for `value` seconds
+  human_elsewhere,  ///< the source observes another region for `value` seconds
   emergency_stop    ///< the red button
 };
 
-/// Topic SimControl, profile command: disturbances and control of the simulator.
+/// Topic SimControl, profile goal: disturbances and control of the simulator.
 struct SimControl {
-  Stamp stamp{};
-  SimAction action{};
+  Stamp stamp{};        ///< time of sending, UTC [ns]; 0: filled in by the bus
+  SimAction action{};   ///< see SimAction
   std::string subject;  ///< person or source
   double value{};       ///< dart: speed [m/s]; silence: duration [s]
 };
 
-/// A note of whoever runs a study, for the record; nothing in the system heeds it. Topic StudyMark, profile goal, on demand.
+/// A note of whoever runs a study, for the record; no component reads it but the bridge. Topic
+/// StudyMark, profile goal, on demand.
 struct StudyMark {
-  Stamp stamp{};
+  Stamp stamp{};            ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::string condition;    ///< of the study; empty: none
   std::string participant;  ///< pseudonym; empty: none
   std::uint64_t trial{};    ///< number in the order in which trials are done, from 1; 0: none
   std::string text;         ///< the mark, e.g. "begin"
 };
 
-/// The simulator's own truth, for tests and reports only. Topic GroundTruth, profile state, 50 Hz.
+/// Ground truth of the simulator, for tests and reports only. Topic GroundTruth, profile state, 50
+/// Hz.
 struct GroundTruth {
-  Stamp stamp{};
-  double sim_time{};  ///< [s]
-  double real_time_factor{};
-  std::string carrier;  ///< who carries the watched object: "", "surface", "robot", "both", "human"
-  std::string object;
-  Pose T_world_object{Pose::Identity()};
-  std::string hold;                       ///< what the robot holds it by: "", "contact", "constraint"
-  double held_time{};                     ///< how long the robot has held it so far [s]
-  double constraint_time{};               ///< of that, how long the constraint did [s]
-  double lifted{};                        ///< height above where it started [m]
-  double max_lifted{};                    ///< while carried by the robot [m]
-  double human_contact_before_release{};  ///< how long the person's hand touched the object before the robot let go [s]
-  double human_alone{};                   ///< how long the person alone has carried it [s]
-  bool dropped{};                         ///< touched floor or fell
-  bool handover_done{};                   ///< lifted >= 0.10, contact >= 0.2, alone >= 1
-  double separation{};                    ///< robot to any person, exchanging forearm and hand excepted while engaged [m]
-  double least_separation{};
-  std::uint64_t ssm_violations{};  ///< steps in which the speed toward a person was above what the rule allows
-  double peak_closing_speed{};     ///< within 0.5 m [m/s]
+  Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
+  double sim_time{};          ///< simulated time since the start of the scenario [s]
+  double real_time_factor{};  ///< simulated time / real time over the last second or more
+  std::string carrier;  ///< carrier of the watched object: "", "surface", "robot", "both", "human"
+  std::string object;   ///< id of the watched object
+  Pose T_world_object{Pose::Identity()};  ///< its frame in the world
+  std::string hold;          ///< what the robot holds it by: "", "contact", "constraint"
+  double held_time{};        ///< how long the robot has held it so far [s]
+  double constraint_time{};  ///< part of `held_time` by the grasp constraint [s]
+  double lifted{};           ///< height above where it started [m]
+  double max_lifted{};       ///< while carried by the robot [m]
+  /// How long the person's hand touched the object before the release [s]
+  double human_contact_before_release{};
+  double human_alone{};  ///< how long the person alone has carried it [s]
+  bool dropped{};        ///< touched floor or fell
+  bool handover_done{};  ///< lifted >= 0.10, contact >= 0.2, alone >= 1
+  /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged
+  double separation{};
+  double least_separation{};       ///< smallest `separation` so far [m]; infinity: nobody was there
+  std::uint64_t ssm_violations{};  ///< steps with a higher speed toward a person than SSM allows
+  double peak_closing_speed{};     ///< of robot and person within 0.5 m [m/s]
   double contact_force{};          ///< largest robot-person contact force so far [N]
-  double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};  ///< of received set-points, largest so far
-  std::uint64_t limit_violations{};
+  /// Largest |.| of the received set-points so far / limit
+  double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};
+  std::uint64_t limit_violations{};          ///< set-points beyond the guard limits so far
   std::uint64_t self_or_scene_collisions{};  ///< steps with an unintended robot contact
   std::uint64_t commanders{};                ///< distinct writers of JointCommand seen
-  double setpoint_gap_max{};                 ///< longest time without a set-point since the first [s]
-  std::uint64_t set_points{};                ///< received so far
-  bool robot_moving{};                       ///< any arm axis faster than 1e-3 rad/s
-  std::uint64_t hash{};                      ///< running hash of the physical state: equal seeds, equal hashes
-  std::vector<BodyJoint> person;             ///< true body of the nearest person
+  double setpoint_gap_max{};      ///< longest time without a set-point since the first [s]
+  std::uint64_t set_points{};     ///< received so far
+  bool robot_moving{};            ///< any arm axis faster than 1e-3 rad/s
+  std::uint64_t hash{};           ///< running hash of the physical state: equal seeds, equal hashes
+  std::vector<BodyJoint> person;  ///< true body of the nearest person
 };
 
 }  // namespace handsel

@@ -1,4 +1,4 @@
-// Goals and how they fare: person -> supervisor -> manipulation planner.
+// Goals and their progress: person -> supervisor -> manipulation planner.
 #pragma once
 
 #include <cstdint>
@@ -29,63 +29,71 @@ enum class TaskKind : std::uint8_t {
   speed,         // about the running one, or the system
   clear_person,  // an operator says that a person who was lost is gone
 };
+/// Returns the word of kTaskKindNames; "unknown" for a value outside the enumeration.
 const char* name(TaskKind);
 
-/// Topic TaskGoal, profile command.
+/// A goal or an instruction of a person. Topic TaskGoal, profile goal.
 struct TaskGoal {
-  Stamp stamp{};
+  Stamp stamp{};       ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::uint64_t id{};  ///< chosen by the sender, unique
-  TaskKind kind{};
+  TaskKind kind{};     ///< what to do
+  /// Scene object id, or the named configuration of go_to; empty where the kind needs none
   std::string object;
-  std::string human;  ///< empty: the nearest attentive person
-  std::string surface;
-  double value{};    ///< speed: [0, 1]
-  std::string onto;  ///< box where what is taken, cleared or tidied ends; empty: where there is room
+  std::string human;    ///< empty: the nearest attentive person
+  std::string surface;  ///< scene box id; empty where the kind needs none
+  double value{};       ///< speed: [0, 1]
+  /// Box where what is taken, cleared or tidied ends; empty: where there is room
+  std::string onto;
 };
 
 enum class TaskState : std::uint8_t { accepted, running, paused, succeeded, failed, cancelled, refused };
+/// Returns the word of kTaskStateNames; "unknown" for a value outside the enumeration.
 const char* name(TaskState);
 
 enum class StepState : std::uint8_t { waiting, running, done, failed, dropped };
+/// Returns the word of kStepStateNames; "unknown" for a value outside the enumeration.
 const char* name(StepState);
 
 /// A task or an action in the tree of a plan.
 struct PlanStep {
   std::string text;       ///< "give mug to anna"
   std::uint32_t depth{};  ///< 0: the goal; its parts follow it one deeper
-  StepState state{};
-  std::string reason;  ///< of a failure, or why it was dropped
+  StepState state{};      ///< dropped: the plan no longer contains it
+  std::string reason;     ///< of a failure, or why it was dropped
 };
 
-/// Topic TaskStatus, profile state.
+/// Progress of a task. Topic TaskStatus, profile state.
 struct TaskStatus {
-  Stamp stamp{};
-  std::uint64_t id{};
-  TaskKind kind{};
-  TaskState state{};
+  Stamp stamp{};                  ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::uint64_t id{};             ///< of the goal
+  TaskKind kind{};                ///< of the goal
+  TaskState state{};              ///< failed and refused: `reason` says why
   std::vector<std::string> plan;  ///< the steps, e.g. "pick mug", "give mug to anna"
-  std::uint32_t step{};           ///< index into plan
+  std::uint32_t step{};           ///< index into `plan` of the running step; plan.size(): all done
   std::string phase;              ///< of the running action
-  std::string reason;             ///< of a failure or refusal
-  Refusals refusals;              ///< gathered on the way
+  std::string reason;             ///< of a failure or refusal, one sentence
+  Refusals refusals;              ///< gathered so far
   std::vector<PlanStep> tree;     ///< the plan with what it was made of, depth first
-  double cost{};                  ///< of what is left of the plan
+  double cost{};                  ///< of the remaining plan
 };
 
 enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to, regrasp, carry };
+/// Returns the word of kActionKindNames; "unknown" for a value outside the enumeration.
 const char* name(ActionKind);
 
-/// Topic ActionGoal, profile request: supervisor -> manipulation planner. The same id twice is one action.
+/// Topic ActionGoal, profile request: supervisor -> manipulation planner. The same id twice is one
+/// action.
 struct ActionGoal {
-  Stamp stamp{};
-  std::uint64_t id{};
-  std::uint64_t task{};
-  std::uint64_t epoch{};  ///< Go epoch its motions carry
-  ActionKind kind{};
-  bool cancel{};  ///< stop action `id`: finish softly, report cancelled
+  Stamp stamp{};          ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::uint64_t id{};     ///< unique, grows
+  std::uint64_t task{};   ///< id of the goal it serves
+  std::uint64_t epoch{};  ///< Go::epoch its motions carry
+  ActionKind kind{};      ///< what to do
+  bool cancel{};          ///< stop action `id` with jerk-limited motion and report cancelled
+  /// Ids of scene object, person and scene box; empty where the kind needs none
   std::string object, human, surface;
-  bool has_goal{};                      ///< pick, place, regrasp, carry: where the object will stand in the end is known
-  Pose T_world_goal{Pose::Identity()};  ///< the object there
+  bool has_goal{};  ///< pick, place, regrasp, carry: the final pose of the object is known
+  Pose T_world_goal{Pose::Identity()};  ///< that pose
 };
 
 enum class ActionState : std::uint8_t { idle, running, succeeded, failed, cancelled };
@@ -103,7 +111,7 @@ enum class ActionPhase : std::uint8_t {
   waiting_for_scene,
   waiting_for_person,  ///< `human`, to come within reach
   watching_for_offer,
-  waiting_for_release,  ///< `human`, to let go of the object
+  waiting_for_release,  ///< `human`, to release the object
   planning,
   approach,
   approach_other_hand,
@@ -143,20 +151,21 @@ enum class ActionFailure : std::uint8_t {
 
 /// Topic ActionStatus, profile state, 10 Hz and on change.
 struct ActionStatus {
-  Stamp stamp{};
-  std::uint64_t id{};
-  std::uint64_t task{};
-  ActionKind kind{};
-  ActionState state{ActionState::idle};
-  ActionPhase phase{};
-  std::string object, human;
-  bool holding{};                                                    ///< the hand holds `object`
-  bool exchange_engaged{};                                           ///< the exchanging forearm and hand are excepted from separation
-  Vector3 exchange_point{Vector3::Zero()};                           ///< world, valid while kind is give or receive [m]
-  double time_to_exchange{std::numeric_limits<double>::infinity()};  ///< until the object changes hands, as foreseen [s]
-  ActionFailure failure{};                                           ///< of a state failed or cancelled
-  std::string reason;
-  Refusals refusals;
+  Stamp stamp{};                         ///< time of sending, UTC [ns]; 0: filled in by the bus
+  std::uint64_t id{};                    ///< of the action
+  std::uint64_t task{};                  ///< id of the goal it serves
+  ActionKind kind{};                     ///< of the action
+  ActionState state{ActionState::idle};  ///< idle: there was no action yet
+  ActionPhase phase{};                   ///< part of the running action
+  std::string object, human;  ///< scene object id and person id of the action; may be empty
+  bool holding{};             ///< the hand holds `object`
+  bool exchange_engaged{};    ///< the exchanging forearm and hand are exempt from separation
+  Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
+  /// Until the object changes hands, as foreseen [s]
+  double time_to_exchange{std::numeric_limits<double>::infinity()};
+  ActionFailure failure{};  ///< of a state failed or cancelled
+  std::string reason;       ///< of a failure, one sentence
+  Refusals refusals;        ///< grasps, paths and places discarded during the action
 };
 
 }  // namespace handsel

@@ -5,7 +5,8 @@
 
 namespace handsel {
 
-/// Eight hexadecimal digits over every topic's name, type and QoS profile: processes that differ in it do not understand each other.
+/// Eight hexadecimal digits over every topic's name, type and QoS profile: processes that differ in
+/// it do not understand each other.
 std::string interface_id();
 /// "handsel 0.1.0, interface 01234567".
 std::string version_text();

@@ -12,8 +12,9 @@ namespace handsel {
 /// The files of idl/, compiled in: name ("robot.idl") and text.
 std::map<std::string, std::string_view> idl_files();
 
-/// One self-contained IDL text that defines the row's struct in module handsel: what its file includes stands in it, once, before its use;
-/// no line of a preprocessor is left. Throws std::logic_error when no file defines the struct.
+/// One self-contained IDL text that defines the row's struct in module handsel: what its file
+/// includes stands in it, once, before its use; no line of a preprocessor is left. Throws
+/// std::logic_error when no file defines the struct.
 std::string idl_schema(const TopicRow& row);
 
 /// The type's name in a schema: "handsel::RobotState".

@@ -1,6 +1,7 @@
-// The visitor every message describes itself to, once: the same description converts to and from the IDL struct, validates, prints JSON and
-// lists the leaves of a sample or fills one for tests. A description is `void describe(WireIo&, Domain&, Idl&)` naming each pair of fields
-// with its bounds.
+// The visitor every message describes itself to, once: the same description converts to and from
+// the IDL struct, validates, prints JSON and lists the leaves of a sample or fills one for tests. A
+// description is `void describe(WireIo&, Domain&, Idl&)` naming each pair of fields with its
+// bounds.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +21,8 @@ namespace handsel {
 
 /// Closed interval a number must lie in; open_low leaves its lower end out.
 struct Range {
-  double low, high;
-  bool open_low{false};
+  double low, high;      ///< ends of the interval, both included
+  bool open_low{false};  ///< `low` itself is excluded
 };
 inline constexpr Range kCoordinate{-1e4, 1e4};    // [m], [rad], and their first derivatives
 inline constexpr Range kAcceleration{-1e6, 1e6};  // [rad/s^2]
@@ -34,48 +35,75 @@ inline constexpr Range kPeriod{0, 1e4};  // [s]
 inline constexpr double kHorizon = 1e9;  // stands for infinity on the wire
 inline constexpr std::size_t kMaxAxes = 64;
 
+/// Visitor of one message in one mode; the factories choose the mode. After the first violation of
+/// a bound all further calls do nothing, and ok() is false.
 class WireIo {
  public:
+  /// Domain -> wire, validated. `message`: its type, for `why`; a stamp of 0 becomes `now`.
   static WireIo to_wire(const char* message, Stamp now, std::string& why);
+  /// Wire -> domain, validated. `left_out`: receives the count of left-out
+  /// elements; may be null.
   static WireIo from_wire(const char* message, std::string& why, LeftOutElements* left_out = nullptr);
+  /// Appends the domain value to `out` as JSON; numbers that are not finite become null.
   static WireIo json(std::string& out);
+  /// Calls `visit`, which must outlive the visitor, with each leaf of the wire sample.
   static WireIo leaves(const std::function<void(const WireLeaf&)>& visit);
+  /// Writes a valid wire sample: lists of two elements, or `full`: every list and text at its
+  /// bound.
   static WireIo fill(bool full);
 
+  /// Returns whether no bound was violated so far; the first violation is in `why`.
   bool ok() const { return !failed_; }
-  /// Of a field of what is open just now; within a list its element.
+  /// Returns the path of a field of the open part, e.g. "RobotState.position[3]"; within a list
+  /// that of the current element.
   std::string path(const char* field) const;
 
+  /// Field `stamp` [ns]: must not be negative; a 0 is replaced when sent.
   void stamp(Stamp& m, std::int64_t& w);
+  /// A number that must be finite and within `range`.
   void number(const char* field, double& m, double& w, Range range);
-  /// Infinity in the domain is 1e9 on the wire.
+  /// A number from `low`, unbounded in the domain: anything above 1e9 is sent as 1e9, which is
+  /// received as infinity.
   void horizon(const char* field, double& m, double& w, double low);
+  /// An integer of any value.
   void integer(const char* field, std::uint64_t& m, std::uint64_t& w);
+  /// An integer from `low` to `high`, both included.
   void integer(const char* field, std::uint32_t& m, std::uint32_t& w, std::uint32_t low = 0, std::uint32_t high = UINT32_MAX);
+  /// A truth value; a received byte other than 0 and 1 is malformed.
   void flag(const char* field, bool& m, bool& w);
 
-  enum class Text { name, maybe_empty, sentence };  ///< a sentence too long is cut when sent, a name refused
+  /// A sentence too long is cut when sent, a name refused
+  enum class Text { name, maybe_empty, sentence };
+  /// A text of at most N - 1 bytes of UTF-8 without control characters other than tab and line
+  /// feed.
   template <std::size_t N>
   void text(const char* field, std::string& m, char (&w)[N], Text kind) {
     text_field(field, m, w, N - 1, kind);
   }
+  /// An enumerator; `names` are those of all values in order, and a value beyond them is malformed.
   template <class E, class W>
   void choice(const char* field, E& m, W& w, std::span<const char* const> names) {
     std::uint32_t mi = static_cast<std::uint32_t>(m);
     static_assert(sizeof(W) == sizeof(std::uint32_t));
     std::uint32_t wi = 0;
-    std::memcpy(&wi, &w, sizeof wi);  // what came may be no enumerator at all
+    std::memcpy(&wi, &w, sizeof wi);  // the received value may be no enumerator at all
     choice_field(field, mi, wi, &w, names);
     if (mode_ == Mode::to_wire || mode_ == Mode::fill) w = static_cast<W>(wi);
     if (mode_ == Mode::from_wire) m = static_cast<E>(mi);
   }
 
+  /// A point or vector, each coordinate within `range`.
   void point(const char* field, Vector3& m, handsel_Vector3& w, Range range = kCoordinate);
-  /// Unit vector, normalised when its norm is 1 +- 1e-3. Where it is not `meant`, it is +x.
+  /// Unit vector, normalised when its norm is 1 +- 1e-3. Without `meant` the field
+  /// has no meaning: any value is accepted, and +x is sent and received.
   void direction(const char* field, Vector3& m, handsel_Vector3& w, bool meant = true);
+  /// A pose: a proper rotation when sent; a quaternion of norm 1 +- 1e-3 when received, then
+  /// normalised.
   void pose(const char* field, Pose& m, handsel_Pose& w);
+  /// Force [N] and torque [Nm], each component within kForce.
   void wrench(const char* field, Wrench& m, handsel_Wrench& w);
 
+  /// At most `bound` numbers, each within `range`.
   template <class Seq>
   void vector(const char* field, Vector& m, Seq& w, Range range, std::size_t bound = kMaxAxes) {
     if (failed_) return;
@@ -83,6 +111,7 @@ class WireIo {
     if (mode_ == Mode::fill) resize(w, full_ ? bound : kFew);
     numbers(field, m, w._buffer, w._length, bound, range);
   }
+  /// At most `bound` indices from 0 to `high`.
   template <class Seq>
   void indices(const char* field, std::vector<std::uint32_t>& m, Seq& w, std::size_t bound, std::uint32_t high) {
     if (!open_list(field, m, w, bound)) return;
@@ -93,6 +122,7 @@ class WireIo {
     }
     close_list();
   }
+  /// At most `bound` bytes, none above `high`.
   template <class Seq>
   void bytes(const char* field, std::vector<std::uint8_t>& m, Seq& w, std::size_t bound, std::uint8_t high = 255) {
     if (failed_) return;
@@ -100,7 +130,8 @@ class WireIo {
     if (mode_ == Mode::fill) resize(w, full_ ? bound : 1);
     octets(field, m, w._buffer, w._length, bound, high);
   }
-  /// Elements describe themselves. `cut`: what exceeds the bound is left out when sent instead of refused.
+  /// At most `bound` elements, each visited by its own describe(). `cut`: what exceeds the bound is
+  /// left out when sent instead of refused.
   template <class T, class Seq>
   void list(const char* field, std::vector<T>& m, Seq& w, std::size_t bound, bool cut = false) {
     using W = std::remove_reference_t<decltype(*w._buffer)>;
@@ -115,7 +146,8 @@ class WireIo {
     }
     close_list();
   }
-  /// Runs `part`. What is malformed in it when received is counted as left out and does not fail the message. True: it is well-formed.
+  /// Runs `part`. What is malformed in it when received is counted as left out and does not fail
+  /// the message. True: it is well-formed.
   template <class Part>
   bool spare(Part&& part) {
     if (failed_) return false;
@@ -125,8 +157,9 @@ class WireIo {
     leave_out(depth);
     return false;
   }
-  /// As list(). When received, a malformed element is left out and counted, and so is what exceeds the bound: for observations, whose
-  /// elements do not depend on each other. Returns how many were left out.
+  /// As list(). When received, a malformed element is left out and counted, and so is what exceeds
+  /// the bound: for observations, whose elements do not depend on each other. Returns how many were
+  /// left out.
   template <class T, class Seq>
   std::size_t spared_list(const char* field, std::vector<T>& m, Seq& w, std::size_t bound) {
     if (mode_ != Mode::from_wire) {
@@ -152,7 +185,8 @@ class WireIo {
     m.resize(kept);
     return w._length - kept;
   }
-  /// `cut`: what exceeds the bound is left out when sent instead of refused.
+  /// At most `bound` texts, each as in text(). `cut`: what exceeds the bound is left out when sent
+  /// instead of refused.
   template <class Seq>
   void texts(const char* field, std::vector<std::string>& m, Seq& w, std::size_t bound, Text kind = Text::name, bool cut = false) {
     if (!open_list(field, m, w, bound, cut)) return;
@@ -164,6 +198,7 @@ class WireIo {
     }
     close_list();
   }
+  /// A field that is a struct, visited by its own describe().
   template <class T, class W>
   void part(const char* field, T& m, W& w) {
     if (failed_) return;
@@ -171,12 +206,16 @@ class WireIo {
     describe(*this, m, w);
     close();
   }
-  /// A rule over several fields of the domain value; judged when converting only. The sentence goes on after the field's name.
+  /// A rule over several fields of the domain value, checked when converting only. A violation is
+  /// reported as the field's path followed by `sentence`.
   void check(bool holds, const char* field, const char* sentence);
-  /// True while domain values hold the message (converting), so that rules may be computed from them.
+  /// Returns whether the visitor converts and has not failed: then rules may be computed from
+  /// domain values.
   bool converting() const { return !failed_ && (mode_ == Mode::to_wire || mode_ == Mode::from_wire); }
 
-  void begin();  ///< of the whole message
+  /// Opens the whole message; needed for JSON only.
+  void begin();
+  /// Closes the whole message; needed for JSON only.
   void end();
 
  private:
@@ -246,7 +285,7 @@ class WireIo {
     w._length = static_cast<std::uint32_t>(n);
   }
 
-  /// The domain value is not looked at.
+  /// Returns whether the domain value is unused.
   bool wire_only() const { return mode_ == Mode::leaves || mode_ == Mode::fill; }
 
   static constexpr int kDepth = 12;

@@ -17,9 +17,11 @@ class CdrCodec {
   CdrCodec();
   ~CdrCodec();
 
-  /// The serialised sample with its encapsulation header. `wire` is of the type; empty when it does not fit its bounds.
+  /// Returns the serialised sample with its encapsulation header; empty when `wire`, which is of
+  /// the type, exceeds its bounds.
   std::vector<std::uint8_t> encode(const MessageType& type, const void* wire);
-  /// Into `wire`, which is of the type and reused; its values are not judged. False for bytes that are no such sample.
+  /// Decodes into `wire`, which is of the type and reused; its values are not validated. Returns
+  /// false for bytes that are no such sample.
   bool decode(const MessageType& type, const std::vector<std::uint8_t>& cdr, void* wire);
 
  private:

@@ -12,18 +12,19 @@
 
 namespace handsel {
 
-/// Priorities under SCHED_FIFO. Threads of equal priority do not interrupt each other: what computes for milliseconds now and then must
-/// not share one with what answers every cycle.
+/// Priorities under SCHED_FIFO. Threads of equal priority do not interrupt each other: what
+/// computes for milliseconds now and then must not share one with what answers every cycle.
 enum class Urgency : int { perceive = 20, control = 40 };
 
 struct DdsBusSettings {
-  std::string component;
-  std::uint32_t domain{0};
-  bool realtime{false};  ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
-  Urgency urgency{Urgency::perceive};
-  int cpu{-1};           ///< pins the executor; -1: none
-  bool health{true};     ///< publishes ComponentHealth (tools do not)
-  bool sim_time{false};  ///< follows the pace of the simulator (common/bus/paced_clock), which waits for this component
+  std::string component;    ///< entity name of the participant and key of its ComponentHealth
+  std::uint32_t domain{0};  ///< DDS domain, 0 to 230
+  bool realtime{false};     ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
+  Urgency urgency{Urgency::perceive};  ///< scheduling priority where `realtime` is in force
+  int cpu{-1};                         ///< pins the executor; -1: none
+  bool health{true};                   ///< publishes ComponentHealth (tools do not)
+  /// Time as the simulator grants it (common/bus/paced_clock), which waits for this component
+  bool sim_time{false};
 };
 
 /// Sets CYCLONEDDS_URI to dds/loopback.xml of the resource root when the environment has none.
@@ -37,22 +38,28 @@ class DdsBus : public Bus, public RawBus {
 
   /// Runs callbacks on the calling thread until stop() (any thread, or a signal handler).
   void run();
+  /// Ends run() and run_until() after the callbacks that are under way. Any thread, or a signal
+  /// handler.
   void stop() noexcept;
-  /// Cancels every job and waits for the running one, so that the node may be destroyed; false if it is still at work after `limit`.
+  /// Cancels every job and waits for the running one, so that the node may be destroyed; false if
+  /// it is still at work after `limit`.
   bool end_jobs(Duration limit);
-  /// Runs callbacks until `done` holds (asked after each wake-up) or the time is over; true if it held.
+  /// Runs callbacks until `done` holds (asked after each wake-up) or the time is over; true if it
+  /// held.
   bool run_until(const std::function<bool()>& done, Duration limit);
-  /// Empty, or why real-time scheduling is not in force.
+  /// Returns why real-time scheduling is not in force; empty: it is.
   const std::string& realtime_note() const;
-  /// ComponentHealth says ok from now on (starting before).
+  /// Reports ok in ComponentHealth from now on (starting before).
   void set_ready();
-  /// ComponentHealth says stopping, at once.
+  /// Reports stopping in ComponentHealth, at once.
   void set_stopping();
+  /// Returns the random number of this process start, as in ComponentHealth.
   std::uint64_t incarnation() const;
-  /// Runs for at most `wait`, looking for another living process of the same component. Of two that start together only the one with the
-  /// larger incarnation sees the other as its twin.
+  /// Runs for at most `wait`, looking for another living process of the same component. Of two that
+  /// start together only the one with the larger incarnation sees the other as its twin.
   bool has_twin(Duration wait);
-  /// Everybody the transport has discovered on the domain by now. For tools: it allocates and asks the transport.
+  /// Returns the participants and endpoints discovered on the domain so far. For tools: allocates
+  /// memory and queries the transport.
   DomainView look_around() const;
 
   std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;

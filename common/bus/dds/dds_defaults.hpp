@@ -1,4 +1,5 @@
-// How a process enters a DDS domain when nothing else is said: which domain, which hosts. Environment in, environment out.
+// How a process enters a DDS domain when nothing else is said: which domain, which hosts.
+// Environment in, environment out.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +10,11 @@ namespace handsel {
 /// $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number from 0 to 230.
 int default_domain();
 
-/// Sets CYCLONEDDS_URI when the environment has none. Without $HANDSEL_PEERS: loopback.xml of `folder`, this machine only. With it:
-/// network.xml of `folder`, which discovers by multicast, and the hosts it names (names or addresses, separated by commas or spaces) as
-/// peers; the word "multicast" alone names nobody else. Changes nothing when the file is not there. Throws MissingError naming the
-/// first host that has no address.
+/// Sets CYCLONEDDS_URI when the environment has none. Without $HANDSEL_PEERS: loopback.xml of
+/// `folder`, this machine only. With it: network.xml of `folder`, which discovers by multicast, and
+/// the hosts it names (names or addresses, separated by commas or spaces) as peers; the word
+/// "multicast" alone names nobody else. Changes nothing when the file is not there. Throws
+/// MissingError naming the first host that has no address.
 void use_dds_configuration(const std::filesystem::path& folder);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// Who is on a DDS domain, as the transport itself tells it: also processes that are not Handsel's.
+// Participants and endpoints of a DDS domain as the transport reports them, foreign processes
+// included.
 #pragma once
 
 #include <string>
@@ -6,24 +7,29 @@
 
 namespace handsel {
 
+/// A process on the domain, as its participant announces it.
 struct DomainParticipant {
-  std::string component;  ///< entity name: the component of a Handsel process; may be empty
-  std::string process, host;
-  int pid{0};  ///< on its host; 0: not told
+  std::string component;      ///< entity name: the component of a Handsel process; may be empty
+  std::string process, host;  ///< name of its executable and of its machine; empty: not announced
+  int pid{0};                 ///< on its host; 0: not announced
 };
 
-/// Somebody's writer or reader of a topic.
+/// A writer or reader of a topic.
 struct DomainEndpoint {
-  bool writes{};
+  bool writes{};            ///< true: a writer; false: a reader
   std::string topic, type;  ///< as the transport names them
+  /// Participant the endpoint belongs to; its fields are empty when unknown
   DomainParticipant owner;
-  std::vector<std::string> unmatched;  ///< of a topic of the table: policies for which it does not match the components', one sentence each
+  /// On a topic of the table: QoS policies that do not match the components', one sentence each
+  std::vector<std::string> unmatched;
 };
 
+/// Result of DdsBus::look_around().
 struct DomainView {
   std::vector<DomainParticipant> participants;  ///< all discovered so far, the asking one included
   std::vector<DomainParticipant> commanders;    ///< one for each living writer of set-points
-  std::vector<DomainEndpoint> endpoints;        ///< of others than the asking one, without the transport's own
+  /// Of others than the asking one, without the transport's own
+  std::vector<DomainEndpoint> endpoints;
 };
 
 }  // namespace handsel

@@ -7,8 +7,10 @@
 
 namespace handsel {
 
+/// Returns the participants and endpoints discovered so far, at most 256 of each kind.
 DomainView look_around(dds_entity_t participant);
-/// What a participant's QoS says of its process.
+/// Returns what a participant's QoS announces of its process; fields that are not announced stay
+/// empty.
 DomainParticipant described(const dds_qos_t* qos);
 
 }  // namespace handsel

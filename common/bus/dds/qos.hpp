@@ -1,6 +1,6 @@
 // What each QoS profile of the table of topics means to Cyclone DDS. Nowhere else is a QoS set.
-// Ownership is shared everywhere: under exclusive ownership a stronger writer hides the rightful one, and anybody may be stronger. Which
-// writer counts is decided by common/bus/writer_pin.
+// Ownership is shared everywhere: under exclusive ownership a stronger writer hides the rightful
+// one, and anybody may be stronger. Which writer counts is decided by common/bus/writer_pin.
 #pragma once
 
 #include <memory>
@@ -18,15 +18,19 @@ using Qos = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 /// A health lease shorter than this gives false alarms on a loaded machine.
 inline constexpr dds_duration_t kHealthLease = DDS_MSECS(300);
 
+/// Returns the QoS of a component's reader; the types must be equal on topics of the table.
 Qos reader_qos(const TopicRow& row);
-/// Of a reader that must not hold up a writer, however slow or stopped it is: nothing is kept for it beyond the last samples.
+/// Returns the QoS of a reader that never blocks a writer, even when stopped: nothing is kept for
+/// that reader beyond the last samples, and neither deadline nor lease is requested.
 Qos observer_qos(const TopicRow& row);
-/// As observer_qos, for who wants all there is: the last 256 of each instance are kept.
+/// Returns observer_qos() with the last 256 samples of each instance kept, for recordings.
 Qos recorder_qos(const TopicRow& row);
+/// Returns the QoS of a component's writer; it disposes its instances when it is deleted.
 Qos writer_qos(const TopicRow& row);
+/// Returns the QoS of a topic entity: reliability only, the rest stands at readers and writers.
 Qos topic_qos(const TopicRow& row);
-/// Each policy for which a writer that offers this is not matched with a reader that requests that: "DEADLINE is none, asked for is 0.2 s
-/// or shorter".
+/// Returns each policy for which a writer that offers this is not matched with a reader that
+/// requests that: "DEADLINE is none, asked for is 0.2 s or shorter".
 std::vector<std::string> why_unmatched(const dds_qos_t* offered, const dds_qos_t* requested);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// Samples as they are on the wire, not decoded: for the bridge and for recordings, which pass on what was sent.
+// Samples as they are on the wire, not decoded: for the bridge and for recordings, which pass on
+// what was sent.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +12,15 @@
 namespace handsel {
 
 struct RawSample {
-  Stamp stamp{};                  ///< when it was written [ns, system clock of the writer]
-  std::uint64_t instance{};       ///< which value of the key, stable while the reader lives
-  bool gone{};                    ///< the instance has no writer any more; `cdr` is empty
-  std::vector<std::uint8_t> cdr;  ///< the serialised sample with its encapsulation header; well-formed, its values not judged
+  Stamp stamp{};             ///< when it was written [ns, system clock of the writer]
+  std::uint64_t instance{};  ///< which value of the key, stable while the reader lives
+  bool gone{};               ///< the instance has no writer any more; `cdr` is empty
+  /// The serialised sample with its encapsulation header; well-formed, values not validated
+  std::vector<std::uint8_t> cdr;
 };
 
-/// What waits for a raw reader that does not take it: it never holds up a writer, so requests and replies are read best-effort, and what
-/// is not taken in time gives way to what is newer.
+/// Samples kept for a raw reader that does not take them. A raw reader never blocks a writer:
+/// requests and replies are read best-effort, and newer samples replace those not taken in time.
 enum class RawDepth {
   newest,  ///< the last 64 of a queue, the last 1 or 8 of each instance elsewhere: for viewers
   many,    ///< the last 256 of each instance: for recordings
@@ -28,16 +30,18 @@ enum class RawDepth {
 class RawReader {
  public:
   virtual ~RawReader() = default;
-  /// The oldest sample that waits; false when there is none.
+  /// Takes the oldest waiting sample; false when there is none.
   virtual bool take(RawSample& out) = 0;
 };
 
-/// The side of a bus that has serialised samples; LocalBus has none.
+/// A bus that has serialised samples: DdsBus; LocalBus has none.
 class RawBus {
  public:
   virtual ~RawBus() = default;
-  /// On the bus's own thread; the bus must outlive the reader. Throws MissingError when the transport refuses.
+  /// Creates a reader of serialised samples. On the bus's own thread; the bus must outlive the
+  /// reader. Throws MissingError when the transport refuses.
   virtual std::unique_ptr<RawReader> read_raw(const MessageType& type, RawDepth depth = RawDepth::newest) = 0;
+  /// Returns the DDS domain the bus has entered.
   virtual std::uint32_t domain() const = 0;
 };
 

@@ -1,4 +1,5 @@
-// Follows, by the transport's discovery, who writes the topics with one writer: also writers that no reader is matched with.
+// Follows, by the transport's discovery, who writes the topics with one writer: also writers that
+// no reader is matched with.
 #pragma once
 
 #include <cstdint>
@@ -14,10 +15,11 @@ namespace handsel {
 class WriterDiscovery {
  public:
   struct Found {
-    const TopicRow* row{};
-    WriterIdentity identity;
+    const TopicRow* row{};    ///< topic the writer writes; not null after take()
+    WriterIdentity identity;  ///< of the writer's participant, and whether its type and QoS match
   };
-  /// `on_news` is called on a thread of the transport when there is something for take(). Throws MissingError when the transport refuses.
+  /// `on_news` is called on a thread of the transport when there is something for take(). Throws
+  /// MissingError when the transport refuses.
   WriterDiscovery(dds_entity_t participant, std::function<void()> on_news);
   ~WriterDiscovery();
   WriterDiscovery(const WriterDiscovery&) = delete;
