@@ -15,7 +15,7 @@ namespace handsel {
 struct RequestLimits {
   std::size_t open{64};        ///< requests that are admitted and not answered
   std::size_t remembered{64};  ///< answers kept for a client that asks again
-  /// Clients whose numbers are remembered; the least recent one is forgotten
+  /// Clients whose numbers are remembered; the least recent one is forgotten.
   std::size_t clients{64};
 };
 

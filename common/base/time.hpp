@@ -16,7 +16,7 @@ struct MonotonicClock {
   using rep = Duration::rep;
   using period = Duration::period;
   using time_point = std::chrono::time_point<MonotonicClock, Duration>;
-  /// Requirement of a standard clock: the time never decreases
+  /// Requirement of a standard clock: the time never decreases.
   static constexpr bool is_steady = true;
 };
 using TimePoint = MonotonicClock::time_point;

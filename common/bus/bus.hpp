@@ -1,7 +1,7 @@
-// How a component talks: typed publishers and subscribers, timers and jobs. Two implementations:
-// DdsBus (the product) and LocalBus (one process, virtual time, deterministic order). Everything a
-// component registers is called on one executor thread of its node; everything here except
-// CancelToken may be called from that thread only (and before it runs).
+// Communication of a component: typed publishers and subscribers, timers and jobs. Two
+// implementations: DdsBus (the product) and LocalBus (one process, virtual time, deterministic
+// order). Everything a component registers is called on one executor thread of its node; everything
+// here except CancelToken may be called from that thread only (and before it runs).
 #pragma once
 
 #include <atomic>
@@ -36,7 +36,7 @@ struct SubscriptionStatus {
   std::string last_rejection;  ///< one sentence
   std::uint64_t left_out{};    ///< malformed elements of lists that were left out of valid samples
   std::string last_left_out;   ///< one sentence
-  /// Samples of another writer than the accepted one, on a topic with one writer
+  /// Samples of another writer than the accepted one, on a topic with one writer.
   std::uint64_t refused{};
   std::string second_writer;  ///< identity of that other writer while it is there; else empty
 
@@ -157,8 +157,8 @@ class Bus {
   /// Shown in ComponentHealth; empty reason = ok.
   virtual void set_degraded(const std::string& reason) = 0;
   /// Adds to a count of ComponentHealth.left_out. `what` says what was left out and why, e.g.
-  /// "people: farther than the nearest 16"; at most 32 such texts are distinguished, so that it
-  /// must hold nothing that comes from outside.
+  /// "people: farther than the nearest 16"; at most 23 such texts are distinguished, so that it
+  /// must hold nothing received from outside.
   virtual void count_left_out(const std::string& what, std::uint64_t more) = 0;
   /// Returns the name the bus was created with.
   virtual const std::string& component() const = 0;

@@ -1,4 +1,4 @@
-// Topics that others define travel on a bus too, with a row and a MessageType of their own that
+// Topics outside the table may be used on a bus too, with a row and a MessageType of their own that
 // live as long as the bus runs.
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace handsel {
 
-/// Is the row one of the table's own? Of the others no equality of types is asked for: their
-/// writers may not even tell theirs.
+/// Returns whether the row is one of the table. Types of other rows are not compared: their writers
+/// may not announce them.
 inline bool in_table(const TopicRow& row) { return !std::less<>()(&row, std::begin(kTopics)) && std::less<>()(&row, std::end(kTopics)); }
 
 }  // namespace handsel

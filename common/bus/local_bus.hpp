@@ -16,7 +16,7 @@ namespace handsel {
 
 struct LocalNetworkSettings {
   std::uint64_t seed{1};  ///< of the transport delays and losses
-  /// Transport delay of a sample, uniform between these [s]; order per writer and reader is kept
+  /// Transport delay of a sample, uniform between these [s]; order per writer and reader is kept.
   double delay_min{0.0001};
   double delay_max{0.0003};  ///< [s]
   double loss{};             ///< fraction of best-effort samples lost, [0, 1)

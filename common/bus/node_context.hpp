@@ -23,7 +23,7 @@ struct NodeContext {
   std::filesystem::path settings;           ///< directory of <box>.txtpb
   std::uint64_t seed{1};                    ///< of every random choice of the node
   bool sim_time{};                          ///< time advances as the simulator grants it
-  /// Folder of what must survive a restart of the process; empty: nothing is kept
+  /// Folder of what must survive a restart of the process; empty: nothing is kept.
   std::filesystem::path state{};
 };
 

@@ -25,8 +25,7 @@ class PacedClock {
   /// Applies a grant; returns false and ignores the grant when another simulator has sent one
   /// within the last second.
   bool grant(const TimeGrant& grant, TimePoint wall);
-  /// Returns the time at `wall`, which must not decrease between calls; the result never decreases
-  /// after the first grant.
+  /// Returns the time at `wall`; results never decrease after the first grant.
   TimePoint at(TimePoint wall);
   /// Returns the time at a `wall` since the grant before the last one, at most the last at().
   TimePoint past(TimePoint wall) const;

@@ -13,11 +13,11 @@ namespace handsel {
 
 /// What discovery knows of a writer.
 struct WriterIdentity {
-  /// Entity name of its participant: the components it speaks for, separated by spaces
+  /// Entity name of its participant: the components it speaks for, separated by spaces.
   std::string components;
   std::string name;    ///< for a person: "spark (pid 7 on host desk)"
   bool matches{true};  ///< type and QoS let its samples arrive
-  /// Returns whether its process has ended; empty: that cannot be known from here
+  /// Returns whether its process has ended; empty: that cannot be known from here.
   std::function<bool()> ended;
 };
 

@@ -29,8 +29,8 @@ const char* name(TaskChange);
 /// State of one behaviour of the attentional system.
 struct BehaviourState {
   std::string name;                        ///< as described in the settings
-  Behaviour behaviour{};                   ///< its kind
-  double period{};                         ///< of its adaptive clock now [s]
+  Behaviour behaviour{};                   ///< kind of its perceptual and motor schema
+  double period{};                         ///< period of its adaptive clock now [s]
   std::uint64_t activations{};             ///< of its perceptual schema since start
   std::uint64_t activations_at_fastest{};  ///< had the clock always run at its shortest period
   bool released{};           ///< its releaser and the conditions of its description hold
@@ -57,13 +57,13 @@ struct AttentionAdvice {
   bool has_target_shift{};                ///< false: `target_shift` has no meaning
   Vector3 target_shift{Vector3::Zero()};  ///< of the handover point, world [m]
   double cost_gain{1.0};                  ///< factor on the human-aware costs
-  /// Wanted period of the interpretation of people [s]; 0: the fastest, here and below
+  /// Wanted period of the interpretation of people [s]; 0: the fastest, here and below.
   double people_period{};
   double objects_period{};   ///< wanted period of the interpretation of objects [s]
   double forecast_period{};  ///< wanted period of the forecast of the running trajectory [s]
   double cost_map_period{};  ///< wanted period of the cost map [s]
   double replan_period{};    ///< wanted period of the search for a better path [s]
-  TaskChange change{};       ///< of the task that runs
+  TaskChange change{};       ///< change wanted of the running task
   std::string person;        ///< id of the person the change concerns; empty: nobody
 };
 

@@ -23,7 +23,7 @@ struct Go {
   bool acknowledge{};     ///< a person acknowledged a Fault
   double override_factor{1.0};  ///< global speed override [0, 1]
   std::string reason;           ///< why motion is permitted or not, one sentence
-  /// SafetyState::revision the permission was issued from; 0: from none, which permits no motion
+  /// SafetyState::revision the permission was issued from; 0: from none, which permits no motion.
   std::uint64_t state_revision{};
 };
 
@@ -36,7 +36,7 @@ struct TrajectoryCommand {
   std::string robot;                ///< name of the robot description; the key of the topic
   std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
   Trajectory trajectory;            ///< one motion per entry of `axes`, all of equal duration
-  /// Own time of the command accepted before at which this one takes over [s]; 0 or past: now
+  /// Own time of the command accepted before at which this one takes over [s]; 0 or past: now.
   double switch_at{};
   Attachment attachment;                      ///< what the hand holds while it runs
   std::vector<std::string> allowed_contacts;  ///< as PathRequest::allowed_contacts
@@ -55,11 +55,11 @@ struct HandCommand {
   std::uint64_t id{};                   ///< unique, grows
   std::uint64_t epoch{};                ///< the Go it belongs to; another epoch is refused
   std::string robot;                    ///< name of the robot description; the key of the topic
-  HandAction action{HandAction::move};  ///< see HandAction
+  HandAction action{HandAction::move};  ///< kind of the command
   std::string group{};                  ///< the hand's axes; empty: "hand"
   Vector position;                      ///< actuated hand axes, in the order of the group [rad]
   /// Grip torque of those axes in a grasp [Nm]; empty: as before while holding, else that of the
-  /// settings
+  /// settings.
   Vector effort;
   double pull_force{4.0};  ///< [N] beyond the load's weight, for release_on_pull
   double payload{};        ///< mass of what is grasped, 0: unknown [kg]
@@ -91,10 +91,10 @@ enum class Cause : std::uint8_t {
   cost_ahead,          ///< Slow: the human-aware cost ahead on the trajectory is high
   blind,          ///< Slow or Hold: no live source observes where the arm can be within its stop
   stop_unproven,  ///< Slow: a set-point had no checked stop behind it
-  /// Reported only: a topic with one writer has a second one, whose samples are refused
+  /// Reported only: a topic with one writer has a second one, whose samples are refused.
   second_writer,
   clamped,  ///< Stop: the arm has been pressed against something for too long
-  /// Hold: a person has to resume (after a pause, a fault, a protective, user or emergency stop)
+  /// Hold: a person has to resume (after a pause, a fault, a protective, user or emergency stop).
   awaits_person,
 };
 /// Returns the word of kCauseNames; "unknown" for a value outside the enumeration.
@@ -119,23 +119,23 @@ struct ExecutionStatus {
   Stamp stamp{};                          ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::string robot;                      ///< name of the robot description; the key of the topic
   Mode mode{Mode::hold};                  ///< mode of the controller
-  std::uint32_t causes{};                 ///< bits of Cause
+  std::uint32_t causes{};                 ///< causes in force, see bit()
   std::uint64_t epoch{};                  ///< Go in force
   std::uint64_t trajectory{};             ///< last trajectory id received
-  MotionState motion{MotionState::idle};  ///< of that trajectory
+  MotionState motion{MotionState::idle};  ///< state of that trajectory
   double progress{};                      ///< time along the trajectory / its duration
   std::uint64_t hand_command{};           ///< last hand command id received
-  HandState hand{HandState::idle};        ///< of that command
-  std::vector<OtherHandState> other_hands{};  ///< none: there is one hand
+  HandState hand{HandState::idle};        ///< state of that command
+  std::vector<OtherHandState> other_hands{};  ///< every hand but the first; empty: there is one
   double pull{};                          ///< force beyond the load's weight, toward the person [N]
   std::string reason;                     ///< of the last refusal, or of slowing, one sentence
   std::uint64_t cycles{}, late_cycles{};  ///< control cycles; later than one period
-  /// Largest |.| sent so far / guard limit
+  /// Largest |.| sent so far / guard limit.
   double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};
   double separation{1e9};  ///< to the nearest person, without exempt parts [m]; 1e9: nobody
-  /// Required by speed and separation monitoring there at the present speed [m]
+  /// Required by speed and separation monitoring there at the present speed [m].
   double separation_limit{};
-  /// On the axes of the nearest capsules, world [m]
+  /// On the axes of the nearest capsules, world [m].
   Vector3 nearest_on_robot{Vector3::Zero()}, nearest_on_person{Vector3::Zero()};
 };
 
@@ -144,8 +144,8 @@ struct ActiveTrajectory {
   Stamp stamp{};                        ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::string robot;                    ///< name of the robot description; the key of the topic
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world, as last measured
-  std::uint64_t trajectory{};           ///< 0: at rest
-  double time{};                        ///< along the trajectory [s]
+  std::uint64_t trajectory{};           ///< id of the running trajectory; 0: at rest
+  double time{};                        ///< time along the trajectory [s]
   double speed_factor{};                ///< alpha in force, [-1, 1]
   Vector position, velocity, acceleration;    ///< set-point, all axes
   std::vector<std::uint32_t> axes;            ///< robot axis of each axis of `rest`
@@ -160,7 +160,7 @@ struct TrajectoryForecast {
   Stamp stamp{};               ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::uint64_t trajectory{};  ///< id of the trajectory checked; 0: at rest
   bool collides{};             ///< a collision is predicted within the horizon
-  /// At present speed [s]; infinity if none within the horizon (1e9 on the wire)
+  /// At present speed [s]; infinity if none within the horizon (1e9 on the wire).
   double time_to_collision{};
   double clearance{};  ///< least distance to people over the horizon [m]
   double cost{};       ///< largest human-aware cost over the horizon, [0, 1]

@@ -31,7 +31,7 @@ struct ObservedPerson {
 /// The volume a source has observed: inside, "nobody there" is a fact. Axis-aligned box in world
 /// [m].
 struct Coverage {
-  /// Lowest and highest corner; equal corners: nothing is covered
+  /// Lowest and highest corner; equal corners: nothing is covered.
   Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};
 };
 
@@ -60,7 +60,7 @@ struct Primitive {
 /// An object as one source sees it.
 struct ObservedObject {
   std::string id;  ///< persistent name of this object, e.g. "mug"
-  /// Object description it was recognised as; empty: unknown, its primitive is what is known
+  /// Object description it was recognised as; empty: unknown, its primitive is what is known.
   std::string model;
   Pose T_world_object{Pose::Identity()};  ///< object frame in the world
   double confidence{};                    ///< [0, 1]

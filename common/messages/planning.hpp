@@ -54,11 +54,11 @@ struct PathRequest {
   Vector start;
   std::vector<Vector> goals;  ///< alternatives, group axes only [rad]; empty: `poses` are the goals
   std::vector<TipGoal> poses;  ///< alternatives, goal poses of the tip
-  /// Cartesian space: robot axes that move along with the arm (hand, head)
+  /// Cartesian space: robot axes that move along with the arm (hand, head).
   std::vector<std::uint32_t> also;
   Vector also_goal;  ///< goal of those axes [rad]
   bool upright{};    ///< `upright_axis` keeps a bounded angle to up everywhere on the path
-  /// unit, tool frame; +x as received where `upright` is false
+  /// Unit vector, tool frame; received as +x where `upright` is false.
   Vector3 upright_axis{Vector3::UnitZ()};
   double most_tilt{};     ///< largest angle of that axis to up, [0, 3.1416] [rad]
   Attachment attachment;  ///< what the hand holds on the path
@@ -68,19 +68,19 @@ struct PathRequest {
   std::vector<std::string> allowed_contacts;
   PlannerKind planner{PlannerKind::automatic};  ///< algorithm; automatic: the planner chooses
   double time_limit{2.0};  ///< [s]; a budget of collision checks is derived from it
-  std::uint64_t seed{};    ///< of the random choices
-  /// Only the straight line from `start` to goals[0] is wanted, collision-checked
+  std::uint64_t seed{};    ///< seed of the random choices
+  /// Only the straight line from `start` to goals[0] is wanted, collision-checked.
   bool straight{};
   /// The running path, to be continued from `start`, a point on it that the arm has not reached
   /// yet. Empty: plan anew.
   std::vector<Vector> running;
-  /// Stop the request of this id and all older ones of the client; their replies say so
+  /// Stop the request of this id and all older ones of the client; their replies say so.
   bool cancel{};
 };
 
 /// How a path came about; all but the first belong to online replanning.
 enum class PathOutcome : std::uint8_t {
-  planned,    ///< a request without a running path
+  planned,    ///< the request had no running path
   kept,       ///< free, and nothing cheaper was found
   improved,   ///< free, and cheaper than before
   repaired,   ///< was blocked; led around what blocks it
@@ -91,15 +91,15 @@ enum class PathOutcome : std::uint8_t {
 /// Topic PathReply, profile reply.
 struct PathReply {
   Stamp stamp{};       ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;        ///< of the request
+  RequestId id;        ///< as in the request
   bool solved{};       ///< `path` leads from the start to a goal
   std::string reason;  ///< why not, one sentence
-  /// Id of the object, box or person the robot touches at the start; empty: none
+  /// Id of the object, box or person the robot touches at the start; empty: none.
   std::string start_touches;
   PathOutcome outcome{PathOutcome::planned};  ///< see PathOutcome
   std::uint32_t goal{};                       ///< index of the goal or pose reached
   std::vector<Vector> path;  ///< group axes, then those of `also`; path.front() = start
-  /// Integral human-aware cost; mechanical work, the sum of its rises; joint-space length [rad]
+  /// Integral human-aware cost; mechanical work, the sum of its rises; joint-space length [rad].
   double cost{}, work{}, length{};
   std::uint64_t checks{};  ///< configurations checked for collision
 };
@@ -108,7 +108,7 @@ struct PathReply {
 struct TipNode {
   Pose T_world_tip{Pose::Identity()};  ///< pose of the tip at the node
   bool has_elbow{};  ///< false: `elbow` is chosen such that the joints stay clear of their limits
-  /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad]
+  /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad].
   double elbow{};
   Vector also;  ///< positions of the axes `also` of the request at the node [rad]
 };
@@ -131,7 +131,7 @@ struct TrajectoryRequest {
   bool upright{};                   ///< as in PathRequest
   Vector3 upright_axis{Vector3::UnitZ()};  ///< unit, tool frame
   double most_tilt{};                      ///< largest angle of that axis to up, [0, 3.1416] [rad]
-  /// Arm whose tip is rigidly joined to the group's (two hands on one object); empty: none
+  /// Arm whose tip is rigidly joined to the group's (two hands on one object); empty: none.
   std::string follower{};
   Pose T_tip_follower{Pose::Identity()};  ///< tip of the follower in the frame of the group's tip
 };
@@ -139,27 +139,28 @@ struct TrajectoryRequest {
 /// Topic TrajectoryReply, profile reply.
 struct TrajectoryReply {
   Stamp stamp{};          ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;           ///< of the request
+  RequestId id;           ///< as in the request
   bool solved{};          ///< `trajectory` reaches the last node
   std::string reason;     ///< why not, one sentence
-  Trajectory trajectory;  ///< of `axes`; an unsolved motion of the tool: as far as it goes
+  Trajectory trajectory;  ///< motion of `axes`; an unsolved motion of the tool: as far as it goes
   double duration_ptp{};  ///< duration with a full stop at each node [s]
   Refusals corners;       ///< nodes that keep a full stop instead of a blend, and why
   std::vector<std::uint32_t> axes;  ///< robot axis of each trajectory axis
   std::uint32_t reached{};  ///< number of nodes the trajectory passes; all of them when solved
-  /// Factor on the comfort velocity limits per path segment because of people; empty: 1
+  /// Factor on the comfort velocity limits per path segment because of people; empty: 1.
   Vector speeds;
 };
 
 /// Contact of one finger with the object.
 struct Contact {
-  std::uint32_t finger{};                ///< index in the hand description; the thumb is 0
-  Vector3 position{Vector3::Zero()};     ///< object frame [m]
-  Vector3 normal{Vector3::UnitZ()};      ///< plane normal of its triangle, outward, object frame
-  std::uint32_t triangle{};              ///< index in the mesh of the object
-  Vector3 barycentric{Vector3::Zero()};  ///< of the position in that triangle, sum 1
-  double friction{};                     ///< Coulomb coefficient
-  double curvature{};                    ///< interpolated mean curvature, normalised to [0, 1]
+  std::uint32_t finger{};             ///< index in the hand description; the thumb is 0
+  Vector3 position{Vector3::Zero()};  ///< object frame [m]
+  Vector3 normal{Vector3::UnitZ()};   ///< plane normal of its triangle, outward, object frame
+  std::uint32_t triangle{};           ///< index in the mesh of the object
+  /// Barycentric coordinates of the position in that triangle, sum 1
+  Vector3 barycentric{Vector3::Zero()};
+  double friction{};   ///< Coulomb coefficient
+  double curvature{};  ///< interpolated mean curvature, normalised to [0, 1]
 };
 
 /// A grasp of one hand on one object (chapter section 3.2.1).
@@ -169,19 +170,19 @@ struct Grasp {
   Vector hand_joints;                    ///< actuated hand axes at contact [rad]
   Vector pregrasp_joints;                ///< opened before the approach [rad]
   /// Torque per actuated hand axis for a grip force inside the friction cones [Nm]; 0: the axis
-  /// only holds
+  /// only holds.
   Vector hand_effort;
   std::vector<Contact> contacts;  ///< one per finger that touches the object
-  double epsilon{};               ///< Ferrari-Canny, L1
-  /// Smallest force reserve inside the contacts' cones at that grip, over all load directions [N]
+  double epsilon{};               ///< grasp quality of Ferrari and Canny, L1 norm
+  /// Smallest force reserve inside the contacts' cones at that grip, over all load directions [N].
   double margin{};
   double quality{};        ///< weighted sum of the four parts, [0, 1]
   Vector arm_joints;       ///< arm axes reaching the grasp; empty until a robot was considered
   Vector approach_joints;  ///< arm axes at the stand-off before it
   bool has_platform{};     ///< the arm reaches it from `platform`, not from the current base pose
-  /// x, y [m], heading [rad], world; no meaning unless `has_platform`
+  /// Base pose x, y [m], heading [rad] in the world; no meaning unless `has_platform`.
   Vector3 platform{Vector3::Zero()};
-  /// Fraction of the object that its receiver (else the robot's head) sees past the hand
+  /// Fraction of the object that its receiver (else the robot's head) sees past the hand.
   double visible{};
 };
 
@@ -193,9 +194,9 @@ struct GraspRequest {
   Vector start;                  ///< all axes of the robot; IK is seeded from it
   std::string for_human;         ///< id of the receiver, whose hand needs free space; empty: nobody
   std::uint32_t max_grasps{20};  ///< longest list wanted, 1 to 200
-  std::uint64_t seed{};          ///< of the random choices
+  std::uint64_t seed{};          ///< seed of the random choices
   std::string group;             ///< axes of the arm; empty: "arm"
-  /// The object is to be put down again: the grasp must be reachable at `T_world_goal` too
+  /// The object is to be put down again: the grasp must be reachable at `T_world_goal` too.
   bool has_goal{};
   Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
   double least_visible{};               ///< lower bound of Grasp::visible, [0, 1]
@@ -205,7 +206,7 @@ struct GraspRequest {
 /// Topic GraspReply, profile reply: reachable, collision-free, best first.
 struct GraspReply {
   Stamp stamp{};              ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;               ///< of the request
+  RequestId id;               ///< as in the request
   std::string reason;         ///< why the list is empty, one sentence
   std::vector<Grasp> grasps;  ///< best first
   Refusals rejected;          ///< counts per reason, e.g. {"113 frames", "thumb finds no contact"}
@@ -227,16 +228,16 @@ struct RegraspRequest {
   Vector start;                         ///< all axes of the robot
   Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
   bool both{};  ///< two hands at once, which carry it there together; else from hand to hand
-  std::uint64_t seed{};  ///< of the random choices
+  std::uint64_t seed{};  ///< seed of the random choices
 };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
   RegraspKind kind{};  ///< see RegraspKind
-  /// Groups of the arms: the holding or releasing one, the taking one; empty: none
+  /// Groups of the arms: the holding or releasing one, the taking one; empty: none.
   std::string from, to;
   Pose T_world_object{Pose::Identity()};  ///< the object meanwhile
-  Grasp grasp;                            ///< of `to`; of `from` where no arm takes
+  Grasp grasp;                            ///< grasp of `to`; of `from` where no arm takes
   Vector q;                               ///< all hands that touch the object closed on it
   Vector before;  ///< the hand that comes, opened, off the object; empty: none comes
   Vector after;   ///< the hand that went, opened, off the object; empty: none goes
@@ -245,7 +246,7 @@ struct RegraspStep {
 /// Topic RegraspReply, profile reply.
 struct RegraspReply {
   Stamp stamp{};                   ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;                    ///< of the request
+  RequestId id;                    ///< as in the request
   bool solved{};                   ///< `steps` lead to the goal
   std::string reason;              ///< why not, one sentence
   std::vector<RegraspStep> steps;  ///< changes of hands in order, at most 32
@@ -272,10 +273,10 @@ struct StateQuery {
 /// Reply to StateQuery.
 struct StateVerdict {
   Stamp stamp{};                   ///< time of sending, UTC [ns]; 0: filled in by the bus
-  RequestId id;                    ///< of the query
+  RequestId id;                    ///< as in the query
   std::vector<std::uint8_t> free;  ///< 1 = free, one a state
   std::string reason;  ///< which bodies touch in the first configuration that is not free
-  /// Smallest distance over all free configurations [m]; infinity: nothing near
+  /// Smallest distance over all free configurations [m]; infinity: nothing near.
   double clearance{};
 };
 

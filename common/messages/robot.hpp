@@ -18,7 +18,7 @@ struct OtherHand {
   std::string group;     ///< its axes
   Wrench wrist_wrench;   ///< frame of its palm
   double hand_effort{};  ///< sum of |finger torques| [Nm]
-  /// Mass it carries as measured by the robot side [kg]; noise may make it negative
+  /// Mass it carries as measured by the robot side [kg]; noise may make it negative.
   double payload{};
 };
 
@@ -40,15 +40,15 @@ struct RobotState {
   Vector position, velocity, effort;    ///< per axis [rad, rad/s, Nm] (m, m/s, N for prismatic)
   ServoReference reference{};           ///< what the servos follow or hold
   Vector external_torque;  ///< per axis, without model gravity and friction [Nm]; empty if unknown
-  /// What the world exerts on the hand with its load, gravity of the hand removed, tool frame
+  /// What the world exerts on the hand with its load, gravity of the hand removed, tool frame.
   Wrench wrist_wrench;
   double hand_effort{};            ///< sum of |finger torques| [Nm]
   double payload{};                ///< mass the hand carries as measured by the robot side [kg]
   DriveMode mode{DriveMode::off};  ///< state of the drives
-  /// Of a robot with several arms; the fields above speak of the first hand
+  /// Of a robot with several arms; the fields above speak of the first hand.
   std::vector<OtherHand> other_hands{};
   std::uint64_t refused_set_points{};  ///< set-points the robot side has refused so far
-  /// Why the last one was refused, while the robot is at rest because of that; else empty
+  /// Why the last one was refused, while the robot is at rest because of that; else empty.
   std::string refusal{};
 };
 
@@ -58,13 +58,13 @@ struct JointCommand {
   Stamp stamp{};             ///< time of sending, UTC [ns]; 0: filled in by the bus
   std::string robot;         ///< name of the robot description; the key of the topic
   std::uint64_t sequence{};  ///< grows by one per set-point
-  /// All axes of the robot [rad, rad/s, rad/s^2] ([m, m/s, m/s^2])
+  /// All axes of the robot [rad, rad/s, rad/s^2] ([m, m/s, m/s^2]).
   Vector position, velocity, acceleration;
-  /// Per axis, feed-forward of the motors besides following [Nm] ([N]); empty: none
+  /// Per axis, feed-forward of the motors besides following [Nm] ([N]); empty: none.
   Vector effort;
-  /// Mass the first hand holds, for the robot side's own model; 0: nothing or unknown [kg]
+  /// Mass the first hand holds, for the robot side's own model; 0: nothing or unknown [kg].
   double payload{};
-  /// Mass each other hand holds, in the order of RobotState::other_hands [kg]; or empty
+  /// Mass each other hand holds, in the order of RobotState::other_hands [kg]; or empty.
   Vector other_payloads{};
 };
 

@@ -13,7 +13,7 @@ namespace handsel::ros2 {
 struct JointState {
   Stamp stamp{};                   ///< [ns]; 0: none
   std::vector<std::string> names;  ///< of the joints, at most 128
-  /// One per name [rad, rad/s, Nm] ([m, m/s, N]); empty: unknown
+  /// One per name [rad, rad/s, Nm] ([m, m/s, N]); empty: unknown.
   Vector position, velocity, effort;
 };
 
@@ -31,7 +31,7 @@ struct JointTrajectory {
 };
 
 struct Transform {
-  Stamp stamp{};                          ///< of the measurement [ns]; 0: none
+  Stamp stamp{};                          ///< time of measurement [ns]; 0: none
   std::string parent, child;              ///< frames, without a leading slash
   Pose T_parent_child{Pose::Identity()};  ///< child frame in the parent frame
 };
@@ -43,7 +43,7 @@ struct Transforms {
 
 /// hri_msgs/IdsList.
 struct Ids {
-  Stamp stamp{};                 ///< of the header [ns]; 0: none
+  Stamp stamp{};                 ///< stamp of the header [ns]; 0: none
   std::vector<std::string> ids;  ///< e.g. the tracked bodies
 };
 

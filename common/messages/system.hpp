@@ -22,9 +22,9 @@ struct TopicHealth {
   std::uint64_t deadline_misses{};  ///< silences longer than the topic's deadline
   std::uint64_t rejected{};         ///< malformed samples dropped
   std::string last_rejection;       ///< one sentence
-  /// Samples of another writer than the accepted one, on a topic with one writer
+  /// Samples of another writer than the accepted one, on a topic with one writer.
   std::uint64_t refused{};
-  /// Identity of that other writer (process, host), while it is there; else empty
+  /// Identity of that other writer (process, host), while it is there; else empty.
   std::string second_writer{};
 };
 
@@ -41,7 +41,7 @@ struct ComponentHealth {
   std::uint64_t incarnation{};               ///< random per process start
   std::uint32_t pid{};                       ///< operating-system process; 0: none
   HealthState state{HealthState::starting};  ///< degraded: `reason` says why
-  std::string reason;                        ///< of degradation
+  std::string reason;                        ///< why the state is degraded, one sentence
   bool job_silent{};   ///< a job in the background has given no sign of life for two seconds
   double cpu{};        ///< load of one core, 1: fully used
   double memory_mb{};  ///< resident memory [MB]
@@ -60,7 +60,7 @@ struct SafetyState {
   bool fault{};                 ///< a fault nobody has acknowledged
   bool awaits_person{};  ///< a protective, user or emergency stop after which nobody has resumed
   std::string reason;    ///< why it does not permit motion, one sentence; empty: it does
-  /// People out of sight and not known to have left, in their last known state
+  /// People out of sight and not known to have left, in their last known state.
   std::vector<Person> lost{};
 };
 
@@ -68,8 +68,8 @@ struct SafetyState {
 /// less `waited`, and halts at `granted_until`. Topic SimClock, profile advice, 100 Hz.
 struct SimClock {
   Stamp stamp{};                ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::uint64_t incarnation{};  ///< of the simulator
-  /// Grows by one with each grant; the same one again while the simulator waits
+  std::uint64_t incarnation{};  ///< incarnation of the simulator
+  /// Grows by one with each grant; the same one again while the simulator waits.
   std::uint64_t sequence{};
   double granted_until{};  ///< no component's time passes this instant [s], [0, 1e9]
   double waited{};         ///< total halt of time since the simulator started [s], [0, 1e9]
@@ -108,7 +108,7 @@ enum class SimAction : std::uint8_t {
 /// Topic SimControl, profile goal: disturbances and control of the simulator.
 struct SimControl {
   Stamp stamp{};        ///< time of sending, UTC [ns]; 0: filled in by the bus
-  SimAction action{};   ///< see SimAction
+  SimAction action{};   ///< disturbance or control wanted
   std::string subject;  ///< person or source
   double value{};       ///< dart: speed [m/s]; silence: duration [s]
 };
@@ -137,24 +137,24 @@ struct GroundTruth {
   double constraint_time{};  ///< part of `held_time` by the grasp constraint [s]
   double lifted{};           ///< height above where it started [m]
   double max_lifted{};       ///< while carried by the robot [m]
-  /// How long the person's hand touched the object before the release [s]
+  /// How long the person's hand touched the object before the release [s].
   double human_contact_before_release{};
   double human_alone{};  ///< how long the person alone has carried it [s]
   bool dropped{};        ///< touched floor or fell
   bool handover_done{};  ///< lifted >= 0.10, contact >= 0.2, alone >= 1
-  /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged
+  /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
   double least_separation{};       ///< smallest `separation` so far [m]; infinity: nobody was there
   std::uint64_t ssm_violations{};  ///< steps with a higher speed toward a person than SSM allows
   double peak_closing_speed{};     ///< of robot and person within 0.5 m [m/s]
   double contact_force{};          ///< largest robot-person contact force so far [N]
-  /// Largest |.| of the received set-points so far / limit
+  /// Largest |.| of the received set-points so far / limit.
   double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};
   std::uint64_t limit_violations{};          ///< set-points beyond the guard limits so far
   std::uint64_t self_or_scene_collisions{};  ///< steps with an unintended robot contact
   std::uint64_t commanders{};                ///< distinct writers of JointCommand seen
   double setpoint_gap_max{};      ///< longest time without a set-point since the first [s]
-  std::uint64_t set_points{};     ///< received so far
+  std::uint64_t set_points{};     ///< set-points received so far
   bool robot_moving{};            ///< any arm axis faster than 1e-3 rad/s
   std::uint64_t hash{};           ///< running hash of the physical state: equal seeds, equal hashes
   std::vector<BodyJoint> person;  ///< true body of the nearest person

@@ -35,14 +35,14 @@ const char* name(TaskKind);
 /// A goal or an instruction of a person. Topic TaskGoal, profile goal.
 struct TaskGoal {
   Stamp stamp{};       ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::uint64_t id{};  ///< chosen by the sender, unique
+  std::uint64_t id{};  ///< unique, chosen by the sender
   TaskKind kind{};     ///< what to do
-  /// Scene object id, or the named configuration of go_to; empty where the kind needs none
+  /// Scene object id, or the named configuration of go_to; empty where the kind needs none.
   std::string object;
-  std::string human;    ///< empty: the nearest attentive person
+  std::string human;    ///< person id; empty: the nearest attentive person
   std::string surface;  ///< scene box id; empty where the kind needs none
-  double value{};       ///< speed: [0, 1]
-  /// Box where what is taken, cleared or tidied ends; empty: where there is room
+  double value{};       ///< of kind speed: speed override, [0, 1]
+  /// Box where what is taken, cleared or tidied ends; empty: where there is room.
   std::string onto;
 };
 
@@ -65,8 +65,8 @@ struct PlanStep {
 /// Progress of a task. Topic TaskStatus, profile state.
 struct TaskStatus {
   Stamp stamp{};                  ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::uint64_t id{};             ///< of the goal
-  TaskKind kind{};                ///< of the goal
+  std::uint64_t id{};             ///< id of the goal
+  TaskKind kind{};                ///< kind of the goal
   TaskState state{};              ///< failed and refused: `reason` says why
   std::vector<std::string> plan;  ///< the steps, e.g. "pick mug", "give mug to anna"
   std::uint32_t step{};           ///< index into `plan` of the running step; plan.size(): all done
@@ -74,7 +74,7 @@ struct TaskStatus {
   std::string reason;             ///< of a failure or refusal, one sentence
   Refusals refusals;              ///< gathered so far
   std::vector<PlanStep> tree;     ///< the plan with what it was made of, depth first
-  double cost{};                  ///< of the remaining plan
+  double cost{};                  ///< cost of the remaining plan
 };
 
 enum class ActionKind : std::uint8_t { pick, place, give, receive, go_to, regrasp, carry };
@@ -90,7 +90,7 @@ struct ActionGoal {
   std::uint64_t epoch{};  ///< Go::epoch its motions carry
   ActionKind kind{};      ///< what to do
   bool cancel{};          ///< stop action `id` with jerk-limited motion and report cancelled
-  /// Ids of scene object, person and scene box; empty where the kind needs none
+  /// Ids of scene object, person and scene box; empty where the kind needs none.
   std::string object, human, surface;
   bool has_goal{};  ///< pick, place, regrasp, carry: the final pose of the object is known
   Pose T_world_goal{Pose::Identity()};  ///< that pose
@@ -152,16 +152,16 @@ enum class ActionFailure : std::uint8_t {
 /// Topic ActionStatus, profile state, 10 Hz and on change.
 struct ActionStatus {
   Stamp stamp{};                         ///< time of sending, UTC [ns]; 0: filled in by the bus
-  std::uint64_t id{};                    ///< of the action
+  std::uint64_t id{};                    ///< id of the action
   std::uint64_t task{};                  ///< id of the goal it serves
-  ActionKind kind{};                     ///< of the action
+  ActionKind kind{};                     ///< kind of the action
   ActionState state{ActionState::idle};  ///< idle: there was no action yet
   ActionPhase phase{};                   ///< part of the running action
   std::string object, human;  ///< scene object id and person id of the action; may be empty
   bool holding{};             ///< the hand holds `object`
   bool exchange_engaged{};    ///< the exchanging forearm and hand are exempt from separation
   Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
-  /// Until the object changes hands, as foreseen [s]
+  /// Until the object changes hands, as foreseen [s].
   double time_to_exchange{std::numeric_limits<double>::infinity()};
   ActionFailure failure{};  ///< of a state failed or cancelled
   std::string reason;       ///< of a failure, one sentence

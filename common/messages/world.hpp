@@ -25,14 +25,14 @@ struct SceneObject {
   std::string model;  ///< name in deploy/objects; empty: unknown, its primitive is what is known
   Pose T_world_object{Pose::Identity()};  ///< object frame in the world
   Holder holder{Holder::nobody};          ///< nobody: in the air, or unknown
-  /// surface, person, or group of the robot's hand; empty for nobody and the first hand
+  /// Surface, person, or group of the robot's hand; empty for nobody and the first hand.
   std::string holder_id;
   double age{};                       ///< since last seen [s]
   Vector3 velocity{Vector3::Zero()};  ///< of the object frame's origin, world [m/s]
-  /// Measured by the object's own sensors; empty where it has none
+  /// Measured by the object's own sensors; empty where it has none.
   std::vector<ObjectGrip> grips{};
   Primitive primitive{};  ///< of an unknown object; else none
-  /// Radius around T_world_object it may be in; grows while out of sight [m]
+  /// Radius around T_world_object it may be in; grows while out of sight [m].
   double uncertainty{};
 };
 
@@ -63,7 +63,7 @@ struct BodyJoint {
   std::string name;                   ///< REP-155, as in ObservedJoint
   Vector3 position{Vector3::Zero()};  ///< world [m]
   Vector3 velocity{Vector3::Zero()};  ///< world [m/s]
-  /// Since this point itself was measured [s]; 1e9: never, inferred from the fitted body
+  /// Since this point itself was measured [s]; 1e9: never, inferred from the fitted body.
   double age{};
 };
 
@@ -134,7 +134,7 @@ enum class FactKind : std::uint8_t {
   waiting_to_receive,  ///< subject = person; object = what another holds
   withdrawn,           ///< subject = person; object = what they reached for or offered a moment ago
   /// Subject = object; object = the giver (person or "robot") that has just released it into
-  /// another hand
+  /// another hand.
   released,
 };
 /// Returns the word of kFactNames; "unknown" for a value outside the enumeration.

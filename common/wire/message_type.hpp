@@ -23,10 +23,10 @@ struct WireLeaf {
   Kind kind{};              ///< type behind `value`
   void* value{};            ///< double*, the integer, the IDL enum, char*, bool*
   std::size_t size{};       ///< [bytes] of the value
-  const WireIo* visitor{};  ///< in which the leaf is open; valid during the visit only
+  const WireIo* visitor{};  ///< visitor in which the leaf is open; valid during the visit only
   const char* field{};      ///< name of the innermost field; null in a list of bytes
 
-  /// Returns e.g. "position[3]"; composed on demand, as a map has 10^5 leaves
+  /// Returns e.g. "position[3]"; composed on demand, as a map has 10^5 leaves.
   std::string path() const;
 };
 

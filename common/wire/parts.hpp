@@ -16,17 +16,17 @@ namespace handsel {
 
 using Text = WireIo::Text;
 
-/// Texts that are too long are cut when sent
+/// Texts that are too long are cut when sent.
 void describe(WireIo& io, Refusal& m, handsel_Refusal& w);
 void describe(WireIo& io, Segment& m, handsel_Segment& w);  ///< duration [0, 1e4] s, |jerk| <= 1e9
 void describe(WireIo& io, AxisTrajectory& m, handsel_AxisTrajectory& w);  ///< at most 4096 segments
-/// At most 64 axes of equal duration (1e-6 s)
+/// At most 64 axes of equal duration (1e-6 s).
 void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w);
 void describe(WireIo& io, Attachment& m, handsel_Attachment& w);  ///< object and hand may be empty
 void describe(WireIo& io, RequestId& m, handsel_RequestId& w);    ///< any numbers
 void describe(WireIo& io, Primitive& m, handsel_Primitive& w);    ///< extents [0, 1e4] m
-void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);    ///< named; age [0, 1e9] s
-/// Named; at most 64 joints; stature [0.3, 3] m
+void describe(WireIo& io, BodyJoint& m, handsel_BodyJoint& w);    ///< needs a name; age [0, 1e9] s
+/// Needs an id; at most 64 joints; stature [0.3, 3] m.
 void describe(WireIo& io, Person& m, handsel_Person& w);
 
 /// Describes the field `allowed_contacts`: at most 32 names, none empty.

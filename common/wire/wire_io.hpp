@@ -41,8 +41,8 @@ class WireIo {
  public:
   /// Domain -> wire, validated. `message`: its type, for `why`; a stamp of 0 becomes `now`.
   static WireIo to_wire(const char* message, Stamp now, std::string& why);
-  /// Wire -> domain, validated. `left_out`: receives the count of left-out
-  /// elements; may be null.
+  /// Wire -> domain, validated. `left_out`: receives the count of left-out elements; may be
+  /// null.
   static WireIo from_wire(const char* message, std::string& why, LeftOutElements* left_out = nullptr);
   /// Appends the domain value to `out` as JSON; numbers that are not finite become null.
   static WireIo json(std::string& out);
@@ -72,7 +72,8 @@ class WireIo {
   /// A truth value; a received byte other than 0 and 1 is malformed.
   void flag(const char* field, bool& m, bool& w);
 
-  /// A sentence too long is cut when sent, a name refused
+  /// A name is refused when empty; a sentence that is too long is cut when sent, other texts
+  /// refused.
   enum class Text { name, maybe_empty, sentence };
   /// A text of at most N - 1 bytes of UTF-8 without control characters other than tab and line
   /// feed.
@@ -94,8 +95,8 @@ class WireIo {
 
   /// A point or vector, each coordinate within `range`.
   void point(const char* field, Vector3& m, handsel_Vector3& w, Range range = kCoordinate);
-  /// Unit vector, normalised when its norm is 1 +- 1e-3. Without `meant` the field
-  /// has no meaning: any value is accepted, and +x is sent and received.
+  /// Unit vector, normalised when its norm is 1 +- 1e-3. Without `meant` the field has no meaning:
+  /// any value is accepted, and +x is sent and received.
   void direction(const char* field, Vector3& m, handsel_Vector3& w, bool meant = true);
   /// A pose: a proper rotation when sent; a quaternion of norm 1 +- 1e-3 when received, then
   /// normalised.

@@ -23,7 +23,7 @@ struct DdsBusSettings {
   Urgency urgency{Urgency::perceive};  ///< scheduling priority where `realtime` is in force
   int cpu{-1};                         ///< pins the executor; -1: none
   bool health{true};                   ///< publishes ComponentHealth (tools do not)
-  /// Time as the simulator grants it (common/bus/paced_clock), which waits for this component
+  /// Time as the simulator grants it (common/bus/paced_clock), which waits for this component.
   bool sim_time{false};
 };
 

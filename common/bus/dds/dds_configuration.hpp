@@ -34,7 +34,7 @@ int create_participant(std::uint32_t domain, const ::dds_qos* qos);
 
 /// The transport's library: the version this program was built for, and the file it runs with.
 struct TransportLibrary {
-  /// Version at compile time ("0.10.5"); path of the shared library, or empty
+  /// Version at compile time ("0.10.5"); path of the shared library, or empty.
   std::string built_for, file;
   bool agrees{};  ///< the file's name ends with that version
 };

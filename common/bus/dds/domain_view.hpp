@@ -18,9 +18,9 @@ struct DomainParticipant {
 struct DomainEndpoint {
   bool writes{};            ///< true: a writer; false: a reader
   std::string topic, type;  ///< as the transport names them
-  /// Participant the endpoint belongs to; its fields are empty when unknown
+  /// Participant the endpoint belongs to; its fields are empty when unknown.
   DomainParticipant owner;
-  /// On a topic of the table: QoS policies that do not match the components', one sentence each
+  /// On a topic of the table: QoS policies that do not match the components', one sentence each.
   std::vector<std::string> unmatched;
 };
 
@@ -28,7 +28,7 @@ struct DomainEndpoint {
 struct DomainView {
   std::vector<DomainParticipant> participants;  ///< all discovered so far, the asking one included
   std::vector<DomainParticipant> commanders;    ///< one for each living writer of set-points
-  /// Of others than the asking one, without the transport's own
+  /// Of others than the asking one, without the transport's own.
   std::vector<DomainEndpoint> endpoints;
 };
 

@@ -15,7 +15,7 @@ struct RawSample {
   Stamp stamp{};             ///< when it was written [ns, system clock of the writer]
   std::uint64_t instance{};  ///< which value of the key, stable while the reader lives
   bool gone{};               ///< the instance has no writer any more; `cdr` is empty
-  /// The serialised sample with its encapsulation header; well-formed, values not validated
+  /// The serialised sample with its encapsulation header; well-formed, values not validated.
   std::vector<std::uint8_t> cdr;
 };
 

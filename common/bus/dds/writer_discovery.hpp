@@ -1,5 +1,5 @@
-// Follows, by the transport's discovery, who writes the topics with one writer: also writers that
-// no reader is matched with.
+// Follows, by the transport's discovery, the writers of topics with one writer, also those that no
+// reader is matched with.
 #pragma once
 
 #include <cstdint>
