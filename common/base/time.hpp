@@ -24,9 +24,9 @@ using TimePoint = MonotonicClock::time_point;
 /// Nanoseconds of the system clock (UTC), for people and logs only; 0 means unknown.
 using Stamp = std::int64_t;
 
-/// Converts to seconds.
+/// Returns the duration in seconds [s].
 constexpr double to_seconds(Duration d) { return static_cast<double>(d.count()) * 1e-9; }
-/// Rounds to the nearest nanosecond.
+/// Converts from seconds, rounded to the nearest nanosecond.
 inline Duration from_seconds(double s) { return Duration(std::llround(s * 1e9)); }
 
 }  // namespace handsel

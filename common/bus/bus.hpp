@@ -24,7 +24,7 @@ struct Receipt {
   std::uint64_t writer{};  ///< distinguishes writers (handle), stable while the writer lives
 };
 
-/// What a subscription has seen so far. Lives as long as the bus.
+/// Counters of a subscription. Lives as long as the bus.
 struct SubscriptionStatus {
   std::uint64_t received{};         ///< valid samples handed over
   std::uint64_t rejected{};         ///< malformed samples dropped
@@ -42,12 +42,12 @@ struct SubscriptionStatus {
 
   /// Returns whether no valid sample has arrived yet.
   bool never_seen() const { return received == 0; }
-  /// Age of the newest sample now: time since arrival + age at arrival. Duration::max() while
-  /// nothing was ever seen (stale).
+  /// Returns the age of the newest sample now: time since arrival + age at arrival; Duration::max()
+  /// without any sample.
   Duration age(TimePoint now) const { return never_seen() ? Duration::max() : now - last_arrival + last_age; }
 };
 
-/// How a timer has fared. Lives as long as the bus.
+/// Punctuality of a timer. Lives as long as the bus.
 struct TimerStatus {
   std::uint64_t cycles{};       ///< calls so far
   std::uint64_t late_cycles{};  ///< calls that began more than one period after they were due
@@ -76,13 +76,13 @@ class CancelToken {
   std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
-/// Publisher of any one message type; Publisher<M> is its typed face.
+/// Publisher of one message type known at run time; Publisher<M> is its typed wrapper.
 class AnyPublisher {
  public:
   virtual ~AnyPublisher() = default;
   /// As Publisher::publish(); `message` points to the domain struct of the publisher's type.
   virtual bool publish(const void* message) = 0;
-  /// Returns the number of matched readers now; 0 when the transport cannot tell.
+  /// Returns the number of matched readers now; 0 when the transport gives no answer.
   virtual int readers() const = 0;
 };
 
@@ -90,8 +90,8 @@ template <class M>
 class Publisher {
  public:
   explicit Publisher(std::unique_ptr<AnyPublisher> publisher) : publisher_(std::move(publisher)) {}
-  /// Never blocks. A zero stamp is filled with the system clock. Returns false (counted, logged
-  /// once) when the message breaks its bounds or the transport has no room.
+  /// Sends the message without blocking; a zero stamp is sent as the system clock. Returns false
+  /// (counted, logged once) when the message breaks its bounds or the transport has no room.
   bool publish(const M& message) { return publisher_->publish(&message); }
   /// Returns the number of matched readers now.
   int readers() const { return publisher_->readers(); }
@@ -112,14 +112,14 @@ class Bus {
  public:
   virtual ~Bus() = default;
 
-  /// `strength` has no effect: of a topic with one writer (has_one_writer) the first living one
-  /// counts (common/bus/writer_pin).
+  /// Creates a writer of the message's topic. `strength` has no effect: of a topic with one writer
+  /// (has_one_writer) the first living one counts (common/bus/writer_pin).
   template <class M>
   std::unique_ptr<Publisher<M>> advertise(int strength = 0) {
     return std::make_unique<Publisher<M>>(advertise_any(message_type<M>(), strength));
   }
-  /// Calls back on the executor thread with each valid sample; malformed ones are counted, logged
-  /// once per source and dropped. The message is valid during the call only.
+  /// Calls `on_sample` on the executor thread with each valid sample; malformed ones are counted,
+  /// logged once per source and dropped. The message is valid during the call only.
   template <class M>
   const SubscriptionStatus& subscribe(std::function<void(const M&, const Receipt&)> on_sample, const SubscribeOptions& options = {}) {
     return subscribe_any(
@@ -141,20 +141,20 @@ class Bus {
   /// As lag(); the smallest age when the component subscribed more than once.
   virtual Duration lag_any(const MessageType& type) const = 0;
 
-  /// Periodic on the monotonic clock, without drift; ticks that can no longer be kept are skipped
-  /// and counted. The callback gets the time it runs at.
+  /// Calls `on_tick` periodically in the component's time, without drift and with the time of the
+  /// call; ticks that can no longer be kept are skipped and counted.
   virtual const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick) = 0;
-  /// Once, after `delay`.
+  /// Calls `on_time` once, after `delay`.
   virtual void after(Duration delay, std::function<void(TimePoint)> on_time) = 0;
-  /// Long work: `work` runs off the executor (LocalBus: at once, finishing `modelled` later), then
-  /// `done` on the executor, always, cancelled or not. `work` returns the modelled compute time for
-  /// LocalBus. Jobs of a bus run one after the other.
+  /// Runs long work: `work` runs off the executor (LocalBus: at once, finishing `modelled` later),
+  /// then `done` on the executor, always, cancelled or not. `work` returns the modelled compute
+  /// time for LocalBus. Jobs of a bus run one after the other.
   virtual CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done) = 0;
   /// Returns the component's time: all ages, timers and deadlines refer to it.
   virtual TimePoint now() const = 0;
   /// Returns the system clock [ns, UTC] at now().
   virtual Stamp stamp_now() const = 0;
-  /// Shown in ComponentHealth; empty reason = ok.
+  /// Reports the component as degraded in ComponentHealth; an empty reason as ok.
   virtual void set_degraded(const std::string& reason) = 0;
   /// Adds to a count of ComponentHealth.left_out. `what` says what was left out and why, e.g.
   /// "people: farther than the nearest 16"; at most 23 such texts are distinguished, so that it

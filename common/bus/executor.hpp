@@ -22,7 +22,7 @@
 
 namespace handsel {
 
-/// Now on CLOCK_MONOTONIC.
+/// Returns the time on CLOCK_MONOTONIC.
 TimePoint monotonic_now();
 
 class Executor {
@@ -33,19 +33,20 @@ class Executor {
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  /// The callbacks' time. While a timer is served with granted time: the instant it was due at, so
-  /// that a process that gets its turn late does what it would have done in time.
+  /// Returns the callbacks' time. While a timer is served with granted time, that is the instant
+  /// the timer was due at, so that a process scheduled late computes the same as one on time.
   TimePoint now();
-  /// The time at which the monotonic clock showed `wall`, which is past.
+  /// Returns the time at which the monotonic clock showed `wall`, which is past.
   TimePoint past(TimePoint wall) { return clock_.past(wall); }
-  /// PacedClock::stale(), now.
+  /// Returns PacedClock::stale() now.
   bool stale() const { return clock_.stale(monotonic_now()); }
-  /// PacedClock::grant().
+  /// As PacedClock::grant(); at the first grant the timers move back with the time.
   bool grant(const TimeGrant& grant);
 
   /// As Bus::every(). Throws std::invalid_argument unless the period is > 0.
   const TimerStatus& every(Duration period, std::function<void(TimePoint)> on_tick);
-  /// On the monotonic clock, whatever is granted; the callback gets that clock's time.
+  /// As every(), but on the monotonic clock whatever is granted; the callback receives that clock's
+  /// time.
   void every_real(Duration period, std::function<void(TimePoint)> on_tick);
   /// As Bus::after(); a delay below 1 ns counts as 1 ns.
   void after(Duration delay, std::function<void(TimePoint)> on_time);
@@ -53,9 +54,10 @@ class Executor {
   /// and `done` not called.
   CancelToken run_job(std::function<Duration(const CancelToken&)> work, std::function<void()> done);
 
-  /// Called on the executor after wake(); set once before running.
+  /// Sets what is called on the executor after wake(); once, before running.
   void on_wake(std::function<void()> drain) { drain_ = std::move(drain); }
-  /// From any thread; wake-ups that come together are one.
+  /// Makes the executor call the function of on_wake() and finish jobs. Any thread; simultaneous
+  /// wake-ups are one.
   void wake() noexcept;
 
   /// Serves callbacks on the calling thread until stop().

@@ -58,19 +58,19 @@ class Intake {
   void forget_ages() { ages_.clear(); }
   /// Forgets the clock offset of a writer that is no longer alive.
   void writer_gone(std::uint64_t writer);
-  /// Discovery of writers, on topics with one writer only: samples of a writer that has not
-  /// appeared are refused.
+  /// Adds a discovered writer, on topics with one writer only: there, samples of other writers are
+  /// refused.
   void writer_appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now);
   /// Removes a writer that was deleted or lost its lease; another one may be accepted then.
   void writer_left(std::uint64_t writer, TimePoint now);
-  /// Whether a sample of `writer` may enter the queue of the transport; counts a refusal.
+  /// Returns whether a sample of `writer` may enter the queue of the transport; counts a refusal.
   bool admits(std::uint64_t writer, TimePoint now);
-  /// The transport has refused `count` samples of writers other than the accepted one.
+  /// Adds `count` samples that the transport has refused because another writer is accepted.
   void count_refused(std::uint64_t count) { status_.refused += count; }
   /// Accepts `writer` from now on if the rule of WriterPin lets it take the place of the accepted
   /// one.
   void contend(std::uint64_t writer, TimePoint now);
-  /// The accepted writer; 0: none, or a topic with many writers.
+  /// Returns the accepted writer; 0: none, or a topic with many writers.
   std::uint64_t pinned() const { return pin_ ? pin_->pinned() : 0; }
   /// Returns whether discovery has reported the writer; always true on a topic with many writers.
   bool knows(std::uint64_t writer) const { return !pin_ || pin_->knows(writer); }
@@ -108,8 +108,8 @@ class SecondWriters {
  public:
   /// Notes the second writer of the subscription's topic, if there is one.
   void add(const Intake& intake);
-  /// Empty: none; else "second_writer: NAME writes TOPIC, TOPIC too; its samples are refused", the
-  /// first four names.
+  /// Returns an empty text without second writers; else "second_writer: NAME writes TOPIC, TOPIC
+  /// too; its samples are refused", the first four names.
   std::string reason() const;
 
  private:

@@ -1,6 +1,6 @@
 // A whole system in one process and virtual time: same seed, same order, bit for bit. Every sample
-// passes the wire conversions, travels for a seeded delay and meets the same depths, ownership and
-// late-join rules as over DDS.
+// passes the wire conversions, travels for a seeded delay and meets the same depths (set-points: 1
+// instead of 32), ownership and late-join rules as over DDS.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ class LocalNetwork {
   LocalNetwork(const LocalNetwork&) = delete;
   LocalNetwork& operator=(const LocalNetwork&) = delete;
 
-  /// The bus of a new component; lives as long as the network. The node built on it must not be
-  /// destroyed before its last event unless the component was killed.
+  /// Returns the bus of a new component; the bus lives as long as the network. The node built on it
+  /// must not be destroyed before its last event unless the component was killed.
   Bus& add(const std::string& component);
 
   /// Returns the virtual time; it starts at zero.
@@ -56,31 +56,31 @@ class LocalNetwork {
   /// Returns all writers, then all readers, those of killed components included.
   std::vector<Endpoint> endpoints() const;
 
-  /// From now on the CPU time of these components' callbacks and jobs is counted. It enters nothing
-  /// that is computed here.
+  /// Counts the CPU time of these components' callbacks and jobs from now on; results do not depend
+  /// on it.
   void meter(const std::set<std::string>& components);
   /// Returns the CPU time counted so far [s]. Throws std::invalid_argument without such a living
   /// component.
   double cpu(const std::string& component) const;
-  /// From now on every value that is sent, and when, goes into one number: equal numbers, equal
+  /// Hashes every value sent from now on, with its time, into output_hash(): equal numbers, equal
   /// runs.
   void hash_outputs();
   /// Returns that number; without hash_outputs() a constant.
   std::uint64_t output_hash() const;
-  /// From now on calls with every sample that is sent, in its IDL struct, and when. What it does
-  /// enters nothing that is computed here.
+  /// Calls `on_sample` with every sample sent from now on, in its IDL struct, and its time; results
+  /// must not depend on that call.
   void tap(std::function<void(const MessageType&, const void* wire, Stamp sent)> on_sample);
 
-  /// As kill -9: no callback of it runs any more, nothing of it is sent, its readers notice after
-  /// the lease.
+  /// Ends a component as kill -9 does: none of its callbacks runs any more, nothing of it is sent,
+  /// its readers notice after the lease.
   void kill(const std::string& component);
-  /// As SIGSTOP and SIGCONT: while paused nothing of it runs; samples wait for it within the depth
-  /// of their topic.
+  /// Stops a component as SIGSTOP does: while paused nothing of it runs; samples wait for it within
+  /// the depth of their topic.
   void pause(const std::string& component);
   /// Runs a paused component again: what waited is handled now. Throws std::invalid_argument
   /// without such a living component.
   void resume(const std::string& component);
-  /// Cuts all its traffic both ways; it runs on.
+  /// Cuts (or restores) all traffic of a component in both directions; the component keeps running.
   void isolate(const std::string& component, bool cut);
 
   struct Impl;

@@ -12,7 +12,7 @@
 
 namespace handsel {
 
-/// Gives the model of an object by its name, or nullptr.
+/// Returns the model of an object by its name, or nullptr.
 using ObjectLibrary = std::function<const ObjectModel*(const std::string&)>;
 
 struct NodeContext {
@@ -30,8 +30,8 @@ struct NodeContext {
 /// Reads every objects/*/*.txtpb under the resource root. Throws ConfigError naming the file.
 ObjectLibrary load_object_library();
 
-/// Names or paths as on the command line; empty `settings` means resource_root()/config. Throws
-/// ConfigError / MissingError.
+/// Returns the inputs of a node from names or paths as on the command line; empty `settings` means
+/// resource_root()/config. Throws ConfigError / MissingError.
 NodeContext load_context(const std::string& robot, const std::string& scenario = {}, const std::filesystem::path& settings = {},
                          std::uint64_t seed = 1);
 

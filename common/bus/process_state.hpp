@@ -5,7 +5,7 @@
 
 namespace handsel {
 
-/// The letter of /proc/PID/stat (proc(5)); 'X' when there is no such process.
+/// Returns the state letter of /proc/PID/stat (proc(5)); 'X' when there is no such process.
 char process_state(pid_t pid);
 
 }  // namespace handsel

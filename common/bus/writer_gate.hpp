@@ -17,7 +17,7 @@ class WriterGate {
   /// Sets the filter of a topic entity that no reader uses yet. `on_refusal` is called on a thread
   /// of the transport, at most every 5 ms, so that the executor calls hear().
   void filter(dds_entity_t topic, std::function<void()> on_refusal);
-  /// From now on only samples of `writer` pass; 0: all.
+  /// Lets only samples of `writer` pass from now on; 0: all.
   void open_for(std::uint64_t writer) { pinned_.store(writer, std::memory_order_release); }
   /// Reports the refusals since the last call to the intake, which may accept the refused writer
   /// from now on. On the executor.

@@ -21,8 +21,8 @@ struct WriterIdentity {
   std::function<bool()> ended;
 };
 
-/// Whether a participant with this entity name may write the topic: one of its words is in the
-/// row's column `writers`.
+/// Returns whether a participant with this entity name may write the topic: one of its words is in
+/// the row's column `writers`.
 bool may_write(const TopicRow& row, const std::string& components);
 
 /// Pins the first eligible writer of a topic and keeps the pin while that writer lives, also while
@@ -35,21 +35,21 @@ class WriterPin {
  public:
   explicit WriterPin(const TopicRow& row) : row_(row) {}
 
-  /// A writer of the topic was discovered.
+  /// Adds a discovered writer of the topic, at most 64; a first eligible one is pinned at once.
   void appeared(std::uint64_t writer, WriterIdentity identity, TimePoint now);
-  /// A writer was deleted, or its participant lost its lease.
+  /// Removes a writer that was deleted or whose participant lost its lease; the pin moves on.
   void left(std::uint64_t writer, TimePoint now);
   /// Returns whether the writer has appeared and not left.
   bool knows(std::uint64_t writer) const { return known_.contains(writer); }
-  /// Whether a sample of `writer` is accepted. Samples of writers that have not appeared are
-  /// refused.
+  /// Returns whether a sample of `writer` is accepted, and moves the pin where the rule permits.
+  /// Samples of writers that have not appeared are refused.
   bool accepts(std::uint64_t writer, TimePoint arrival);
   /// Notices writers whose process has ended before discovery reports them as gone. Called at the
   /// rate of health.
   void watch(TimePoint now);
-  std::uint64_t pinned() const { return pinned_; }  ///< 0: none
-  /// Name of a living writer beside the pinned one, with the count of further ones; empty: there is
-  /// none.
+  std::uint64_t pinned() const { return pinned_; }  ///< handle of the accepted writer; 0: none
+  /// Returns the name of a living writer beside the pinned one, with the count of further ones;
+  /// empty: there is none.
   const std::string& second_writer() const { return second_; }
 
  private:

@@ -79,7 +79,7 @@ inline constexpr const char* kActionFailureNames[] = {
     "not_visible", "not_taken", "cancelled"};
 // clang-format on
 
-/// Returns the phase in words; one that waits for a person says "somebody".
+/// Returns the phase in words; a phase that waits for a person contains "somebody".
 std::string text_of(ActionPhase phase);
 /// Returns the phase in words, with the person it waits for.
 std::string phase_text(const ActionStatus& action);

@@ -5,10 +5,10 @@
 
 namespace handsel {
 
-/// Eight hexadecimal digits over every topic's name, type and QoS profile: processes that differ in
-/// it do not understand each other.
+/// Returns eight hexadecimal digits over every topic's name, type and QoS profile: processes that
+/// differ in it do not understand each other.
 std::string interface_id();
-/// "handsel 0.1.0, interface 01234567".
+/// Returns e.g. "handsel 0.1.0, interface 01234567".
 std::string version_text();
 
 }  // namespace handsel

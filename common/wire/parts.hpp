@@ -32,7 +32,7 @@ void describe(WireIo& io, Person& m, handsel_Person& w);
 /// Describes the field `allowed_contacts`: at most 32 names, none empty.
 inline void describe_contacts(WireIo& io, std::vector<std::string>& m, dds_sequence_string64& w) { io.texts("allowed_contacts", m, w, 32); }
 
-/// One point of a path: a struct of its own on the wire, a vector in the domain.
+/// Describes one point of a path: a struct of its own on the wire, a vector in the domain.
 void describe(WireIo& io, Vector& m, handsel_AxisPoint& w);
 
 /// Returns whether all points have the same number of axes; true for none.
@@ -42,7 +42,7 @@ inline bool equally_wide(const std::vector<Vector>& points) {
   return true;
 }
 
-/// Binds a description to the untyped face the bus uses. W has a field `stamp`.
+/// Binds a description to the untyped interface the bus uses. W has a field `stamp`.
 template <class M, class W>
 class DescribedType final : public MessageType {
  public:

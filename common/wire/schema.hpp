@@ -9,15 +9,15 @@
 
 namespace handsel {
 
-/// The files of idl/, compiled in: name ("robot.idl") and text.
+/// Returns the files of idl/, compiled in: name ("robot.idl") and text.
 std::map<std::string, std::string_view> idl_files();
 
-/// One self-contained IDL text that defines the row's struct in module handsel: what its file
-/// includes stands in it, once, before its use; no line of a preprocessor is left. Throws
+/// Returns one self-contained IDL text that defines the row's struct in module handsel: what its
+/// file includes stands in it, once, before its use; no line of a preprocessor is left. Throws
 /// std::logic_error when no file defines the struct.
 std::string idl_schema(const TopicRow& row);
 
-/// The type's name in a schema: "handsel::RobotState".
+/// Returns the type's name in a schema: "handsel::RobotState".
 inline std::string idl_name(const TopicRow& row) { return std::string("handsel::") + row.type; }
 
 }  // namespace handsel

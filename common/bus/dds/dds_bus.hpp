@@ -41,8 +41,8 @@ class DdsBus : public Bus, public RawBus {
   /// Ends run() and run_until() after the callbacks that are under way. Any thread, or a signal
   /// handler.
   void stop() noexcept;
-  /// Cancels every job and waits for the running one, so that the node may be destroyed; false if
-  /// it is still at work after `limit`.
+  /// Cancels every job and waits for the running one, so that the node may be destroyed; returns
+  /// false if that one is still at work after `limit`.
   bool end_jobs(Duration limit);
   /// Runs callbacks until `done` holds (asked after each wake-up) or the time is over; true if it
   /// held.

@@ -22,8 +22,8 @@ struct DdsConfiguration {
   std::optional<std::uint64_t> max_sample_size;  ///< [bytes]; nullopt: no bound worth the name
 };
 
-/// What holds for `domain` under `uri`: a comma-separated list of file URIs, paths and inline XML,
-/// later ones win. Never throws.
+/// Returns the configuration of `domain` under `uri`: a comma-separated list of file URIs, paths
+/// and inline XML, later ones win. Never throws.
 DdsConfiguration read_dds_configuration(const std::string& uri, std::uint32_t domain);
 
 /// Creates a participant in a domain and returns the transport's handle, below 0 for an error of
@@ -41,8 +41,8 @@ struct TransportLibrary {
 /// Returns the version this program was compiled for and the library it has loaded.
 TransportLibrary transport_library();
 
-/// First of the two UDP ports of participant `index` in `domain` (DDSI-RTPS 9.6.1.1); the other is
-/// one above.
+/// Returns the first of the two UDP ports of participant `index` in `domain` (DDSI-RTPS 9.6.1.1);
+/// the other is one above.
 constexpr int participant_port(std::uint32_t domain, int index) { return 7400 + 250 * static_cast<int>(domain) + 10 + 2 * index; }
 
 }  // namespace handsel

@@ -7,7 +7,7 @@
 
 namespace handsel {
 
-/// $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number from 0 to 230.
+/// Returns $HANDSEL_DOMAIN, else 0. Throws ConfigError when it is no number from 0 to 230.
 int default_domain();
 
 /// Sets CYCLONEDDS_URI when the environment has none. Without $HANDSEL_PEERS: loopback.xml of
