@@ -1,5 +1,6 @@
-// Recordings in the MCAP container, version 0 (mcap.dev/spec): messages in chunks with their indexes, so that Lichtblick, Foxglove and the
-// `mcap` tools open them. Uncompressed. The container only: what a message means is said by its channel's schema.
+// Recordings in the MCAP container, version 0 (mcap.dev/spec): messages in chunks with their
+// indexes, so that Lichtblick, Foxglove and the `mcap` tools open them. Uncompressed. The container
+// only: what a message means is defined by its channel's schema.
 #pragma once
 
 #include <cstdint>
@@ -21,15 +22,16 @@ struct Channel {
 };
 
 struct Message {
-  std::uint16_t channel{};  ///< place in the list of channels
-  std::int64_t time{};      ///< when it was written [ns, system clock], >= 0
-  std::vector<std::uint8_t> data;
+  std::uint16_t channel{};         ///< index in the list of channels
+  std::int64_t time{};             ///< when it was written [ns, system clock], >= 0
+  std::vector<std::uint8_t> data;  ///< serialised sample, in the encoding of its channel
 };
 
 using Metadata = std::map<std::string, std::string>;
 
-/// Writes one file. What flush() has returned for is readable whatever happens to the process; close() adds what makes a reader find
-/// its way without reading everything.
+/// Writes one file. Messages for which flush() has returned are readable whatever happens to the
+/// process; close() adds the summary, with which a reader finds data without reading the whole
+/// file.
 class Writer {
  public:
   /// Throws ConfigError when the file is there already or cannot be written.
@@ -38,12 +40,15 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Throws ConfigError when the disk refuses, std::logic_error for a channel that was not announced.
+  /// Throws ConfigError when the disk refuses, std::logic_error for a channel that was not
+  /// announced.
   void write(const Message& message);
   /// Ends the chunk and hands it to the system. Throws ConfigError when the disk refuses.
   void flush();
   void close();  ///< as flush()
+  /// Returns the number of messages written, those of the open chunk included.
   std::uint64_t messages() const { return messages_; }
+  /// Returns the size of the file so far [bytes], without the open chunk.
   std::uint64_t bytes() const { return written_; }
 
  private:
@@ -53,10 +58,12 @@ class Writer {
   std::filesystem::path file_;
   std::ofstream out_;
   std::uint64_t written_{}, messages_{};
-  std::string announced_;  // the records of schemas and channels, which stand in front and in the summary
+  // records of schemas and channels, at the begin of the file and in its summary
+  std::string announced_;
   std::string metadata_index_;
-  std::string chunk_;                                                                    // records of the chunk that is being filled
-  std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;  // of the chunk: time and offset
+  std::string chunk_;  // records of the chunk that is being filled
+  // of the chunk: time and offset
+  std::map<std::uint16_t, std::vector<std::pair<std::uint64_t, std::uint64_t>>> index_;
   std::vector<ChunkPlace> chunks_;
   std::vector<std::uint64_t> counts_;
   std::vector<std::uint32_t> sequences_;
@@ -67,16 +74,19 @@ class Writer {
 /// Reads one file from its begin to its end, and what was written before a sudden end.
 class Reader {
  public:
-  /// Throws MissingError when there is no such file, ConfigError naming file and place when it is no MCAP file.
+  /// Throws MissingError when there is no such file, ConfigError naming file and place when it is
+  /// no MCAP file.
   explicit Reader(const std::filesystem::path& file);
 
-  /// The next message, by their time within a chunk; false at the end. Throws ConfigError naming file and place for what is damaged,
-  /// compressed or of an unknown channel.
+  /// Reads the next message, in order of time within a chunk; false at the end. Throws ConfigError
+  /// naming file and position for data that are damaged, compressed or of an unknown channel.
   bool next(Message& out);
   /// Channels by their number in the file, of those read so far.
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
+  /// Returns the metadata read so far; complete after construction for files of Writer.
   const Metadata& metadata() const { return metadata_; }
-  bool cut() const { return cut_; }  ///< after the end: the file ends within a record, or without its closing one
+  /// After the end: the file ends within a record, or without its closing one.
+  bool cut() const { return cut_; }
 
  private:
   struct Record;

@@ -29,6 +29,7 @@ enum class Op : std::uint8_t {
   data_end = 0x0f,
 };
 
+/// Appends the bytes of a number, little-endian.
 template <class Number>
 void append(std::string& out, Number value) {
   char bytes[sizeof value];
@@ -42,6 +43,7 @@ inline void append_text(std::string& out, std::string_view text) {
   out.append(text);
 }
 
+/// Appends a record: opcode, length of the content as 64-bit number, content.
 inline void append_record(std::string& out, Op op, std::string_view content) {
   append(out, op);
   append(out, static_cast<std::uint64_t>(content.size()));

@@ -1,5 +1,6 @@
-// The robot's side of the set-points: drive modes, the check of every set-point, the watch over their pace, the soft stop. In the simulator
-// it is the robot's own controller; in front of a real one (deploy/drivers) it stands between the wire and the maker's controller. Pure.
+// The robot's side of the set-points: drive modes, the check of every set-point, the watch over
+// their timing, the jerk-limited stop. In the simulator it is the robot's own controller; in front
+// of a real robot (deploy/drivers) it stands between the wire and the maker's controller. Pure.
 #pragma once
 
 #include <string>
@@ -14,53 +15,78 @@
 namespace handsel {
 
 struct RobotSideSettings {
-  double period{0.0};             ///< of the controller's set-points [s]; 0: set-points are not checked (tests of the physics alone)
-  double max_gap{0.020};          ///< without set-points for this long while enabled: soft stop [s]
-  double resume_tolerance{0.02};  ///< set-points this near the held or measured posture, at rest, are followed again after a stop [rad]
-  double resume_hand{0.3};        ///< instead, of the fingers, which what they hold bends and a person may move [rad; at `hand_lever` m]
-  double hand_lever{0.05};        ///< of a finger that slides [m]
-  double max_ahead{0.020};        ///< a set-point may come this much earlier than its time [s]
-  int resume_count{10};           ///< that many of them in a row
-  double min_stop{0.5};           ///< shortest time of a protective stop [s]
-  double max_missing{0.1};        ///< longest time that missing set-points may stand for [s]: a stalled reader's own clock may stand still
+  /// Of the controller's set-points [s]; 0: set-points are not checked (tests of the physics
+  /// alone).
+  double period{0.0};
+  double max_gap{0.020};  ///< without set-points for this long while enabled: jerk-limited stop [s]
+  /// Set-points at rest and this near the held or measured configuration are followed again after a
+  /// stop [rad].
+  double resume_tolerance{0.02};
+  /// The same for finger axes, which a held object deflects and a person may move [rad; at
+  /// `hand_lever` m].
+  double resume_hand{0.3};
+  double hand_lever{0.05};  ///< of a finger that slides [m]
+  double max_ahead{0.020};  ///< a set-point may come this much earlier than its time [s]
+  int resume_count{10};     ///< that many of them in a row
+  double min_stop{0.5};     ///< shortest time of a protective stop [s]
+  /// Longest time that missing set-points may cover [s]: the clock of a stalled reader may stop.
+  double max_missing{0.1};
 };
 
-/// Starts enabled, holding `start`; the watch begins with the first set-point. Every set-point is checked against the guard limits of the
-/// robot description, whoever sent it; when one fails, the reference stops softly and refusal() says why. When set-points stay away the
-/// drives stay enabled: the reference stops softly, too. It follows again by itself once set-points rest near the reference or near the
-/// measured posture: it moves to them first, without a jump. A protective stop, and brakes, end by themselves under the same
-/// condition; the permission to move is another matter, and after a protective stop a person's. A user stop ends by enable().
+/// Starts enabled, holding `start`; the watch begins with the first set-point. Every set-point is
+/// checked against the guard limits of the robot description, whatever its source; when one fails,
+/// the reference makes a jerk-limited stop and refusal() gives the reason. When set-points stay
+/// away the drives stay enabled: the reference makes a jerk-limited stop, too. It follows again by
+/// itself once set-points rest near the reference or near the measured configuration: it moves to
+/// them first, without a jump. A protective stop, and brakes, end by themselves under the same
+/// condition; the permission to move is another matter, and after a protective stop a person's. A
+/// user stop ends by enable().
 class RobotSide {
  public:
   RobotSide(const RobotModel&, const Vector& start, const RobotSideSettings&);
 
-  /// A set-point is there. False when it is not followed: wrong dimension, not enabled, not continuing from the held posture, refused.
-  /// `arrival`: when it arrived, by a clock that never stands still [s].
+  /// Processes a set-point. Returns false when it is not followed: wrong dimension, not enabled,
+  /// not continuous with the held configuration, or refused. `now`: time [s]; `arrival`: time of
+  /// arrival, by a clock that never stops [s].
   bool command(const JointCommand&, double now, double arrival);
+  /// The same with one clock for both times.
   bool command(const JointCommand& set_point, double now) { return command(set_point, now, now); }
-  /// Where the robot was measured, all axes.
+  /// Sets the measured configuration, all axes [rad] ([m]).
   void measured(const Vector& position) { measured_ = position; }
+  /// Makes a jerk-limited stop and enters mode user_stop, which enable() ends.
   void user_stop() { stop(DriveMode::user_stop); }
-  /// Softly, from whatever the reference does now; stays in `mode`.
+  /// Enters `mode`; when enabled before, with a jerk-limited stop from the present state of the
+  /// reference.
   void stop(DriveMode mode);
-  /// The reference is where the robot stands, at rest (brakes, stops of the maker's own); stays in `mode`.
+  /// Sets the reference to `position`, at rest (brakes, stops of the maker's own), and enters
+  /// `mode`.
   void hold(const Vector& position, DriveMode mode);
+  /// Enters mode enabled, clears refusal() and follows set-points again, the first at the
+  /// reference.
   void enable();
   /// Advances the reference the servos follow to `now`.
   void step(double now, double dt);
 
+  /// Reference of the servos, all axes [rad] ([m]).
   const Vector& position() const { return position_; }
-  const Vector& velocity() const { return velocity_; }
+  const Vector& velocity() const { return velocity_; }  ///< of the reference [rad/s] ([m/s])
+  /// Of the reference [rad/s^2] ([m/s^2]).
   const Vector& acceleration() const { return acceleration_; }
-  const Vector& effort() const { return effort_; }  ///< kept through a stop: what is held stays held
-  /// Mass told to be in the hand, hands as common/model/manipulator has them [kg].
+  /// Feed-forward [Nm] ([N]); kept through a stop, so that an object stays held.
+  const Vector& effort() const { return effort_; }
+  /// Returns the commanded payload of a hand, numbered as in common/model/manipulator [kg]; 0 when
+  /// unknown.
   double payload(std::size_t hand = 0) const;
   /// Writes what the servos follow or hold.
   void report(ServoReference& out) const;
+  /// Returns the mode entered last; enabled at the start.
   DriveMode mode() const { return mode_; }
+  /// Returns true once a stop has ended: the reference holds, or joins resting set-points.
   bool stopped() const { return reference_ == Reference::stands; }
-  bool follows() const { return reference_ == Reference::follows; }  ///< set-points, or would when they come
-  /// Why it does not follow though the drives are enabled, one sentence; else empty.
+  /// Returns true when set-points are followed, or would be if they came.
+  bool follows() const { return reference_ == Reference::follows; }
+  /// Returns in one sentence why set-points are not followed though the drives are enabled; else
+  /// empty.
   const std::string& refusal() const { return refusal_; }
   std::uint64_t refused() const { return refused_; }  ///< set-points refused while it followed
 
@@ -86,8 +112,8 @@ class RobotSide {
   std::string refusal_;
   Vector position_, velocity_, acceleration_, effort_, measured_;
   std::vector<SoftStop> stops_;
-  std::vector<SetpointFilter> joins_;  // from where it stands to set-points that rest near there
-  Vector joined_;                      // the posture of those set-points
+  std::vector<SetpointFilter> joins_;  // from the held reference to set-points that rest near it
+  Vector joined_;                      // configuration of those set-points
   bool seen_{false}, fresh_{false};
   double last_{0}, payload_{0};
   double in_mode_{0};  // since mode_ was entered [s]

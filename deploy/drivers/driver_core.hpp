@@ -1,6 +1,8 @@
-// What every driver does between the wire and its maker's controller: watches the set-points, refuses those the arm cannot follow, carries
-// them over from the wire's clock to the maker's, stops softly when they fail, takes them up again without a jump, waits for a person after
-// a stop of the maker's own, reports the robot's state. Pure: the maker's side is called by the driver. Ours.
+// What every driver does between the wire and its maker's controller: checks the set-points,
+// refuses those the arm cannot follow, converts them from the wire's clock to the maker's, makes a
+// jerk-limited stop when they fail, resumes following without a jump, waits for a person after a
+// stop of the maker's own, reports the robot's state. Pure: the maker's side is called by the
+// driver. Own method: built on common/robot_side, as the simulator is.
 #pragma once
 
 #include <string>
@@ -14,51 +16,65 @@
 namespace handsel::drivers {
 
 struct DriverSettings {
-  bool dry_run{false};                  ///< everything but the output: nothing is sent to the arm, the posture it would have is reported
-  double fade_share{0.1};               ///< share of the guard limits with which a jump between set-points and reference fades
-  Pose T_world_base{Pose::Identity()};  ///< where the robot stands
-  RobotSideSettings watch;
+  /// Everything but the output: nothing is sent to the arm; the configuration it would have is
+  /// reported.
+  bool dry_run{false};
+  /// Fraction of the guard limits with which a jump between set-points and reference fades.
+  double fade_share{0.1};
+  Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
+  RobotSideSettings watch;              ///< limits of the check of the set-points
 };
 
 /// What the maker's controller measured in a cycle; all axes of the robot description.
 struct Measured {
+  /// [rad, rad/s, Nm, Nm] (sliding axes: m, m/s, N).
   Vector position, velocity, effort, external_torque;
-  Wrench wrist_wrench;
-  double payload{};                ///< [kg]
+  Wrench wrist_wrench;             ///< on the hand with its load, tool frame [N, Nm]
+  double payload{};                ///< mass in the hand [kg]
   DriveMode mode{DriveMode::off};  ///< enabled: it would follow references
   std::string why;                 ///< one sentence, when it would not
-  bool by_person{};                ///< what stopped it ends with a person's acknowledgement only, once the arm has been commanded
+  /// The cause of the stop needs a person's acknowledgement once the arm has been commanded.
+  bool by_person{};
 };
 
 class DriverCore {
  public:
-  /// `arm_axes`: robot axes that the maker's references move. The rest (gripper, head) are the driver's own business: here they are
-  /// reported where they are told to be.
+  /// `arm_axes`: robot axes that the maker's references move. The others (gripper, head) are the
+  /// driver's own business: here they are reported at their commanded positions.
   DriverCore(const RobotModel& model, std::vector<int> arm_axes, const DriverSettings& settings);
 
   /// A set-point from the wire. False when it is not followed. `now`: monotonic [s].
   bool command(const JointCommand& command, double now);
-  /// Once a maker's cycle of `dt` [s], before reference(). Any mode but enabled holds where the robot stands.
+  /// Once a maker's cycle of `dt` [s], before reference(). Any mode but enabled holds where the
+  /// robot stands.
   void update(const Measured& measured, double now, double dt);
-  /// The maker's controller follows no references though it says nothing of a stop: holds until set-points stand at the posture again.
+  /// Holds until set-points rest at the measured configuration again: for a maker's controller that
+  /// follows no references though it reports no stop. `why`: one sentence.
   void hold(const std::string& why);
-  /// The maker's controller begins to follow, from `position` (all axes): the references start there, and what they are off fades.
+  /// Starts the references at `position` (all axes), from which the maker's controller begins to
+  /// follow; their difference from the set-points fades.
   void start_from(const Vector& position) noexcept;
-  /// A stop of the driver's own, soft.
+  /// Makes a jerk-limited protective stop of the driver's own.
   void stop(const std::string& why);
-  /// A person has looked and lets the robot go on. Counts only once the cause is gone.
+  /// Records a person's acknowledgement, after which set-points are followed again. Counts only
+  /// once the cause of the stop is gone.
   void acknowledge();
 
   const Vector& reference() const { return reference_; }  ///< all axes, for this cycle
+  /// Returns true when the maker's controller has reported and set-points are followed.
   bool following() const { return side_known_ && side_.mode() == DriveMode::enabled && side_.follows(); }
+  /// Returns true from a stop that needs a person until acknowledge().
   bool waits_for_person() const { return waits_for_person_; }
   /// For the wire. `commanding`: the maker's controller follows references right now.
   RobotState state(bool commanding) const;
   /// Why the robot does not follow, one sentence; empty while it does.
   std::string trouble() const;
-  std::uint64_t refused() const { return side_.refused(); }  ///< set-points not followed though the robot could move
-  const DriverSettings& settings() const { return settings_; }
+  /// Set-points not followed though the robot could move.
+  std::uint64_t refused() const { return side_.refused(); }
+  const DriverSettings& settings() const { return settings_; }  ///< as given to the constructor
+  /// As given to the constructor; must outlive this object.
   const RobotModel& model() const { return model_; }
+  /// Robot axes in the order of the arm's controller.
   const std::vector<int>& arm_axes() const { return arm_axes_; }
 
  private:
@@ -72,7 +88,7 @@ class DriverCore {
   Measured measured_;
   bool side_known_{}, has_followed_{}, waits_for_person_{};
   Vector reference_;
-  MotionState3 told_;                   // set-points as they were a cycle ago
+  MotionState3 told_;                   // set-points of the cycle before
   std::vector<SetpointFilter> fading_;  // reference minus set-points
   mutable std::uint64_t sequence_{};
   std::string why_{"no set-points yet"};
@@ -93,13 +109,16 @@ class CycleCount {
 class Driver {
  public:
   virtual ~Driver() = default;
-  /// A set-point from the wire. False when it is not followed. What the hand holds is told on to the arm's controller.
+  /// Processes a set-point from the wire; false when it is not followed. A changed payload is
+  /// passed on to the arm's controller. `now`: monotonic [s].
   bool command(const JointCommand& command, double now);
-  virtual void cycle(double now) = 0;  ///< once a maker's cycle, or once the time for one has passed without it
-  virtual void acknowledge() = 0;      ///< a person has looked
-  virtual RobotState state() const = 0;
-  virtual std::string trouble() const = 0;  ///< why the robot does not follow, one sentence; empty while it does
-  virtual const DriverCore& core() const = 0;
+  /// Once a maker's cycle, or once the time for one has passed without it.
+  virtual void cycle(double now) = 0;
+  virtual void acknowledge() = 0;        ///< a person has acknowledged the stop
+  virtual RobotState state() const = 0;  ///< newest state of the robot, for the wire
+  /// Why the robot does not follow, one sentence; empty while it does.
+  virtual std::string trouble() const = 0;
+  virtual const DriverCore& core() const = 0;  ///< the part that all drivers share
 
  protected:
   virtual bool follow(const JointCommand& command, double now) = 0;
@@ -109,8 +128,9 @@ class Driver {
   double load_{};
 };
 
-/// `values` of the arm's own order into the robot's, and back.
+/// Writes `values`, in the order of `axes`, to these axes of `robot`.
 void scatter(const Vector& values, const std::vector<int>& axes, Vector& robot);
+/// Returns the values of `axes` from `robot`, in the order of `axes`.
 Vector gather(const Vector& robot, const std::vector<int>& axes);
 
 }  // namespace handsel::drivers

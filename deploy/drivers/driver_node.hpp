@@ -1,4 +1,5 @@
-// Binds a driver to a bus: set-points and permissions in; the robot's state out. The arm's cycles run on a thread of their own.
+// Binds a driver to a bus: set-points and permissions in; the robot's state out. The arm's cycles
+// run on a thread of their own.
 #pragma once
 
 #include <atomic>

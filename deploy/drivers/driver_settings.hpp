@@ -8,8 +8,8 @@
 namespace handsel::drivers {
 
 struct PositionSettings {
-  DriverSettings common;
-  double cycle{0.005};  ///< of the arm's controller [s]
+  DriverSettings common;  ///< settings that every driver has
+  double cycle{0.005};    ///< of the arm's controller [s]
 };
 
 struct Place {
@@ -17,9 +17,11 @@ struct Place {
   std::vector<int> axes;  ///< robot axes in the order of the arm's controller
 };
 
-/// Reads <folder>/position_arm.txtpb or reflex_arm.txtpb, and the period of the set-points from <folder>/trajectory_controller.txtpb.
-/// Throws ConfigError naming file and field.
+/// Reads <folder>/position_arm.txtpb, and the period of the set-points from
+/// <folder>/trajectory_controller.txtpb. Returns port and arm axes. Throws ConfigError naming file
+/// and field.
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, PositionSettings& out);
+/// The same for reflex_arm.txtpb.
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, ReflexSettings& out);
 
 }  // namespace handsel::drivers

@@ -1,5 +1,6 @@
-// What the drivers and the fakes of their makers' controllers say to each other: one datagram each way a cycle, on this machine. A real arm
-// has its maker's library in this place. Ours.
+// The messages between the drivers and the fakes of their makers' controllers: one datagram in each
+// direction a cycle, on this machine. A real arm has its maker's library in this place. Own
+// protocol: the fakes run without a maker's library.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace handsel::drivers {
 
-/// What a driver tells its maker's controller. The values of each kind stand behind it.
+/// Commands of a driver to its maker's controller, with the values that follow each kind.
 enum class OrderKind : std::uint8_t {
   position,            ///< [rad] for this cycle, arm axes
   request_commanding,  ///< none
@@ -23,20 +24,27 @@ enum class OrderKind : std::uint8_t {
 };
 
 struct Order {
-  OrderKind kind{};
-  std::uint64_t cycle{};  ///< the state it answers: a position that comes after its cycle is not heard
-  Vector values;
+  OrderKind kind{};  ///< decides the number and the units of `values`
+  /// Of the state it answers: a position that comes after its cycle is ignored.
+  std::uint64_t cycle{};
+  Vector values;  ///< as listed at OrderKind; at most 32
 };
 
+/// Returns the datagram of a state; the byte order is the machine's.
 std::string encode(const CyclicState& state);
+/// Returns the datagram of a state; its error text is cut to 200 bytes.
 std::string encode(const ReflexState& state);
+/// Returns the datagram of a command.
 std::string encode(const Order& order);
-/// False when the datagram is malformed: another kind, cut, too long, not finite. `out` is then left in any state.
+/// Returns false when the datagram is malformed: another kind, cut, too long, not finite, vectors
+/// of unequal lengths. `out` is then left in any state.
 bool decode(std::string_view datagram, CyclicState& out);
+/// Returns false when the datagram is malformed, as above.
 bool decode(std::string_view datagram, ReflexState& out);
+/// Returns false also for a number of values that the kind does not have.
 bool decode(std::string_view datagram, Order& out);
 
-/// A UDP port of this machine; answers go to whoever spoke last.
+/// A UDP port on the loopback interface; answers go to the sender of the newest datagram.
 class UdpPort {
  public:
   /// 0: any free one. Throws MissingError when it is taken.
@@ -45,17 +53,20 @@ class UdpPort {
   UdpPort(const UdpPort&) = delete;
   UdpPort& operator=(const UdpPort&) = delete;
 
+  /// Returns the number of the bound port.
   int port() const;
   /// Until something came; false after `at_most`.
   bool wait(Duration at_most) const;
   /// Never blocks; false when nothing waits.
   bool receive(std::string& datagram);
+  /// Sends to the sender of the newest datagram; does nothing before the first.
   void answer(const std::string& datagram) const;
+  /// Sends to a port of this machine; a lost datagram is not reported.
   void send_to(int port, const std::string& datagram) const;
 
  private:
   int socket_{-1};
-  std::uint16_t peer_{};  // port, network order; 0: nobody has spoken
+  std::uint16_t peer_{};  // port, network order; 0: nothing received yet
 };
 
 class UdpCyclicLink : public CyclicLink {

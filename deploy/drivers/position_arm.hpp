@@ -1,5 +1,6 @@
-// Driver of a position-controlled arm whose controller sends its state every cycle and must be answered within it by a joint position
-// (the way of KUKA's fast research interface). Ours; the maker's library goes behind CyclicLink. Pure.
+// Driver of a position-controlled arm whose controller sends its state every cycle and must be
+// answered within it by a joint position (as in KUKA's fast research interface). Own method: the
+// maker's library, which goes behind CyclicLink, is not part of this code. Pure.
 #pragma once
 
 #include "deploy/drivers/driver_core.hpp"
@@ -12,12 +13,13 @@ enum class Safety : std::uint8_t { clear, user_stop, emergency_stop };
 
 /// What the arm's controller sends at the beginning of a cycle; arm axes only.
 struct CyclicState {
-  std::uint64_t cycle{};  ///< counts the arm's cycles: what did not come is seen in it
-  Session session{Session::idle};
-  Safety safety{Safety::clear};
-  bool drives_on{}, brakes_open{};
+  std::uint64_t cycle{};  ///< number of the arm's cycle: a gap shows missed states
+  Session session{Session::idle};  ///< what commands the controller accepts
+  Safety safety{Safety::clear};  ///< stop that is in force; clear: none
+  bool drives_on{}, brakes_open{};  ///< motion needs both
   Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm]
-  Vector interpolated;                                 ///< where its own interpolator stands: what must be answered in commanding_wait
+  /// Position of its own interpolator [rad]: the required answer in commanding_wait.
+  Vector interpolated;
 };
 
 /// The maker's side. To be filled in for a real arm.
@@ -26,14 +28,17 @@ class CyclicLink {
   virtual ~CyclicLink() = default;
   /// The newest message of the arm's controller; false when this cycle's did not come.
   virtual bool receive(CyclicState& out) = 0;
+  /// Sends the position of this cycle, arm axes [rad].
   virtual void answer(const Vector& position) = 0;
+  /// Requests commanding_wait; valid in monitoring_ready.
   virtual void request_commanding() = 0;
   virtual void set_load(double mass) = 0;  ///< [kg]
 };
 
 class PositionArm : public Driver {
  public:
-  /// `cycle` of the arm's controller [s]; `arm_axes`: robot axes in the order of the arm's controller.
+  /// `cycle` of the arm's controller [s]; `arm_axes`: robot axes in the order of the arm's
+  /// controller.
   PositionArm(const RobotModel& model, std::vector<int> arm_axes, double cycle, CyclicLink& link, const DriverSettings& settings);
 
   void cycle(double now) override;

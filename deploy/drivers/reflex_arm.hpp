@@ -1,6 +1,7 @@
-// Driver of an arm at 1 kHz that reacts to contact and to violated limits by a reflex and must then be recovered, whose velocity limits
-// shrink toward the ends of its joints, and which carries a parallel gripper commanded by width and force (the way of Franka's arms).
-// Ours; the maker's library goes behind ReflexLink. Pure.
+// Driver of an arm at 1 kHz that reacts to contact and to violated limits by a reflex and must then
+// be recovered, whose velocity limits shrink toward the ends of its joints, and which carries a
+// parallel gripper commanded by width and force (as Franka's arms do). Own method: the maker's
+// library, which goes behind ReflexLink, is not part of this code. Pure.
 #pragma once
 
 #include "deploy/drivers/driver_core.hpp"
@@ -11,10 +12,10 @@ enum class ArmMode : std::uint8_t { idle, moving, reflex, user_stopped, emergenc
 
 /// What the arm's controller says each cycle; arm axes only.
 struct ReflexState {
-  std::uint64_t cycle{};  ///< counts the arm's cycles: what did not come is seen in it
-  ArmMode mode{ArmMode::idle};
-  bool powered{true}, brakes_open{true};
-  Vector position, velocity, torque, external_torque;
+  std::uint64_t cycle{};  ///< number of the arm's cycle: a gap shows missed states
+  ArmMode mode{ArmMode::idle};  ///< of the arm's controller
+  bool powered{true}, brakes_open{true};  ///< motion needs both
+  Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm, Nm]
   Wrench wrist_wrench;     ///< on the hand with its load, tool frame
   double gripper_width{};  ///< between the fingers [m]
   double gripper_force{};  ///< with which they press [N]
@@ -30,8 +31,8 @@ class ReflexLink {
   virtual void move_to(const Vector& position) = 0;  ///< for this cycle
   virtual void recover() = 0;                        ///< from a reflex
   virtual void set_load(double mass) = 0;            ///< [kg]
-  virtual void gripper_move(double width, double speed) = 0;
-  virtual void gripper_grasp(double width, double speed, double force) = 0;
+  virtual void gripper_move(double width, double speed) = 0;  ///< without force [m, m/s]
+  virtual void gripper_grasp(double width, double speed, double force) = 0;  ///< [m, m/s, N]
 };
 
 /// Parallel gripper on one axis of the robot description.
@@ -40,19 +41,21 @@ struct GripperSettings {
   double open{}, closed{};                     ///< axis positions of the widths below
   double open_width{0.08}, closed_width{0.0};  ///< [m]
   double speed{0.1};                           ///< [m/s]
-  double stiffness{400.0};                     ///< force for a set-point beyond the measured position [N/m of width]
+  double stiffness{400.0};  ///< force for a set-point beyond the measured position [N/m of width]
   double least_force{5.0}, most_force{40.0};   ///< [N]
 };
 
 struct ReflexSettings {
-  DriverSettings common;
-  GripperSettings gripper;
-  double joint_deceleration{3.0};  ///< of the velocity limit toward a joint's end: v = sqrt(2 a (end - q)) [rad/s^2]
-  double limit_share{0.95};        ///< of the maker's velocity limit
-  int lost_cycles{20};             ///< so many without a state: the arm's controller is silent
+  DriverSettings common;    ///< settings that every driver has
+  GripperSettings gripper;  ///< axis -1 when the arm has none
+  /// Of the velocity limit toward a joint's end: v = sqrt(2 a (end - q)) [rad/s^2].
+  double joint_deceleration{3.0};
+  double limit_share{0.95};  ///< fraction of the maker's velocity limit that set-points may use
+  int lost_cycles{20};       ///< so many without a state: the arm's controller is silent
 };
 
-/// Largest speed an arm of this kind allows at `position` toward `end` [rad/s].
+/// Returns the largest speed allowed at `position` toward `end`: the smaller of `most` and the
+/// speed from which `deceleration` stops at `end` [rad/s]; 0 at `end` and beyond.
 double velocity_toward_end(double position, double end, double most, double deceleration);
 
 class ReflexArm : public Driver {

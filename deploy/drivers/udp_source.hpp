@@ -10,8 +10,8 @@ template <class Link>
 struct UdpSource : CycleSource {
   explicit UdpSource(int number) : port(number), link(port) {}
   bool wait(Duration at_most) override { return port.wait(at_most); }
-  UdpPort port;
-  Link link;
+  UdpPort port;  ///< receives the states, sends the commands
+  Link link;     ///< the maker's side for the driver; uses `port`
 };
 
 }  // namespace handsel::drivers

@@ -1,5 +1,6 @@
-// Fakes of two makers' controllers, for rehearsal without an arm. They move as they are told, refuse what a real one would refuse, and keep
-// account of what was wrong. Pure: the process beside them speaks UDP and plays the script.
+// Fakes of two makers' controllers, for rehearsal without an arm. They move as commanded, refuse
+// what a real one would refuse, and keep account of what was wrong. Pure: the process beside them
+// speaks UDP and plays the script.
 #pragma once
 
 #include <string>
@@ -11,7 +12,7 @@ namespace handsel::drivers {
 
 /// What happens to a fake from outside.
 struct FakeEvents {
-  bool emergency_stop{}, user_stop{}, brake{}, power_off{};
+  bool emergency_stop{}, user_stop{}, brake{}, power_off{};  ///< true: in force; the arm stands
   int drop{};       ///< so many of the next states do not reach the driver
   double push{};    ///< external torque on the first axis [Nm]
   double object{};  ///< width of what is between the fingers [m]
@@ -22,29 +23,30 @@ struct FakeAccount {
   int violations{};       ///< references a real arm would not have taken
   int sessions{};         ///< commanding sessions that began; recoveries for an arm with reflexes
   int grasps{}, moves{};  ///< of the gripper
-  double load{};          ///< [kg] as told
+  double load{};  ///< commanded payload [kg]
   double grasp_force{};   ///< of the last grasp [N]
   double fastest{};       ///< of any axis [rad/s]
-  std::string last_violation;
+  std::string last_violation;  ///< quantity and axis, or a phrase; empty: none
 };
 
 class FakeArm {
  public:
   virtual ~FakeArm() = default;
   virtual double period() const = 0;  ///< [s]
-  /// One cycle of its own; the driver hears of it through state().
+  /// Simulates one cycle; the driver receives the result through state().
   virtual void cycle() = 0;
   virtual std::string state() const = 0;  ///< encoded
+  /// Executes a command of the driver; a late position is ignored.
   virtual void on(const Order& order) = 0;
 
-  const Vector& position() const { return position_; }
+  const Vector& position() const { return position_; }              ///< of the arm axes [rad]
   double speed() const { return velocity_.cwiseAbs().maxCoeff(); }  ///< of the fastest axis [rad/s]
 
-  /// A position answers the state of this cycle, else it is not heard.
+  /// Returns false for a position that does not answer the state of this cycle.
   bool in_time(const Order& order) const { return order.kind != OrderKind::position || order.cycle == cycle_count_; }
 
-  FakeEvents events;
-  FakeAccount account;
+  FakeEvents events;    ///< set from outside, read in each cycle
+  FakeAccount account;  ///< of everything since construction
 
  protected:
   FakeArm(const RobotModel& model, const std::vector<int>& axes) : model_(model), axes_(axes) {
@@ -55,12 +57,13 @@ class FakeArm {
     ++account.violations;
     account.last_violation = what;
   }
-  /// Faster than `most`(axis index, velocity) allows, or a jump of the velocity: the sentence; empty: it can be followed.
+  /// Faster than `most`(axis index, velocity) allows, or a jump of the velocity: the sentence;
+  /// empty: it can be followed.
   template <class Most>
   std::string why_not(const Vector& wanted, const Most& most) const;
   /// To `wanted` within this cycle.
   void follow(const Vector& wanted);
-  /// Nothing was told: as it went.
+  /// Moves on with the velocity of the cycle before: no command came.
   void go_on() { position_ += period() * velocity_; }
   void stand() { velocity_.setZero(); }
 
@@ -70,9 +73,10 @@ class FakeArm {
   std::uint64_t cycle_count_{};
 };
 
-/// Position-controlled arm with a session that must be negotiated. In commanding_wait the answer must be its own interpolated position; a
-/// step faster than the guard limits plus a tenth, or a jump of the velocity, ends the session with a violation; three cycles without an
-/// answer end it without one.
+/// Position-controlled arm with a session that must be negotiated. In commanding_wait the answer
+/// must be its own interpolated position; a step faster than the guard limits plus a tenth, or a
+/// jump of the velocity, ends the session with a violation; three cycles without an answer end it
+/// without one.
 class FakeCyclicArm : public FakeArm, public CyclicLink {
  public:
   FakeCyclicArm(const RobotModel& model, const std::vector<int>& axes, double cycle) : FakeArm(model, axes), cycle_(cycle) {}
@@ -99,8 +103,8 @@ class FakeCyclicArm : public FakeArm, public CyclicLink {
   int unanswered_{}, settled_{}, mirrored_{};
 };
 
-/// Arm at 1 kHz with reflexes and a parallel gripper. Faster than allowed at a position, a jump of the velocity, or a push: reflex; twenty
-/// cycles without a command while it moves: reflex.
+/// Arm at 1 kHz with reflexes and a parallel gripper. Faster than allowed at a position, a jump of
+/// the velocity, or a push: reflex; twenty cycles without a command while it moves: reflex.
 class FakeReflexArm : public FakeArm, public ReflexLink {
  public:
   FakeReflexArm(const RobotModel& model, const std::vector<int>& axes, double deceleration)
@@ -117,7 +121,7 @@ class FakeReflexArm : public FakeArm, public ReflexLink {
   void set_load(double mass) override { account.load = mass; }
   void gripper_move(double width, double speed) override;
   void gripper_grasp(double width, double speed, double force) override;
-  double width() const { return width_; }
+  double width() const { return width_; }  ///< between the fingers [m]
 
  private:
   ReflexState now() const;

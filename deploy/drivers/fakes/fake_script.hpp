@@ -1,9 +1,11 @@
-// What happens to a fake arm, line by line: WHEN WHAT. A line waits for its moment after the line before has happened.
-//   after 0.5     user_stop on       so many seconds after the line before (the first: after the start)
+// What happens to a fake arm, line by line: WHEN WHAT. A line waits for its moment after the line
+// before has happened.
+//   after 0.5     user_stop on       so many seconds after the line before, or the start
 //   moving 0.2    emergency_stop on  as soon as an axis is so fast [rad/s]
 //   standing 1    brake off          when no axis has moved for so many seconds
-// WHAT: emergency_stop, user_stop, brake, power on|off; drop N (states lost); delay MS (of each state from now on); push NM (on the first
-// axis); object M (width between the fingers); say TEXT (on standard output). # begins a comment.
+// WHAT: emergency_stop, user_stop, brake, power on|off; drop N (states lost); delay MS (of each
+// state from now on); push NM (on the first axis); object M (width between the fingers); say TEXT
+// (on standard output). # begins a comment.
 #pragma once
 
 #include <filesystem>
@@ -17,9 +19,9 @@ namespace handsel::drivers {
 enum class FakeTrigger : std::uint8_t { after, moving, standing };
 
 struct FakeLine {
-  FakeTrigger trigger{};
-  double amount{};  ///< [s], or [rad/s] of moving
-  std::string verb, value;
+  FakeTrigger trigger{};    ///< event that the line waits for
+  double amount{};          ///< [s], or [rad/s] of moving
+  std::string verb, value;  ///< what happens, and the rest of the line; known verbs: as above
 };
 
 /// Throws ConfigError naming file and line.
