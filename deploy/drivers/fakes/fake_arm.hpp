@@ -23,7 +23,7 @@ struct FakeAccount {
   int violations{};       ///< references a real arm would not have taken
   int sessions{};         ///< commanding sessions that began; recoveries for an arm with reflexes
   int grasps{}, moves{};  ///< of the gripper
-  double load{};  ///< commanded payload [kg]
+  double load{};          ///< commanded payload [kg]
   double grasp_force{};   ///< of the last grasp [N]
   double fastest{};       ///< of any axis [rad/s]
   std::string last_violation;  ///< quantity and axis, or a phrase; empty: none

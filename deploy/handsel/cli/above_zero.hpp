@@ -1,4 +1,5 @@
-// What an option that counts or measures something must be; the library's own check names the largest number there is when it is not.
+// What an option that counts or measures something must be; the library's own check names the
+// largest number there is when it is not.
 #pragma once
 
 #include <string>

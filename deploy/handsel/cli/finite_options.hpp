@@ -1,4 +1,5 @@
-// Options that hold finite numbers; the library's own checks take infinities and print the largest number there is.
+// Options that hold finite numbers; the library's own checks take infinities and print the largest
+// number there is.
 #pragma once
 
 #include <cmath>

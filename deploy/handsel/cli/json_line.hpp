@@ -7,7 +7,8 @@
 
 namespace handsel::command {
 
-/// Parses one line. Throws LineError when the line is no JSON, longer than 16 MB or nested deeper than 64.
+/// Parses one line. Throws LineError when the line is no JSON, longer than 16 MB or nested deeper
+/// than 64.
 nlohmann::json parse_line(const std::string& line);
 
 }  // namespace handsel::command

@@ -5,6 +5,7 @@
 
 namespace handsel {
 
+/// Adds `grasp` and its subcommands; a run writes its exit code to `exit_code`.
 void add_grasp_commands(CLI::App& app, int& exit_code);
 
 }  // namespace handsel

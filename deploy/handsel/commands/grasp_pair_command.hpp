@@ -1,11 +1,14 @@
-// `handsel grasp choose`, `double`, `transfer` and `regrasp`: grasps that serve, and two hands on one object.
+// `handsel grasp choose`, `double`, `transfer` and `regrasp`: grasps that serve, and two hands on
+// one object.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 namespace handsel {
 
+/// Adds `choose` to `grasp`; a run writes its exit code to `exit_code`.
 void add_grasp_choose(CLI::App& grasp, int& exit_code);
+/// Adds `double`, `transfer` and `regrasp` to `grasp`, as above.
 void add_grasp_pairs(CLI::App& grasp, int& exit_code);
 
 }  // namespace handsel

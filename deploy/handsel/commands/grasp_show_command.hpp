@@ -5,6 +5,7 @@
 
 namespace handsel {
 
+/// Adds `show` to `grasp`; a run writes its exit code to `exit_code`.
 void add_grasp_show(CLI::App& grasp, int& exit_code);
 
 }  // namespace handsel

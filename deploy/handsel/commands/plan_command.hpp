@@ -5,7 +5,8 @@
 
 namespace handsel {
 
-/// Adds the subcommand; it writes the exit code of a run to `exit_code`: 1 when some problem was not solved.
+/// Adds the subcommand; it writes the exit code of a run to `exit_code`: 1 when some problem was
+/// not solved.
 void add_plan_command(CLI::App& app, int& exit_code);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// What is wrong with what perception processes publish, told from the samples of a few seconds. Pure: arrivals come in, findings go out.
+// What is wrong with the samples of perception processes, found from those of a few seconds. Pure:
+// arrivals come in, findings go out.
 #pragma once
 
 #include <map>
@@ -13,7 +14,7 @@ namespace handsel {
 
 /// What a source ought to see.
 struct PerceptionGround {
-  Coverage reach;                 ///< of the robot, world [m]: sources of people together must look at all of it
+  Coverage reach;  ///< of the robot, world [m]: sources of people together must look at all of it
   Vector3 base{Vector3::Zero()};  ///< of the robot, world [m]
   std::set<std::string> models;   ///< object descriptions there are
 };
@@ -24,9 +25,9 @@ class SampleTimes {
   /// Arrival by the receiver's monotonic and system clocks.
   /// False: the sample before once more.
   bool add(Stamp stamp, TimePoint arrival, Stamp system_arrival);
-  std::size_t count() const { return arrivals_.size(); }
-  double rate() const;        ///< [Hz]; 0 with less than two
-  double median_age() const;  ///< [s] between stamp and arrival
+  std::size_t count() const { return arrivals_.size(); }  ///< of samples, repeated ones included
+  double rate() const;                                    ///< [Hz]; 0 with less than two
+  double median_age() const;                              ///< [s] between stamp and arrival
   /// Rate, regularity, ages and clocks; `who` publishes `what`. Empty: all is well.
   std::vector<Finding> findings(const std::string& who, const std::string& what) const;
 
@@ -41,13 +42,16 @@ class PerceptionReview {
  public:
   explicit PerceptionReview(PerceptionGround ground) : ground_(std::move(ground)) {}
 
+  /// Adds a sample of people, with its arrival by the monotonic and the system clock.
   void on(const HumanObservation&, TimePoint arrival, Stamp system_arrival);
+  /// Adds a sample of objects, with its arrival by the monotonic and the system clock.
   void on(const ObjectObservation&, TimePoint arrival, Stamp system_arrival);
   /// A sample on this topic that was rejected, and why (`MessageType::from_wire`).
   /// `whole`: the sample was dropped; else an element of a list.
   void on_malformed(const std::string& topic, const std::string& why, bool whole = true);
 
-  /// One sentence each; a source without a fault has one that is good. Sources and topics that never came have none.
+  /// One sentence each; a source without a fault has one that is good. Sources and topics that
+  /// never came have none.
   std::vector<Finding> findings() const;
 
  private:
@@ -56,10 +60,12 @@ class PerceptionReview {
     Coverage coverage;
     std::size_t bodies{0}, most{0};  // seen in all, and at once
     std::set<std::string> ids, unknown_joints;
-    std::size_t known_joints{0}, joints{0}, unsure{0};  // unsure: confidence so low that they are not counted
+    // unsure: confidence so low that they are not counted
+    std::size_t known_joints{0}, joints{0}, unsure{0};
     std::size_t frozen{0}, outside{0}, gazes{0}, mirrored{0};
-    std::vector<double> statures, lowest;  // [m] as told; height of the feet, or 1.6 m below the head's
-    std::vector<Vector3> up;               // from waist to head, unit
+    // [m] as reported; height of the feet, or 1.6 m below the head's
+    std::vector<double> statures, lowest;
+    std::vector<Vector3> up;  // from waist to head, unit
     double nearest{1e300};
     std::vector<ObservedPerson> last;
   };

@@ -1,4 +1,5 @@
-// A piece of work in a forked process of its own: what it prints on stderr is kept, a crash in it is an answer.
+// A piece of work in a forked process of its own: what it prints on stderr is kept, a crash in it
+// is an answer.
 #pragma once
 
 #include <sys/types.h>
@@ -15,8 +16,9 @@ class Probe {
  public:
   using Report = std::function<void(const std::string& line)>;
 
-  /// Runs `work` in a child, which ends when it returns, on SIGTERM (interrupted() then holds) or with this process. The child may report
-  /// lines without line feeds. Start it before this process enters a DDS domain or starts threads.
+  /// Runs `work` in a child, which ends when it returns, on SIGTERM (interrupted() then holds) or
+  /// with this process. The child may report lines without line feeds. Start it before this process
+  /// enters a DDS domain or starts threads.
   explicit Probe(const std::function<void(const Report&)>& work);
   ~Probe();  ///< SIGTERM, after a second SIGKILL
   Probe(Probe&&) noexcept;

@@ -1,5 +1,5 @@
-// The whole system in one process and virtual time: every box and the simulator on a LocalNetwork, and a seat to watch from. The bridge is
-// left out: it shows, and nothing listens to it.
+// The whole system in one process and virtual time: every box and the simulator on a LocalNetwork,
+// and a passive observer. The bridge is left out: it shows, and nothing listens to it.
 #pragma once
 
 #include <memory>
@@ -18,11 +18,13 @@ class LockstepSystem {
   explicit LockstepSystem(const NodeContext& context);
   LockstepSystem(const std::string& scenario, const std::string& robot, std::uint64_t seed);
 
+  /// Returns the network of all components; run it to advance the virtual time.
   LocalNetwork& network() { return network_; }
-  Bus& seat() { return seat_; }  ///< of the component "handsel"
-  Observer& observer() { return observer_; }
+  Bus& seat() { return seat_; }               ///< of the component "handsel"
+  Observer& observer() { return observer_; }  ///< of the whole system, from construction on
+  /// Newest samples, as the observer has them.
   const Snapshot& snapshot() const { return observer_.snapshot(); }
-  TimePoint now() const { return network_.now(); }
+  TimePoint now() const { return network_.now(); }  ///< virtual time
 
  private:
   template <class Node>
@@ -34,7 +36,8 @@ class LockstepSystem {
   std::vector<std::shared_ptr<void>> nodes_;
 };
 
-/// What load_context() would give the processes of this scenario; the robot is the scenario's when `robot` is empty.
+/// What load_context() would give the processes of this scenario; the robot is the scenario's when
+/// `robot` is empty.
 NodeContext system_context(const std::string& scenario, const std::string& robot, std::uint64_t seed,
                            const std::filesystem::path& settings = {});
 

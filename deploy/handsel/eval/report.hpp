@@ -12,16 +12,17 @@ namespace handsel {
 
 /// Counters a component has gathered since its start, for differences over a performance.
 struct Counters {
-  std::uint64_t deadline_misses{}, rejected{};
+  std::uint64_t deadline_misses{}, rejected{};  ///< sums over all topics of the component
 };
+/// Returns the counters of each component that has sent its health.
 std::map<std::string, Counters> counters(const Snapshot&);
 
 struct ReportInputs {
-  std::string scenario, robot;
-  std::uint64_t seed{};
+  std::string scenario, robot;             ///< names, copied into the report
+  std::uint64_t seed{};                    ///< of the simulation, copied into the report
   double ready{};                          ///< from start to ready [s]
   std::map<std::string, Counters> before;  ///< as the performance began
-  GroundTruth truth_before;                ///< as the performance began
+  GroundTruth truth_before;                ///< newest as the performance began
   std::map<std::string, int> restarts;     ///< by process, those above 0
 };
 

@@ -1,4 +1,5 @@
-// Hands against objects: how many grasps, how good, how long it took, and why the other frames gave none.
+// Hands against objects: how many grasps, how good, how long it took, and why the other frames gave
+// none.
 #pragma once
 
 #include <string>
@@ -9,26 +10,29 @@
 namespace handsel {
 
 struct TableRow {
-  std::string hand, object;
-  double scale{1};  ///< what the object was multiplied by
-  double size{};    ///< its largest extent then [m]
-  std::size_t triangles{}, grasps{};
-  std::uint64_t frames{};
-  double best{};         ///< quality
-  double seconds{};      ///< for the list
-  std::string findings;  ///< of the mesh
-  std::string reason;    ///< why most frames gave none, or why there is no list
+  std::string hand, object;  ///< as given; file name of the object without folder and extension
+  double scale{1};           ///< what the object was multiplied by
+  double size{};             ///< its largest extent then [m]
+  std::size_t triangles{}, grasps{};  ///< of the object's mesh; found
+  std::uint64_t frames{};             ///< grasp frames that were tested
+  double best{};                      ///< quality
+  double seconds{};                   ///< for the list
+  std::string findings;               ///< of the mesh
+  std::string reason;                 ///< why most frames gave none, or why there is no list
 };
 
-/// Factor that makes an object of these extents one for this hand: 1 when its middle extent is between 0.15 and 0.75 of the hand's opening,
-/// else what makes it half the opening.
+/// Factor that makes an object of these extents one for this hand: 1 when its middle extent is
+/// between 0.15 and 0.75 of the hand's opening, else what makes it half the opening.
 double fitting_scale(const Vector3& extents, double opening);
-/// Between thumb and the farthest other fingertip, ready to enclose; of two pads their widest gap [m].
+/// Returns the distance between thumb and the farthest other fingertip, ready to enclose; of two
+/// pads their widest gap [m].
 double opening_of(const grasp_planner::HandKit& kit);
 
 /// `options.object` is the object; with `fit` it is scaled for the hand.
 TableRow table_row(const std::string& hand, const ListOptions& options, bool fit);
+/// Returns the line with the titles of the columns, without line feed.
 std::string table_head();
+/// Returns the row below table_head(); long names are cut.
 std::string table_line(const TableRow& row);
 
 }  // namespace handsel

@@ -5,7 +5,8 @@
 
 namespace handsel {
 
-/// Sets the scene up as the simulator does, unless the options leave the simulator out. Throws ConfigError / MissingError.
+/// Sets the scene up as the simulator does, unless the options leave the simulator out. Throws
+/// ConfigError / MissingError.
 void check_scene(const SystemOptions& options);
 
 }  // namespace handsel
