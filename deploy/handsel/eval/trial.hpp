@@ -31,8 +31,8 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
 
 /// A trial to be done.
 struct Trial {
-  NodeContext context;
-  TrialOptions options;
+  NodeContext context;   ///< scenario, robot, settings and seed
+  TrialOptions options;  ///< `scenario` must name that of `context`
 };
 
 /// Each trial in an operating-system process of its own, `jobs` at a time, so that no state is

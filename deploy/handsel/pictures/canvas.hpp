@@ -1,4 +1,5 @@
-// Three-dimensional pictures: triangles onto coloured points, with depth, light and see-through parts. For people, not for time.
+// Three-dimensional pictures: triangles onto coloured points, with depth, light and see-through
+// parts. For people, not for time.
 #pragma once
 
 #include <functional>
@@ -13,8 +14,8 @@ namespace handsel {
 struct Eye {
   Vector3 target{Vector3::Zero()};      ///< in the middle of the picture
   Vector3 from{Vector3(1, -1.6, 0.9)};  ///< direction from the target to the eye
-  Vector3 up{Vector3::UnitZ()};
-  double height{0.4};  ///< of what the picture shows [m]
+  Vector3 up{Vector3::UnitZ()};         ///< upward in the picture; any vector not along `from`
+  double height{0.4};                   ///< of what the picture shows [m]
 };
 
 /// Sees the whole box in a square picture.
@@ -28,13 +29,17 @@ class Canvas {
   void triangle(const Vector3& a, const Vector3& b, const Vector3& c, Colour colour, double opacity = 1);
   /// Colours of the corners, between them blended.
   void triangle(const std::array<Vector3, 3>& corners, const std::array<Colour, 3>& colours);
+  /// Draws a shape at pose `T`; round shapes as polyhedra of 28 sides.
   void shape(const Shape& shape, const Pose& T, Colour colour, double opacity = 1);
+  /// `radius` [m].
   void ball(const Vector3& centre, double radius, Colour colour, double opacity = 1);
   /// Semi-axes: the columns [m].
   void ellipsoid(const Vector3& centre, const Eigen::Matrix3d& axes, Colour colour, double opacity = 1);
+  /// Draws a capsule from `a` to `b`, opaque; nothing when they are equal.
   void stick(const Vector3& a, const Vector3& b, double radius, Colour colour);
   /// `axis`: unit, from the apex; `radius` at its far end.
   void cone(const Vector3& apex, const Vector3& axis, double length, double radius, Colour colour, double opacity = 1);
+  /// Draws the twelve edges as sticks of this radius [m], at pose `T`.
   void box_edges(const Eigen::AlignedBox3d& box, const Pose& T, double radius, Colour colour);
 
   /// Everything drawn so far.
@@ -63,7 +68,8 @@ class Canvas {
   std::vector<Piece> seen_through_;
 };
 
-/// The same scene from several sides, one picture beside the other. Each eye looks at the middle of `box`.
+/// The same scene from several sides, one picture beside the other. Each eye looks at the middle of
+/// `box`.
 Picture from_sides(const Eigen::AlignedBox3d& box, const std::vector<Vector3>& directions, int size,
                    const std::function<void(Canvas&, std::size_t side)>& draw);
 

@@ -10,11 +10,14 @@
 namespace handsel {
 
 struct LandscapeResult {
-  nlohmann::json answer;  ///< "solved", "trees": [[[x, y, parent], ...], ...], "raw" and "path": [[x, y], ...], "cost", "work", "length"
-  std::string png;        ///< the landscape, both trees, and the path before and after smoothing
+  /// "solved", "trees": [[[x, y, parent], ...], ...], "raw" and "path": [[x, y], ...], "cost",
+  /// "work", "length".
+  nlohmann::json answer;
+  std::string png;  ///< the landscape, both trees, and the path before and after smoothing
 };
 
-/// From one corner to the other between hills on [-1, 1] x [-1, 1]: the straight line goes over the highest.
+/// From one corner to the other between hills on [-1, 1] x [-1, 1]: the straight line goes over the
+/// highest.
 LandscapeResult plan_on_landscape(PlannerKind planner, std::uint64_t seed);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// Pictures of two hands on one object, of handing over, and of regrasp sequences. Frame of all: the world.
+// Pictures of two hands on one object, of handing over, and of regrasp sequences. Frame of all: the
+// world.
 #pragma once
 
 #include "components/grasp_planner/pair/transfer.hpp"
@@ -9,7 +10,8 @@ namespace handsel {
 
 /// All links of the robot. `q`: all axes.
 void draw_robot(Canvas& canvas, const RobotModel& robot, const Vector& q, const Pose& T_world_base, Colour colour, double opacity = 1);
-/// The body without the arm that takes; that arm as the posture of its wrist says, with the hand on the object.
+/// Draws the body without the arm that takes, and that arm as the wrist pose of `transfer`
+/// requires, with the hand on the object.
 void draw_taker(Canvas& canvas, const Person& person, const grasp_planner::TransferPose& transfer, const grasp_planner::HandKit& hand,
                 const Grasp& grasp);
 
@@ -22,7 +24,8 @@ Picture transfer_picture(const RobotModel& robot, const Scene& scene, const Vect
                          const grasp_planner::Graspable& object, const grasp_planner::TransferPose& transfer,
                          const grasp_planner::HandKit& hand, const Grasp& taken, int size);
 
-/// One picture a step, from the left to the right: the robot with the object in the hands that hold it; below, the hands close by.
+/// One picture a step, from the left to the right: the robot with the object in the hands that hold
+/// it; below, the hands close by.
 Picture regrasp_picture(const RobotModel& robot, const Scene& scene, const grasp_planner::Graspable& object,
                         const grasp_planner::RegraspPlan& plan, int size);
 

@@ -1,4 +1,4 @@
-// How fast a robot is along its way, and what the way costs people.
+// How fast a robot is along its path, and what the path costs people.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@ namespace handsel {
 
 /// Along a trajectory, at regular times.
 struct SpeedCurve {
-  std::string title;
-  std::vector<double> way;      ///< gone so far, 0 to 1, by joint-space length
-  std::vector<double> cost;     ///< human-aware, of the posture
-  std::vector<double> allowed;  ///< share of the velocity limits there
-  std::vector<double> speed;    ///< largest share of an axis's velocity limit in use
+  std::string title;            ///< above the panel
+  std::vector<double> way;      ///< fraction of the path covered, 0 to 1, by joint-space length
+  std::vector<double> cost;     ///< human-aware cost of the configuration, [0, 1]
+  std::vector<double> allowed;  ///< fraction of the velocity limits allowed there
+  std::vector<double> speed;    ///< largest ratio of an axis's speed to its velocity limit
 };
 
 /// `limits`: of velocity, of the trajectory's axes; `axes`: their robot axes; `rest`: all axes.

@@ -1,4 +1,4 @@
-// What is said on a domain, into a file as it was said, with the IDL that tells what it means.
+// Records the samples of a domain into a file, unchanged, with the IDL that defines their meaning.
 #pragma once
 
 #include <filesystem>
@@ -21,15 +21,18 @@ std::vector<mcap::Channel> recorded_channels();
 /// Every topic of a domain, from construction on. On the bus's own thread.
 class Recorder {
  public:
-  /// Throws ConfigError when the file is there already or cannot be written, MissingError when the transport refuses.
+  /// Throws ConfigError when the file is there already or cannot be written, MissingError when the
+  /// transport refuses.
   Recorder(RawBus& bus, const std::filesystem::path& file, const mcap::Metadata& metadata);
 
-  /// Takes what came; at least every kLook, or fast topics lose samples. Throws ConfigError when the disk refuses.
+  /// Takes the samples that came, at least every kLook, or fast topics lose samples. Throws
+  /// ConfigError when the disk refuses.
   void look();
   /// Ends the file. As look().
   void close();
-  const mcap::Writer& file() const { return file_; }
+  const mcap::Writer& file() const { return file_; }  ///< for its counts
 
+  /// Longest time between two calls of look().
   static constexpr Duration kLook = std::chrono::milliseconds(20);
 
  private:
@@ -39,8 +42,9 @@ class Recorder {
   TimePoint flushed_{};
 };
 
-/// Records what a command performs, when a file was named: looks by itself while the session's bus runs. A disk that refuses ends the
-/// recording, said on stderr once, and nothing else.
+/// Records what a command performs, when a file was named: takes samples by itself while the
+/// session's bus runs. A disk that refuses ends the recording, reported on stderr once, and nothing
+/// else.
 class Recording {
  public:
   /// `file` empty: does nothing. Throws as Recorder.
@@ -51,7 +55,8 @@ class Recording {
 
  private:
   struct State;
-  std::shared_ptr<State> state_;  ///< the bus's timer outlives this and knows it weakly; null: nothing is recorded
+  /// The bus's timer outlives this and knows it weakly; null: nothing is recorded.
+  std::shared_ptr<State> state_;
 };
 
 /// Every sample of a network in virtual time, stamped with that.
@@ -62,6 +67,7 @@ class LocalRecording {
   ~LocalRecording();
   LocalRecording(const LocalRecording&) = delete;
   LocalRecording& operator=(const LocalRecording&) = delete;
+  /// Ends the file. Throws ConfigError when the disk refuses.
   void close();
 
  private:

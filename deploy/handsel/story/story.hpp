@@ -36,7 +36,7 @@ enum class ConditionKind {
   handover,  ///< the simulator's oracle says so
   moving,
   rest,          ///< the arm by the simulator's word
-  back,          ///< back PROCESS: heard ok again (after a kill: another incarnation)
+  back,          ///< back PROCESS: reports ok again (after a kill: another incarnation)
   degraded,      ///< degraded PROCESS
   status_names,  ///< status names NAME: `handsel status` has a trouble that names it
   speed_below,   ///< speed below F: factor advised or in force
@@ -48,24 +48,24 @@ enum class ConditionKind {
 };
 
 struct Condition {
-  ConditionKind kind{};
-  std::string subject;
-  double value{};
+  ConditionKind kind{};  ///< decides whether `subject` or `value` follows
+  std::string subject;   ///< name or word of the condition; empty for kinds without one
+  double value{};        ///< of speed_below: the factor; else 0
 };
 
 struct StoryStep {
-  int line{};
-  std::string text;            ///< as written
-  std::optional<Duration> at;  ///< after the last task line
-  StepKind kind{};
-  std::vector<std::string> words;  ///< arguments
-  std::optional<Condition> condition;
-  Duration limit{};  ///< of wait, expect, never, pause, silence (0: until wake)
+  int line{};                          ///< number in the file, from 1
+  std::string text;                    ///< as written
+  std::optional<Duration> at;          ///< after the last task line
+  StepKind kind{};                     ///< decides which of the fields below are used
+  std::vector<std::string> words;      ///< arguments
+  std::optional<Condition> condition;  ///< of wait, expect and never
+  Duration limit{};                    ///< of wait, expect, never, pause, silence (0: until wake)
 };
 
 struct Story {
-  std::string name;
-  std::vector<StoryStep> steps;
+  std::string name;              ///< for messages: the file
+  std::vector<StoryStep> steps;  ///< at least one; the first is start, and no other
 };
 
 /// Throws ConfigError "file:line: …" naming the word and what would be right.

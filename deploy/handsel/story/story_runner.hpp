@@ -1,4 +1,5 @@
-// Runs a story over real processes: does what its lines say, watches over DDS, and says which line did not come true.
+// Runs a story over real processes: does what its lines say, watches over DDS, and says which line
+// did not come true.
 #pragma once
 
 #include <map>
@@ -12,7 +13,7 @@
 namespace handsel {
 
 struct StoryOptions {
-  int domain{0};
+  int domain{0};          ///< DDS domain, 0..230
   std::uint64_t seed{0};  ///< 0: as the story says
 };
 
@@ -21,8 +22,9 @@ class StoryRunner {
   StoryRunner(Story story, const StoryOptions& options);
   ~StoryRunner();
 
-  /// Prints each line with the time it took to stderr. False when a line did not come true: the timeline, the seed and where the logs are
-  /// are printed. Throws ConfigError / MissingError for what cannot be started or named.
+  /// Prints each line with the time it took to stderr. False when a line did not come true: the
+  /// timeline, the seed and where the logs are are printed. Throws ConfigError / MissingError for
+  /// what cannot be started or named.
   bool run();
 
  private:
@@ -64,8 +66,9 @@ class StoryRunner {
   std::uint64_t task_id_{0};
   TaskGoal goal_;  // of the last task
   TimePoint goal_sent_{};
-  std::map<std::string, std::uint64_t> killed_;    ///< incarnation a killed process had
-  std::multimap<TimePoint, std::string> to_wake_;  ///< silenced processes by when they go on
+  std::map<std::string, std::uint64_t> killed_;  ///< incarnation a killed process had
+  // silenced processes by the time of their SIGCONT
+  std::multimap<TimePoint, std::string> to_wake_;
 };
 
 }  // namespace handsel

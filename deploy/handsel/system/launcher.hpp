@@ -23,7 +23,7 @@ namespace handsel {
 
 /// A process as it stands.
 struct ProcessStatus {
-  std::string name;
+  std::string name;   ///< as in ProcessSpec
   pid_t pid{-1};      ///< -1: not running
   int restarts{};     ///< how often it was started again
   TimePoint since{};  ///< started, or ended
@@ -33,37 +33,42 @@ struct ProcessStatus {
 
 /// Why the system cannot be kept up.
 struct LaunchFailure {
-  std::string process;
-  std::string reason;  ///< one sentence
-  int exit_code{3};    ///< 2: bad input, 3: something is missing
+  std::string process;  ///< name of the process that failed
+  std::string reason;   ///< one sentence
+  int exit_code{3};     ///< 2: bad input, 3: something is missing
 };
 
 struct LauncherOptions {
-  std::vector<ProcessSpec> processes;
-  std::filesystem::path log_directory;               ///< one <name>.log each; made when it is not there
-  std::function<void(const std::string&)> on_event;  ///< one sentence for people; called on the launcher's thread; may be empty
-  Duration stop_patience{from_seconds(1.0)};         ///< between SIGTERM and SIGKILL
-  BackoffSettings backoff{};                         ///< between a death and the next start
+  std::vector<ProcessSpec> processes;   ///< to start and keep alive, in this order
+  std::filesystem::path log_directory;  ///< one <name>.log each; made when it is not there
+  /// One sentence for people; called on the launcher's thread; may be empty.
+  std::function<void(const std::string&)> on_event;
+  Duration stop_patience{from_seconds(1.0)};  ///< between SIGTERM and SIGKILL
+  BackoffSettings backoff{};                  ///< between a death and the next start
 };
 
-/// A process that ends is started again, after a wait that grows with each death; for ever. Only before set_ready() an end with 2 or 3 (bad
-/// input, something missing) is a failure, and that process is not started again.
+/// A process that ends is started again, after a wait that grows with each death; for ever. Only
+/// before set_ready() an end with 2 or 3 (bad input, something missing) is a failure, and that
+/// process is not started again.
 class Launcher {
  public:
-  explicit Launcher(LauncherOptions);  ///< starts everything; throws MissingError when the log directory cannot be made
-  ~Launcher();                         ///< stop()
+  /// Starts everything; throws MissingError when the log directory cannot be made.
+  explicit Launcher(LauncherOptions);
+  ~Launcher();  ///< stop()
   Launcher(const Launcher&) = delete;
   Launcher& operator=(const Launcher&) = delete;
 
   /// Everything has been up: from now on no death is a failure.
   void set_ready() { ready_ = true; }
-  /// Kills a process that is hung, when it is still the one with this pid; it is then started again. `why`: e.g. "hung: no heartbeat ...".
+  /// Kills a process that is hung, when it is still the one with this pid; it is then started
+  /// again. `why`: e.g. "hung: no heartbeat ...".
   void replace(const std::string& name, pid_t pid, const std::string& why);
-  /// SIGTERM to all, SIGKILL after the patience, all reaped when it returns. Harmless when called again.
+  /// Sends SIGTERM to all, SIGKILL after `stop_patience`; all are reaped when stop() returns.
+  /// Harmless when called again.
   void stop();
-  std::vector<ProcessStatus> processes() const;
-  pid_t pid(const std::string& name) const;  ///< -1 if it does not run or is unknown
-  /// Waits so long for one if there is none.
+  std::vector<ProcessStatus> processes() const;  ///< state of each now, in the order of the options
+  pid_t pid(const std::string& name) const;      ///< -1 if it does not run or is unknown
+  /// Returns the failure, waiting up to `patience` for one; nullopt when there is none.
   std::optional<LaunchFailure> failure(Duration patience = {}) const;
 
  private:
@@ -87,16 +92,19 @@ class Launcher {
   std::thread thread_;
 };
 
-/// A fresh directory for the logs of one run under state_directory(); the oldest beyond 20 are removed.
+/// A fresh directory for the logs of one run under state_directory(); the oldest beyond 20 are
+/// removed.
 std::filesystem::path new_run_directory(int domain);
 
 /// Does a system of this machine hold the domain's lock?
 bool domain_is_held(int domain);
 
-/// Held while a system runs on a domain of this machine: a lock file, released by the kernel when its holder ends.
+/// Held while a system runs on a domain of this machine: a lock file, released by the kernel when
+/// its holder ends.
 class DomainLock {
  public:
-  explicit DomainLock(int domain);  ///< throws ConfigError when another system of this machine holds the domain
+  /// Throws ConfigError when another system of this machine holds the domain.
+  explicit DomainLock(int domain);
   ~DomainLock();
   DomainLock(const DomainLock&) = delete;
   DomainLock& operator=(const DomainLock&) = delete;

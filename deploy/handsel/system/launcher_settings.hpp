@@ -1,4 +1,4 @@
-// How the launcher judges processes and starts them again: deploy/config/launcher.txtpb.
+// How the launcher detects hung processes and starts processes again: deploy/config/launcher.txtpb.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,12 @@
 namespace handsel {
 
 struct LauncherSettings {
-  LivenessSettings liveness;
-  BackoffSettings backoff;
+  LivenessSettings liveness;  ///< when a process counts as hung
+  BackoffSettings backoff;    ///< between a death and the next start
 };
 
-/// Throws ConfigError "file:line: key ..." for a value that is missing, not a number or out of range.
+/// Throws ConfigError "file:line: key ..." for a value that is missing, not a number or out of
+/// range.
 LauncherSettings load_launcher_settings(const std::filesystem::path& file);
 
 }  // namespace handsel

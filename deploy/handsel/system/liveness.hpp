@@ -1,4 +1,5 @@
-// Whether a process is alive, starved or hung, judged from its heartbeats and from what the kernel says of it. Pure: no clock, no files.
+// Whether a process is alive, starved or hung, found from its heartbeats and from the kernel's
+// accounts of it. Pure: no clock, no files.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@ namespace handsel {
 enum class Life : std::uint8_t {
   starting,  ///< no heartbeat since its start yet
   alive,
-  starved,  ///< no heartbeat, because the machine gives it, or the one that listens, no processor
-  hung      ///< it will not go on by itself
+  starved,  ///< no heartbeat, because the process or its listener got no processor
+  hung      ///< it does not recover by itself
 };
 
 struct LivenessSettings {
@@ -23,15 +24,18 @@ struct LivenessSettings {
 
 /// What is known of a process at one moment. Delays grow from any origin; only their growth counts.
 struct LifeSigns {
-  TimePoint now{};
-  char state{'S'};        ///< of /proc/PID/stat: R runs or would, S waits, D waits for a device, T stopped, t traced by a debugger, Z ended
+  TimePoint now{};  ///< time at which all of these were read, monotonic
+  /// Of /proc/PID/stat: R runs or would, S waits, D waits for a device, T stopped, t traced by a
+  /// debugger, Z ended.
+  char state{'S'};
   Duration main_delay{};  ///< how long its main thread has waited for a processor since its start
-  Duration total_delay{};  ///< likewise, all its threads together
-  Duration own_delay{};    ///< how long the one that listens for heartbeats could not listen
+  /// The same summed over steps: in each, of the thread that waited longest.
+  Duration total_delay{};
+  Duration own_delay{};  ///< how long the listener for heartbeats could not listen
 };
 
-/// Time in which the process or the listener waited for a processor does not count against the process. That a process is stopped is seen
-/// without listening: all of that time counts.
+/// Time in which the process or the listener waited for a processor does not count against the
+/// process. That a process is stopped is seen without listening: all of that time counts.
 class Liveness {
  public:
   /// The process was started at `signs.now`.
@@ -39,22 +43,25 @@ class Liveness {
 
   /// A heartbeat arrived; `job_silent`: it says that a job gives no sign of life.
   void beat(TimePoint at, bool job_silent);
+  /// Returns the state of the process at `signs.now`, which must not decrease between calls.
   Life judge(const LifeSigns& signs);
-  bool job_hung() const { return job_hung_; }  ///< what the last judgement found: heartbeats come, but a job is hung
+  /// Returns what the last judge() found: heartbeats come, but a job is hung.
+  bool job_hung() const { return job_hung_; }
 
  private:
   LivenessSettings settings_;
   LifeSigns last_;                      // at the last heartbeat, or at the start
   std::optional<LifeSigns> job_since_;  // when the job was first found silent
-  std::optional<TimePoint> new_beat_;   // since the last judgement
+  std::optional<TimePoint> new_beat_;   // since the last judge()
   std::optional<TimePoint> stopped_since_;
   bool beaten_{}, job_silent_{}, job_hung_{};
 };
 
-/// How long to wait before a process is started again: doubled with each death, from the first value on after a stable life.
+/// How long to wait before a process is started again: doubled with each death, from the first
+/// value on after a stable life.
 struct BackoffSettings {
-  Duration first{from_seconds(0.1)};
-  Duration longest{from_seconds(10.0)};
+  Duration first{from_seconds(0.1)};          ///< wait after a first death
+  Duration longest{from_seconds(10.0)};       ///< upper limit of the wait
   Duration stable_after{from_seconds(30.0)};  ///< a life this long forgets the deaths before
 };
 

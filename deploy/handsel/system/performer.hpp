@@ -1,4 +1,5 @@
-// Performs a scenario's tasks through TaskGoal and TaskStatus and watches the simulator's oracle. Works on any bus.
+// Performs a scenario's tasks through TaskGoal and TaskStatus and watches the simulator's oracle.
+// Works on any bus.
 #pragma once
 
 #include <memory>
@@ -10,9 +11,11 @@
 
 namespace handsel {
 
-/// Without a word about a task for so long its goal is sent again: the supervisor tells it more often, one goal twice is one task.
+/// Without a sample about a task for so long its goal is sent again: the supervisor reports it more
+/// often, and one goal twice is one task.
 inline constexpr Duration kTaskSilence = std::chrono::seconds(2);
-inline constexpr Duration kAnswerPatience = std::chrono::seconds(4);  // the supervisor gives a thing that is named two seconds to be seen
+// the supervisor gives a thing that is named two seconds to be seen
+inline constexpr Duration kAnswerPatience = std::chrono::seconds(4);
 
 /// "give mug to anna"
 std::string describe(const TaskGoal& goal);
@@ -20,23 +23,25 @@ std::string describe(const TaskGoal& goal);
 TaskGoal make_goal(const config::TaskDescription& task, std::uint64_t id);
 /// All of them, in order, with ids from 1; throws ConfigError also when there is none.
 std::vector<TaskGoal> scenario_goals(const config::Scenario& scenario);
+/// Returns true for succeeded, failed, cancelled and refused.
 bool is_over(TaskState state);
 
 struct StepOutcome {
-  std::string step;
+  std::string step;   ///< as in TaskStatus::plan, e.g. "pick mug"
   double started{};   ///< since the performance began [s]
   double duration{};  ///< [s]
 };
 
 struct TaskOutcome {
-  std::string task;              ///< "give mug to anna"
-  bool success{};                ///< give: the oracle's word; other kinds: the supervisor's
-  bool timed_out{};              ///< it was not done within the time of all tasks
-  std::string state, reason;     ///< as the supervisor said last; reason also when the oracle disagrees
+  std::string task;  ///< "give mug to anna"
+  bool success{};    ///< give: the oracle's word; other kinds: the supervisor's
+  bool timed_out{};  ///< it was not done within the time of all tasks
+  /// As the supervisor said last; reason also when the oracle disagrees.
+  std::string state, reason;
   double started{}, duration{};  ///< [s]
-  double first_motion{-1};       ///< after the goal was given the robot moved first [s]; negative: never
-  std::vector<StepOutcome> steps;
-  Refusals refusals;
+  double first_motion{-1};  ///< after the goal was given the robot moved first [s]; negative: never
+  std::vector<StepOutcome> steps;  ///< those that began, in order
+  Refusals refusals;               ///< as the supervisor reported last
 };
 
 class Performer {
@@ -44,11 +49,17 @@ class Performer {
   /// Begins as soon as `ready` holds. Throws as scenario_goals().
   Performer(Bus& bus, Observer& observer, const config::Scenario& scenario, double timeout, std::function<bool()> ready);
 
+  /// Returns true after the last task, a failed one, the timeout or abort().
   bool finished() const { return phase_ == Phase::finished; }
+  /// Returns true when finished and every task of the scenario has succeeded.
   bool succeeded() const;
+  /// Returns true once `ready` has held, or after abort().
   bool started() const { return phase_ != Phase::waiting; }
+  /// Of the performance, clock of the bus; valid once started.
   TimePoint begin() const { return begin_; }
-  double duration() const { return to_seconds(end_ - begin_); }  ///< of the performance [s], valid once finished
+  /// Of the performance [s], valid once finished.
+  double duration() const { return to_seconds(end_ - begin_); }
+  /// Returns the tasks begun so far; the last one may still run.
   const std::vector<TaskOutcome>& outcomes() const { return outcomes_; }
   /// Ends it now: the running task counts as failed for this reason.
   void abort(const std::string& reason);

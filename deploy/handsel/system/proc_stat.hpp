@@ -12,9 +12,12 @@ namespace handsel {
 /// How long the main thread has waited for a processor so far; zero when the kernel does not tell.
 Duration main_thread_delay(pid_t pid);
 
-/// How long the threads of a process have waited for a processor: in each step the one that waited longest counts.
+/// How long the threads of a process have waited for a processor: in each step the one that waited
+/// longest counts.
 class ThreadDelay {
  public:
+  /// Adds the step since the last call and returns the sum; threads that began since then do not
+  /// count. `pid` must not change.
   Duration update(pid_t pid);
 
  private:

@@ -1,4 +1,5 @@
-// Finds hung processes by their heartbeats, has them replaced, and speaks for processes that cannot: a launcher's ear and mouth on the bus.
+// Finds hung processes by their heartbeats, has them replaced, and reports for processes that
+// cannot: the launcher's participant on the bus.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +15,10 @@
 
 namespace handsel {
 
-/// Heartbeats are samples of ComponentHealth: they are published on the thread that does a process's work. Judged on the monotonic clock,
-/// whatever the time of the system is. While a process does not run, ComponentHealth with its name, state stopping and pid 0 says how it
-/// ended, how often it was started again and when it will be.
+/// Heartbeats are samples of ComponentHealth: they are published on the thread that does a
+/// process's work. Checked on the monotonic clock, whatever the time of the system is. While a
+/// process does not run, ComponentHealth with its name, state stopping and pid 0 says how it ended,
+/// how often it was started again and when it will be.
 class ProcessWatch {
  public:
   /// Lives on the executor thread of the bus; the launcher must outlive the deliveries of the bus.

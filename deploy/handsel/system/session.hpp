@@ -1,4 +1,5 @@
-// A command's seat in a running system: a DDS participant, an observer, and Ctrl-C as a flag.
+// A command's access to a running system: a DDS participant, a passive observer, and Ctrl-C as a
+// flag.
 #pragma once
 
 #include <functional>
@@ -10,8 +11,10 @@
 
 namespace handsel {
 
-/// Turns SIGINT and SIGTERM into a flag for the life of the process; the second SIGINT ends it at once.
+/// Turns SIGINT and SIGTERM into a flag for the life of the process; the second SIGINT ends it at
+/// once.
 void catch_interrupts();
+/// Returns true after SIGINT or SIGTERM; false without catch_interrupts().
 bool interrupted();
 
 class Session {
@@ -19,8 +22,9 @@ class Session {
   /// Throws MissingError when the domain cannot be entered.
   explicit Session(int domain);
 
-  DdsBus& bus() { return bus_; }
-  Observer& observer() { return observer_; }
+  DdsBus& bus() { return bus_; }              ///< of the component "handsel", without health
+  Observer& observer() { return observer_; }  ///< on the bus, from construction on
+  /// Newest samples, as the observer has them.
   const Snapshot& snapshot() const { return observer_.snapshot(); }
   /// Listens until `done` holds, `limit` has passed or Ctrl-C; true if it held.
   bool wait(Duration limit, const std::function<bool()>& done);
@@ -28,12 +32,13 @@ class Session {
   void listen(Duration time) {
     wait(time, [] { return false; });
   }
-  /// Throws MissingError when no component is heard within 1 s.
+  /// Throws MissingError when no health of a component arrives within 1 s.
   void require_system();
   /// Publishes a goal as soon as a supervisor listens; false when none did within 1 s.
   bool send(const TaskGoal& goal);
-  /// Publishes a goal to who listens now.
+  /// Publishes a goal to the present subscribers; false when the transport refuses.
   bool publish(const TaskGoal& goal) { return goals_->publish(goal); }
+  /// Returns the next id, counted from a random start: ids of two commands hardly collide.
   std::uint64_t new_task_id();
 
  private:

@@ -15,9 +15,10 @@ inline constexpr Duration kReadyPatience = std::chrono::seconds(15);
 void add_domain_option(CLI::App& command, int& domain);
 /// --robot, --scenario, --seed, --domain, --port, --record, --ros2, --no-weld.
 void add_system_options(CLI::App& command, SystemOptions& options);
-/// --no-weld, told to the simulator through the environment's HANDSEL_NO_WELD.
+/// --no-weld, passed to the simulator through the environment's HANDSEL_NO_WELD.
 void add_no_weld_option(CLI::App& command);
-/// Prints the page's address, or why there is no page; opens it in a browser when there is a display and not `headless`.
+/// Prints the page's address, or why there is no page; opens it in a browser when there is a
+/// display and not `headless`.
 void announce_page(System& system, bool headless);
 
 }  // namespace handsel
