@@ -31,7 +31,7 @@ class Canvas {
   void triangle(const std::array<Vector3, 3>& corners, const std::array<Colour, 3>& colours);
   /// Draws a shape at pose `T`; round shapes as polyhedra of 28 sides.
   void shape(const Shape& shape, const Pose& T, Colour colour, double opacity = 1);
-  /// `radius` [m].
+  /// Draws a sphere of this radius [m].
   void ball(const Vector3& centre, double radius, Colour colour, double opacity = 1);
   /// Semi-axes: the columns [m].
   void ellipsoid(const Vector3& centre, const Eigen::Matrix3d& axes, Colour colour, double opacity = 1);

@@ -28,7 +28,7 @@ class Recorder {
   /// Takes the samples that came, at least every kLook, or fast topics lose samples. Throws
   /// ConfigError when the disk refuses.
   void look();
-  /// Ends the file. As look().
+  /// Takes the last samples and ends the file. Throws ConfigError when the disk refuses.
   void close();
   const mcap::Writer& file() const { return file_; }  ///< for its counts
 

@@ -68,7 +68,7 @@ class Launcher {
   void stop();
   std::vector<ProcessStatus> processes() const;  ///< state of each now, in the order of the options
   pid_t pid(const std::string& name) const;      ///< -1 if it does not run or is unknown
-  /// Returns the failure, waiting up to `patience` for one; nullopt when there is none.
+  /// Returns the failure, waiting for one up to the given time; nullopt when there is none.
   std::optional<LaunchFailure> failure(Duration patience = {}) const;
 
  private:

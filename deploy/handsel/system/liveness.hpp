@@ -45,14 +45,14 @@ class Liveness {
   void beat(TimePoint at, bool job_silent);
   /// Returns the state of the process at `signs.now`, which must not decrease between calls.
   Life judge(const LifeSigns& signs);
-  /// Returns what the last judge() found: heartbeats come, but a job is hung.
+  /// Returns the result of the last evaluation: heartbeats come, but a job is hung.
   bool job_hung() const { return job_hung_; }
 
  private:
   LivenessSettings settings_;
   LifeSigns last_;                      // at the last heartbeat, or at the start
   std::optional<LifeSigns> job_since_;  // when the job was first found silent
-  std::optional<TimePoint> new_beat_;   // since the last judge()
+  std::optional<TimePoint> new_beat_;   // since the last evaluation
   std::optional<TimePoint> stopped_since_;
   bool beaten_{}, job_silent_{}, job_hung_{};
 };

@@ -19,8 +19,8 @@ struct RunningProcess {
 
 /// Returns every process whose entry in /proc is readable.
 std::vector<RunningProcess> running_processes();
-/// Who holds a port of this machine: "handsel_bridge (pid 7)"; empty when nobody is found. `table`
-/// is tcp (listening) or udp.
+/// Returns the process that holds a port of this machine: "handsel_bridge (pid 7)"; empty when none
+/// is found. `table` is tcp (listening) or udp.
 std::string port_holder(const std::string& table, int port);
 
 }  // namespace handsel

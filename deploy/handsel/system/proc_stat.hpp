@@ -17,7 +17,7 @@ Duration main_thread_delay(pid_t pid);
 class ThreadDelay {
  public:
   /// Adds the step since the last call and returns the sum; threads that began since then do not
-  /// count. `pid` must not change.
+  /// count yet.
   Duration update(pid_t pid);
 
  private:
