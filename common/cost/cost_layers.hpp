@@ -13,20 +13,24 @@
 namespace handsel {
 
 struct OutsideCost {
-  double cost{};                   ///< weighted sum over the layers; what a layer forbids costs 1 there
+  double cost{};  ///< weighted sum over the layers; what a layer forbids costs 1 there
   const CostGrid* forbidden_by{};  ///< null: by none
 };
 
 struct LayersNow {
-  std::shared_ptr<const CostGrid> comfort;               ///< arm comfort of comfort->person(), validated against the furniture; or null
-  std::vector<std::shared_ptr<const CostGrid>> outside;  ///< what others add, in the order of their names
+  /// Arm comfort of comfort->person(), validated against the furniture; or null
+  std::shared_ptr<const CostGrid> comfort;
+  /// What others add, in the order of their names
+  std::vector<std::shared_ptr<const CostGrid>> outside;
 
+  /// Returns the comfort layer when it is about this person, else nullptr.
   const CostGrid* comfort_of(const std::string& person) const { return comfort && comfort->person() == person ? comfort.get() : nullptr; }
   /// What outside layers say about a place in the world.
   OutsideCost outside_cost(const Vector3& p) const;
 };
 
-/// Keeps the newest "arm_comfort" and every outside layer. What cannot be used is left out, counted and named.
+/// Keeps the newest "arm_comfort" and every outside layer. What cannot be used is left out, counted
+/// and named.
 class CostLayers {
  public:
   /// `stale`: a layer last sent longer ago counts no more.
@@ -34,10 +38,13 @@ class CostLayers {
 
   /// `sent`: when its writer sent it, on the clock of `now`.
   void put(const Costmap& map, TimePoint sent, TimePoint now);
+  /// Returns the layers that are not stale at `now`; drops those that are.
   LayersNow at(TimePoint now);
 
-  std::uint64_t left_out() const { return left_out_; }  ///< samples with a fault or sent too long ago, and layers that fell silent
-  /// What was left out last, one sentence; empty when that layer came again since, or ten seconds have passed.
+  /// Samples with a fault or sent too long ago, and layers that fell silent
+  std::uint64_t left_out() const { return left_out_; }
+  /// What was left out last, one sentence; empty when that layer came again since, or ten seconds
+  /// have passed.
   std::string complaint(TimePoint now);
 
  private:

@@ -7,7 +7,8 @@
 
 namespace handsel {
 
-/// Reads cost.txtpb of a settings directory. Throws ConfigError / MissingError naming file and field.
+/// Reads cost.txtpb of a settings directory. Throws ConfigError / MissingError naming file and
+/// field.
 CostSettings load_cost_settings(const std::filesystem::path& directory);
 
 }  // namespace handsel

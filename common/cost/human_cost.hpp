@@ -1,4 +1,5 @@
-// The human-aware costs (chapter section 4.1.2, eq. 1): safety, visibility, arm comfort, each in [0, 1], and their weighted sum.
+// The human-aware costs (chapter section 4.1.2, eq. 1): safety, visibility, arm comfort, each in
+// [0, 1], and their weighted sum.
 #pragma once
 
 #include <memory>
@@ -16,18 +17,25 @@ namespace handsel {
 
 struct CostSettings {
   double safety_radius{1.0};                                ///< R [m]
-  double visibility_cutoff{3.0};                            ///< nothing beyond this distance of the eyes [m]
-  double w_safety{1.0}, w_visibility{0.3}, w_comfort{0.3};  ///< >= 0, not all 0; their sum is scaled to 1
+  double visibility_cutoff{3.0};  ///< nothing beyond this distance of the eyes [m]
+  /// >= 0, not all 0; their sum is scaled to 1
+  double w_safety{1.0}, w_visibility{0.3}, w_comfort{0.3};
 };
 
-/// 1 at contact, 0 from `radius` on, falling in between (ours, formulas of section 4.1.2).
+/// Returns 1 at contact, 0 from `radius` [m] on, falling exponentially in between (formula of
+/// section 4.1.2).
 double safety_cost(double distance, double radius);
-/// angle(gaze, p - eyes)/pi; where the gaze is unknown the body's front stands in for it.
+/// Returns angle(gaze, p - eyes) / pi, in [0, 1]; 0 beyond `cutoff` [m] from the eyes. `p`: world
+/// [m].
 double visibility_cost(const Sight&, const Vector3& p, double cutoff);
+/// The same for a person; where the gaze is unknown the body's front stands in for it. 0 when not
+/// even the head is known.
 double visibility_cost(const Person&, const Vector3& p, double cutoff);
-/// Marler's form on the person's arm reaching p with the more comfortable hand: joint displacement, raised mass, nearness to joint
-/// limits, weighted to [0, 1] (the arm's joints, limits and weights are ours); 1 when out of reach.
+/// Marler's form on the person's arm reaching p with the more comfortable hand: joint displacement,
+/// raised mass, nearness to joint limits, weighted to [0, 1] (own method: joints, limits and
+/// weights of the arm); 1 when out of reach.
 double arm_comfort_cost(const Person&, const Vector3& p);
+/// The same for one arm only; 1 when its joints are not all known or p is out of reach.
 double arm_comfort_cost(const Person&, Side side, const Vector3& p);
 /// A person's arm by its lengths.
 struct ArmSize {
@@ -36,18 +44,23 @@ struct ArmSize {
 };
 /// nullopt when the joints of that arm are not all there.
 std::optional<ArmSize> arm_size(const Person&, Side side);
-/// arm_comfort_cost of an arm alone: p from the shoulder, along (forward, outward, up) of the torso [m].
+/// arm_comfort_cost of an arm alone: p from the shoulder, along (forward, outward, up) of the torso
+/// [m].
 double arm_comfort_cost(const ArmSize& arm, const Vector3& p_arm);
 /// An arm where it is.
 struct PlacedArm {
+  /// Lengths of its two parts.
   ArmSize size;
   Vector3 shoulder{Vector3::Zero()};                        ///< world [m]
-  Eigen::Matrix3d to_arm{Eigen::Matrix3d::Identity()};      ///< from the world to (forward, outward, up) of the torso
+  /// From the world to (forward, outward, up) of the torso
+  Eigen::Matrix3d to_arm{Eigen::Matrix3d::Identity()};
   double length() const { return size.upper + size.fore; }  ///< shoulder to hand [m]
 };
+/// Returns the arm with its shoulder and the axes of the torso; nullopt when its joints are not all
+/// known.
 std::optional<PlacedArm> placed_arm(const Person&, Side side);
-/// Comfort cost of the better of these arms at p: from the layer where there is one (out of reach, or furniture in the way: 1), else
-/// arm_comfort_cost.
+/// Comfort cost of the better of these arms at p: from the layer where there is one (out of reach,
+/// or furniture in the way: 1), else arm_comfort_cost.
 double arm_comfort_cost(const CostGrid* layer, const std::vector<PlacedArm>& arms, const Vector3& p);
 /// Those of the person that are known.
 std::vector<PlacedArm> placed_arms(const Person&);
@@ -58,12 +71,14 @@ double arm_length(const Person&);
 
 /// The parts of the cost of one configuration, before weighting.
 struct CostParts {
+  /// Each in [0, 1]; comfort is that of the arm.
   double safety{}, visibility{}, comfort{};
   double distance{};  ///< robot to the simplified body [m]; +inf if nobody
   double outside{};   ///< what outside layers add, weighted, each where the robot fares worst in it
 };
 
-/// The weighted sum of our three, in [0, 1], and what outside layers add.
+/// Returns the sum of safety, visibility and comfort by their weights, in [0, 1], plus what outside
+/// layers add.
 double weighted_cost(const CostParts&, const CostSettings&);
 /// The costs of a hand or object at p, as a point, for one person.
 CostParts point_cost(const Person&, const Vector3& p, const CostSettings&);
@@ -71,23 +86,27 @@ CostParts point_cost(const Person&, const Vector3& p, const CostSettings&);
 /// What an outside layer forbids: which link is there.
 struct ForbiddenPlace {
   const CostGrid* layer{};  ///< null: nowhere forbidden
-  int link{-1};
+  int link{-1};  ///< robot link that is in the forbidden place; -1: none
 };
 
-/// Cost of a robot configuration for everyone in the scene; the largest over people. Safety looks at the links that axes move (a platform
-/// that stands still would hide what the arm does), visibility and comfort at the tool frame, outside layers at points along those links
-/// and the tool frame.
+/// Cost of a robot configuration for everyone in the scene; the largest over people. Safety looks
+/// at the links that axes move (a platform at rest would hide what the arm does), visibility and
+/// comfort at the tool frame, outside layers at points along those links and the tool frame.
 class HumanCost {
  public:
   HumanCost(const RobotModel& robot, CostSettings settings);
+  /// Replaces all people; their joints are in the world frame.
   void set_people(const HumanState& people);
-  /// Arm comfort of the person it is about comes from the layer then (out of reach, or furniture in the way: 1), that of others and
-  /// without a layer from arm_comfort_cost.
+  /// Arm comfort of the person it is about comes from the layer then (out of reach, or furniture in
+  /// the way: 1), that of others and without a layer from arm_comfort_cost.
   void set_layers(LayersNow layers);
+  /// Sets the pose of the root link of the robot in the world.
   void set_base(const Pose& T_world_base);
-  /// From now on states that differ in these axes only are looked at many at once, in single precision: costs within 2e-4 of parts(). When
-  /// another axis differs, the robot is folded anew. Empty: one by one, as at the beginning.
+  /// From now on states that differ in these axes only are evaluated in batches, in single
+  /// precision: costs within 2e-4 of parts(). When another axis differs, the robot is folded anew.
+  /// Empty: one by one, as at the beginning.
   void set_moving_axes(const std::vector<int>& axes);
+  /// Returns whether at least one person is in the scene.
   bool anyone() const { return !people_.people.empty(); }
   /// Somebody is there, or somebody outside adds a layer; else every cost is 0.
   bool concerned() const { return anyone() || !layers_.outside.empty(); }
@@ -96,6 +115,8 @@ class HumanCost {
   void on_line(const Vector& from, const Vector& to, const double* at, int count, double* cost) const;
   CostParts parts(const Vector& q) const;    ///< of the person it is worst for
   bool forbids() const { return forbids_; }  ///< some outside layer forbids some place
+  /// Returns the first layer that forbids a place the robot is at, `q`: all axes; a null layer when
+  /// none does.
   ForbiddenPlace forbidden(const Vector& q) const;
 
  private:
@@ -121,7 +142,7 @@ class HumanCost {
   LayersNow layers_;
   bool forbids_{false};
   std::vector<Someone> someone_;
-  std::vector<LinkPoint> probes_;  // at which outside layers are looked at; the tool first
+  std::vector<LinkPoint> probes_;  // at which outside layers are sampled; the tool first
   std::unique_ptr<WideCost> wide_;
   Pose T_world_base_{Pose::Identity()};
   int tool_{-1};
@@ -130,7 +151,8 @@ class HumanCost {
   mutable std::vector<double> bounds_;
 };
 
-/// Distance of a capsule (segment and radius) to the simplified body [m]; negative when they overlap.
+/// Distance of a capsule (segment and radius) to the simplified body [m]; negative when they
+/// overlap.
 double simplified_distance(const SimplifiedBody&, const Vector3& a, const Vector3& b, double radius);
 
 }  // namespace handsel

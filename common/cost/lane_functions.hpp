@@ -1,5 +1,5 @@
-// The functions of the costs for single numbers and for registers of them, in single precision. Local to the unit that includes them: see
-// common/collision/wide_lanes.hpp.
+// The functions of the costs for single numbers and for registers of them, in single precision.
+// Local to the unit that includes them: see common/collision/wide_lanes.hpp.
 #pragma once
 
 #include <cmath>

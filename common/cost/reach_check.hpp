@@ -1,5 +1,5 @@
-// Where furniture keeps a person's hands from: the comfort of the arm is validated against the environment (chapter section 4.1.2; the
-// tests are ours). Pure.
+// Where furniture keeps a person's hands from: the comfort of the arm is validated against the
+// environment (chapter section 4.1.2). Own method: the tests, which the chapter leaves open. Pure.
 #pragma once
 
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace handsel {
 
-/// A hand that takes something needs this much room around it (ours) [m].
+/// A hand that takes something needs this much room around it [m].
 inline constexpr double kHandClearance = 0.04;
 
 class ReachCheck {
  public:
-  /// Of the person's present shoulders. Places nearer than `clearance` [m] to a box are none. A person without shoulders is kept from
-  /// nothing but the boxes themselves.
+  /// Of the person's present shoulders. Places nearer than `clearance` [m] to a box are none. A
+  /// person without shoulders is kept from nothing but the boxes themselves.
   ReachCheck(const Person& person, const std::vector<SceneBox>& boxes, double clearance = kHandClearance);
 
-  /// Id of a box that p (world) is in, near, under while the shoulders are above it, or behind as seen from both shoulders; nullptr: none.
+  /// Id of a box that p (world) is in, near, under while the shoulders are above it, or behind as
+  /// seen from both shoulders; nullptr: none.
   const std::string* blocked_by(const Vector3& p_world) const;
 
  private:

@@ -1,4 +1,5 @@
-// Safety and visibility of up to sixteen states of a robot at once; HumanCost asks it where it is told which axes move. Ours.
+// Safety and visibility of up to sixteen states of a robot at once, for HumanCost where the moving
+// axes are known. Own method: batches in single precision.
 #pragma once
 
 #include <memory>
@@ -15,29 +16,39 @@ namespace handsel {
 
 /// A point that moves with a link.
 struct LinkPoint {
+  /// Index of the link in the robot model.
   int link{};
-  Vector3 p_link{Vector3::Zero()};  ///< [m]
+  Vector3 p_link{Vector3::Zero()};  ///< in the frame of the link [m]
 };
 
 class WideCost {
  public:
+  /// Number of states in one batch.
   static constexpr int kStates = detail::kWideStates;
 
   /// `points`: visibility is that of the first.
   WideCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points);
 
-  /// States in which only `axes` differ are asked about; when another one does, the robot is folded anew. Empty: nothing is answered.
+  /// States in which only `axes` differ are asked about; when another one does, the robot is folded
+  /// anew. Empty: nothing is answered.
   void set_axes(const std::vector<int>& axes);
+  /// Sets the pose of the root link of the robot in the world.
   void set_base(const Pose& T_world_base);
   struct Someone {
-    SimplifiedBody body;
-    std::optional<Sight> sight;
+    SimplifiedBody body;  ///< cylinder and head, world [m]
+    std::optional<Sight> sight;  ///< eyes and gaze; nullopt: unknown, visibility is then 0
   };
+  /// Replaces all people. `safety_radius`: R [m]; `visibility_cutoff`: nothing beyond this distance
+  /// of the eyes [m].
   void set_people(std::vector<Someone> people, double safety_radius, double visibility_cutoff);
 
-  /// The states from + at[i] (to - from), i < count <= kStates, with the first `points` of the points. False: not for this path.
+  /// The states from + at[i] (to - from), i < count <= kStates, with the first `points` of the
+  /// points. False: not for this path.
   bool run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points);
+  /// Returns the safety cost, [0, 1], of one state of the last run() for a person by index. `lane`:
+  /// index of the state.
   double safety(std::size_t person, int lane) const { return safety_[person * kStates + static_cast<std::size_t>(lane)]; }
+  /// Returns the visibility cost, [0, 1], of the first point in that state for a person by index.
   double visibility(std::size_t person, int lane) const { return visibility_[person * kStates + static_cast<std::size_t>(lane)]; }
   Vector3 point(std::size_t i, int lane) const {  ///< world [m]
     const float* p = point_.get() + 3 * i * kStates + lane;

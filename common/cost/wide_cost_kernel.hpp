@@ -1,6 +1,7 @@
-// Safety and visibility of sixteen states of a robot side by side, and where points of it are. Plain data in single precision, in a frame
-// along the world's axes with its origin at the robot's base. The same source for every register width, chosen when the program runs; every
-// width gives the same bits. Nothing here allocates, locks or throws.
+// Safety and visibility of sixteen states of a robot side by side, and where points of it are.
+// Plain data in single precision, in a frame along the world's axes with its origin at the robot's
+// base. The same source for every register width, chosen when the program runs; every width gives
+// the same bits. Nothing here allocates, locks or throws.
 #pragma once
 
 #include <cstdint>
@@ -36,14 +37,15 @@ struct CostTables {
   float root[12];  ///< of the robot, by rows
 };
 
-/// On 64 bytes, rows of kWideStates: pose 12 a body, ends 8 a capsule; out: safety and visibility one a person, point 3 a point.
+/// On 64 bytes, rows of kWideStates: pose 12 a body, ends 8 a capsule; out: safety and visibility
+/// one a person, point 3 a point.
 struct CostMemory {
   float *pose, *ends, *safety, *visibility, *point;
 };
 
 struct CostKernel {
   const char* name;
-  /// q as in WideKernels; the first `count` of kWideStates lanes are written.
+  /// q as in WideKernels; the first `count` of kWideStates states are written.
   void (*run)(const CostTables& tables, const CostMemory& memory, const float* q, int count) noexcept;
 };
 

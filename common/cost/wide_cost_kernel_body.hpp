@@ -8,7 +8,8 @@
 namespace handsel::detail {
 namespace {
 
-constexpr int kHalvings = 14;  // of a segment: its nearest point is known within 1/32768 of its length
+// of a segment: its nearest point is known within 1/32768 of its length
+constexpr int kHalvings = 14;
 
 struct Place {
   V x, y, z;
@@ -33,7 +34,8 @@ struct Place {
   return sqrt(across * across + along * along);
 }
 
-/// The squared distance to a convex body is convex along a line: halves the segment by the sign of its slope.
+/// The squared distance to a convex body is convex along a line: halves the segment by the sign of
+/// its slope.
 [[gnu::always_inline]] inline V segment_to_cylinder(const CostPerson& h, const Place& a, const Place& d) noexcept {
   const V x = a.x - h.axis_x, y = a.y - h.axis_y, z = a.z - h.bottom;
   V low = 0.0f, high = 1.0f;
