@@ -48,7 +48,8 @@ class WideCost {
   /// Returns the safety cost, [0, 1], of one state of the last run() for a person by index. `lane`:
   /// index of the state.
   double safety(std::size_t person, int lane) const { return safety_[person * kStates + static_cast<std::size_t>(lane)]; }
-  /// Returns the visibility cost, [0, 1], of the first point in that state for a person by index.
+  /// Returns the visibility cost, [0, 1], of the first point of one state of the last run() for a
+  /// person by index.
   double visibility(std::size_t person, int lane) const { return visibility_[person * kStates + static_cast<std::size_t>(lane)]; }
   Vector3 point(std::size_t i, int lane) const {  ///< world [m]
     const float* p = point_.get() + 3 * i * kStates + lane;

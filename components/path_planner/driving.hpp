@@ -11,12 +11,14 @@ namespace handsel::path_planner {
 /// Whether the group is one that on_platform adds.
 bool drives(const std::string& group);
 
-/// `mobile`: a robot on its platform (on_platform). Completes a problem whose axes are those of a group that drives: people's costs of the
-/// platform; room as far as start and goals and `roam` [m] beyond; headings of goals nearest to that of the start.
+/// `mobile`: a robot on its platform (on_platform). Completes a problem whose axes are those of a
+/// group that drives: people's costs of the platform; room as far as start and goals and `roam` [m]
+/// beyond; headings of goals nearest to that of the start.
 void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Problem& problem);
 
-/// Poses for the whole robot: places of the platform around each, drawn at random and as near to where it stands as they come, from which
-/// the arm reaches it with the other axes as in q_start; free of collision with what stands still. Up to `each` a pose.
+/// Poses for the whole robot: places of the platform around each, drawn at random and as near to
+/// where it stands as they come, from which the arm reaches it with the other axes as in q_start;
+/// free of collision with what is at rest. Up to `each` a pose.
 PoseGoals reach_driving(const RobotModel& mobile, CollisionWorld& world, const std::vector<PoseGoal>& poses, const Vector& q_start,
                         std::uint64_t seed, int each = 4);
 

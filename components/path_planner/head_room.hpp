@@ -1,4 +1,5 @@
-// Room about people's heads: where an arm may only creep, a path that leads by is no short one. Pure, ours.
+// Room about people's heads: where an arm may only creep, a path that leads by is no short one.
+// Pure. Own method.
 #pragma once
 
 #include <vector>
@@ -7,9 +8,10 @@
 
 namespace handsel::path_planner {
 
-/// Makes spheres about the heads obstacles of the world, larger than the heads by `room` [m] or by the largest share of it at which
-/// `start` and one of `goals` (all axes) are free: what stands nearer must be able to leave, what is held near a head be reached. Returns
-/// the room that is kept [m]; at 0 there are no such obstacles. Everything else of the world is set before.
+/// Makes spheres about the heads obstacles of the world, larger than the heads by `room` [m] or by
+/// the largest fraction of it at which `start` and one of `goals` (all axes) are free: what stands
+/// nearer must be able to leave, what is held near a head be reached. Returns the room that is kept
+/// [m]; at 0 there are no such obstacles. Everything else of the world is set before.
 double keep_off_heads(CollisionWorld& world, const HumanState& people, double room, const Vector& start, const std::vector<Vector>& goals);
 
 }  // namespace handsel::path_planner

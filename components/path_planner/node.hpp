@@ -24,7 +24,7 @@ class Node {
  public:
   Node(Bus& bus, const NodeContext& context);
 
-  /// How requests to go on along a running path ended, by LiveOutcome.
+  /// Returns how many requests to continue along a running path ended in each LiveOutcome.
   const std::array<std::uint64_t, 5>& live_outcomes() const { return live_outcomes_; }
 
  private:

@@ -1,5 +1,5 @@
-// From a problem to a path: straight line, random search, smoothing, a last fine check. Pure: no clock, no files, no global state; the
-// same problem in the same world gives the same result.
+// From a problem to a path: straight line, random search, smoothing, a last fine check. Pure: no
+// clock, no files, no global state; the same problem in the same world gives the same result.
 #pragma once
 
 #include "common/collision/collision_world.hpp"
@@ -8,9 +8,10 @@
 
 namespace handsel::path_planner {
 
-/// RRT-Connect where nobody is there, BiT-RRT on the human-aware cost where somebody is (chapter section 4.1.3), or what the problem names.
-/// The world and the cost hold robot, scene, people, base and what the hand carries. A failure says why: which end is in collision and
-/// with what, which axis is out of its limits, which dimension is wrong, how near the search came.
+/// RRT-Connect where nobody is there, BiT-RRT on the human-aware cost where somebody is (chapter
+/// section 4.1.3), or what the problem names. The world and the cost hold robot, scene, people,
+/// base and what the hand carries. A failure says why: which end is in collision and with what,
+/// which axis is out of its limits, which dimension is wrong, how near the search came.
 Result plan(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem, const Settings& settings,
             const Hooks& hooks = {});
 

@@ -10,7 +10,8 @@
 
 namespace handsel::path_planner {
 
-/// Why nobody could plan for this request, one sentence; empty: it makes sense. What needs the scene is not looked at.
+/// Why nobody could plan for this request, one sentence; empty: it makes sense. What needs the
+/// scene is not checked.
 std::string contradiction(const RobotModel& robot, const PathRequest& request);
 
 /// The places of the tip in the frame of the robot's root link.

@@ -1,4 +1,5 @@
-// A second arm whose tip is rigidly joined to that of the first: two hands on one object (ours). Pure.
+// A second arm whose tip is rigidly joined to that of the first: two hands on one object. Own
+// method. Pure.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,7 @@
 namespace handsel::trajectory_planner {
 
 struct JoinedArm {
-  const Group* arm{};
+  const Group* arm{};  ///< group of the second arm; must outlive this
   Pose T_tip_follower{Pose::Identity()};  ///< tip of the first arm to that of the second
 };
 
@@ -20,9 +21,11 @@ struct JoinError {
   double apart{};   ///< [m]
   double turned{};  ///< [rad]
 };
+/// Returns distance and angle between two poses of the second tip in the frame of the first.
 JoinError join_error(const Pose& T_tip_follower, const Pose& wanted);
 
-/// The joints of the second arm for poses of the first's tip, one near the next; its elbow stays at the angle it has at the start.
+/// The joints of the second arm for poses of the first's tip, one near the next; its elbow stays at
+/// the angle it has at the start.
 class ClosedChain {
  public:
   /// `start`: all axes. Keeps references to robot and group.
@@ -30,13 +33,21 @@ class ClosedChain {
   ClosedChain(const ClosedChain&) = delete;
   ClosedChain& operator=(const ClosedChain&) = delete;
 
-  /// Why the arm cannot follow, one sentence; empty: it can. The tips must be joined at the start as they are said to be.
+  /// Why the arm cannot follow, one sentence; empty: it can. The tips must be joined at the start
+  /// as they are said to be.
   std::string objection(const Pose& T_root_tip) const;
+  /// Returns the robot axes of the second arm, in the order of joints().
   const std::vector<int>& axes() const { return joined_.arm->axes; }
-  const Vector& joints() const { return q_; }  ///< where it has been followed to
+  /// Joints of the second arm after the last follow() that was true [rad]
+  const Vector& joints() const { return q_; }
+  /// Returns the arm to its joints at the start; the next follow() is near those.
   void restart() { q_ = start_; }
-  /// False where it does not reach, meets a limit or would jump by more than `largest_step` [rad]: `why` says so.
+  /// Moves joints() to the next pose of the first tip. False where the arm does not reach, meets a
+  /// limit or a joint would jump by more than `largest_step` [rad]: `why` says so. Only after
+  /// objection() was empty.
   bool follow(const Pose& T_root_tip, double largest_step, std::string& why);
+  /// Returns how far the second tip is from its wanted pose for a pose of the first tip. `joints`:
+  /// of the second arm [rad].
   JoinError error(const Pose& T_root_tip, const Vector& joints) const;
 
  private:

@@ -1,5 +1,5 @@
-// How fast the robot may be at each place of its way because of people (ours): what the place costs them (chapter section 4.1.2), and what
-// they do: come nearer, or look elsewhere. Pure.
+// How fast the robot may be at each place of its path because of people. Own method: what the place
+// costs them (chapter section 4.1.2), and what they do: come nearer, or look elsewhere. Pure.
 #pragma once
 
 #include <vector>
@@ -12,18 +12,23 @@ namespace handsel::trajectory_planner {
 
 /// Who is around the robot, and where it stands.
 struct Surroundings {
-  HumanState people;
+  HumanState people;  ///< joints in the world frame
+  /// Pose of the root link of the robot in the world.
   Pose T_world_base{Pose::Identity()};
 };
 
-/// Shares of the velocity limits.
+/// Factors of the velocity limits, because of people.
 struct SpeedSettings {
-  double cost_step{0.1};           ///< the way is looked at this often [rad, max norm]
+  double cost_step{0.1};           ///< the path is sampled this often [rad, max norm]
   double least_speed_factor{0.5};  ///< where the cost is 1; 1 where it is 0, linear between
-  double concern_radius{1.5};      ///< what people do counts in full up to half this distance from the tool, and fades to nothing here [m]
-  double approach_speed{0.8};      ///< a trunk that comes nearer to the tool this fast, or faster, counts in full [m/s]
+  /// What people do counts in full up to half this distance from the tool, and fades to nothing
+  /// here [m]
+  double concern_radius{1.5};
+  /// A trunk that comes nearer to the tool this fast, or faster, counts in full [m/s]
+  double approach_speed{0.8};
   double approach_factor{0.7};     ///< then it is this, (0, 1]
-  double unseen_angle{1.2};        ///< a tool this far from where someone looks, or farther, is not looked at [rad]
+  /// A tool this far from where someone looks, or farther, counts as unseen [rad]
+  double unseen_angle{1.2};
   double unseen_factor{0.8};       ///< then it is this, (0, 1]
 };
 
@@ -33,18 +38,22 @@ class SpeedAlong {
   SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around, const SpeedSettings& settings);
 
   struct Look {
-    double at{};      ///< share of the way
+    double at{};      ///< position on the motion, 0 at its start, 1 at its end
     double cost{};    ///< human-aware, [0, 1]
-    double share{1};  ///< of the velocity limits
+    double share{1};  ///< factor of the velocity limits
   };
-  /// Nobody is there and nothing costs anything: the share is 1 everywhere.
+  /// Returns whether nobody is there and no layer adds a cost: the factor is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
   Look at(const Vector& q) const;                                       ///< all axes [rad]
-  std::vector<Look> along(const Vector& from, const Vector& to) const;  ///< the straight way between two postures, ends included
-  double what_people_do(const Vector& q) const;                         ///< the share because of it
+  /// The straight motion between two configurations, ends included
+  std::vector<Look> along(const Vector& from, const Vector& to) const;
+  /// Factor of the velocity limits because of what people do, (0, 1]; 1 without people
+  double what_people_do(const Vector& q) const;
 
-  /// Between two looks the lower share of both counts, in steps of kStep downward; equal neighbours are one zone.
+  /// Between two samples the lower factor of both counts, in steps of kStep downward, never below
+  /// kStep; equal neighbours are one zone.
   static SpeedZones zones(const std::vector<Look>& looks);
+  /// Step, and least value, of the factors that zones() gives.
   static constexpr double kStep = 0.05;
 
  private:

@@ -1,5 +1,6 @@
-// From a broken line of joints or of the tool to soft motion that people find comfortable (chapter sections 4.4 to 4.6): smoothing at the
-// comfort limits, lowered along the way by what it costs people and by what they do. Pure.
+// From a broken line of joints or of the tool to soft motion that people find comfortable (chapter
+// sections 4.4 to 4.6): smoothing at the comfort limits, lowered along the path by what it costs
+// people and by what they do. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +12,24 @@
 namespace handsel::trajectory_planner {
 
 struct Settings {
-  double corner_step{0.02};  ///< places outside layers forbid are looked for this often in corners [rad, max norm]
-  SpeedSettings speed;
-  CartesianSettings tool;  ///< of motions of the tool; its allowed excess holds for those of joints too
+  /// Blends are checked this often for places outside layers forbid [rad, max norm]
+  double corner_step{0.02};
+  SpeedSettings speed;  ///< how people lower the speed along the path
+  /// Of motions of the tool; its allowed excess holds for those of joints too
+  CartesianSettings tool;
 };
 
 struct Result {
-  TrajectoryReply reply;
-  std::uint64_t checks{};          ///< configurations judged
+  TrajectoryReply reply;  ///< as sent to the client; its reason says why there is no trajectory
+  std::uint64_t checks{};          ///< configurations checked
   double cost{};                   ///< largest human-aware cost along the line, [0, 1]
-  double speed_factor{1.0};        ///< least share of the comfort velocity limits: asked for x because of people
-  std::vector<SpeedZones> speeds;  ///< of each leg, because of people
+  /// Least factor of the comfort velocity limits: asked for x because of people
+  double speed_factor{1.0};
+  std::vector<SpeedZones> speeds;  ///< of each segment, because of people
 };
 
-/// `world` and `cost` hold scene, people and attachment; `around` the same people. Never throws for a bad request: the reply says why not,
-/// and as far as a motion of the tool goes it is there.
+/// `world` and `cost` hold scene, people and attachment; `around` the same people. Never throws for
+/// a bad request: the reply says why not, and as far as a motion of the tool goes it is there.
 Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const Surroundings& around,
             const TrajectoryRequest& request, const Settings& settings);
 

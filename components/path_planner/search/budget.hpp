@@ -1,4 +1,5 @@
-// How much of the judging that a problem allows is left, and whether anybody still wants the answer.
+// How many of the checks that a problem allows are left, and whether anybody still wants the
+// answer.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +16,26 @@ class Budget {
   Budget(const CollisionWorld& world, std::uint64_t limit, const Hooks& hooks)
       : judge_(world), hooks_(hooks), before_(world.checks()), exact_before_(world.exact_checks()), limit_(limit) {}
 
-  /// States judged, and what was charged.
+  /// Returns the states checked so far, and what was charged.
   std::uint64_t checks() const { return judge_.checks() - before_ + exact_more_ * (judge_.exact_checks() - exact_before_) + charged_; }
-  /// From now on a state that only the exact check could judge counts as so many more: where the time it takes is what matters.
+  /// From now on a state that only the exact check could decide counts as so many more: where the
+  /// time it takes is what matters.
   void charge_exact(std::uint64_t more) {
     exact_more_ = more;
     exact_before_ = judge_.exact_checks();
   }
-  void charge(std::uint64_t checks) { charged_ += checks; }  ///< work that counts like that many checks
+  /// Work that counts like that many checks
+  void charge(std::uint64_t checks) { charged_ += checks; }
+  /// Returns the number of checks at which the budget is used up.
   std::uint64_t limit() const { return limit_; }
   void limit(std::uint64_t checks) { limit_ = checks; }  ///< counted from the beginning
+  /// Returns whether the cancel hook or the condition of stop_when() ends the plan.
   bool cancelled() const { return (hooks_.cancelled && hooks_.cancelled()) || (stop_ && stop_()); }
-  void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }  ///< besides; empty: no longer
+  /// Besides; empty: no longer
+  void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
+  /// Returns whether the checks are used up or the plan is cancelled.
   bool exhausted() const { return checks() >= limit_ || cancelled(); }
+  /// Returns the hooks that were given; must outlive the budget.
   const Hooks& hooks() const { return hooks_; }
 
  private:

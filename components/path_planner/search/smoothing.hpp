@@ -1,4 +1,5 @@
-// Making a path cheaper (chapter section 4.1.1): shortcuts and path perturbation, judged in the order cost, bounds, collision.
+// Making a path cheaper (chapter section 4.1.1): shortcuts and path perturbation, checked in the
+// order cost, bounds, collision.
 #pragma once
 
 #include <vector>
@@ -8,7 +9,8 @@
 
 namespace handsel::path_planner {
 
-/// Improves a collision-free path; never returns one with a higher price. Ends stay. Stops when the space is exhausted.
+/// Improves a collision-free path; never returns one with a higher price. Ends stay. Stops when the
+/// space is exhausted.
 void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random);
 
 /// Drops nodes whose removal costs at most one part in fifty and stays free.

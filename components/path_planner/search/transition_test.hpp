@@ -1,5 +1,5 @@
-// The transition test of T-RRT (chapter section 4.1.1): downhill always, uphill by chance, the less likely the steeper; warmer after
-// refusals, cooler after each rise let pass.
+// The transition test of T-RRT (chapter section 4.1.1): downhill always, uphill by chance, the less
+// likely the steeper; warmer after refusals, cooler after each rise let pass.
 #pragma once
 
 #include <algorithm>

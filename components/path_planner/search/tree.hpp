@@ -8,16 +8,19 @@
 
 namespace handsel::path_planner {
 
-/// States axis by axis in single precision for the search of the nearest, whole in double for everything else.
+/// States axis by axis in single precision for the search of the nearest, whole in double for
+/// everything else.
 class Tree {
  public:
   explicit Tree(int axes) : columns_(64, axes), distances_(64) {}
 
+  /// Returns the number of states.
   int size() const { return static_cast<int>(states_.size()); }
   const Vector& operator[](int i) const { return states_[static_cast<std::size_t>(i)]; }
+  /// Returns the index of the state before state `i`; -1 for a root.
   int parent(int i) const { return parents_[static_cast<std::size_t>(i)]; }
 
-  /// A root has parent -1.
+  /// Adds a state and returns its index. A root has parent -1.
   int add(const Vector& q, int parent) {
     const int i = size();
     if (i == columns_.rows()) {
@@ -30,6 +33,8 @@ class Tree {
     return i;
   }
 
+  /// Returns the index of the state nearest to q, Euclidean in single precision. The tree must not
+  /// be empty.
   int nearest(const Vector& q) {
     const int n = size();
     distances_.head(n) = (columns_.col(0).head(n) - static_cast<float>(q[0])).square();
@@ -39,6 +44,7 @@ class Tree {
     return best;
   }
 
+  /// Returns the index of the root that the branch of state `i` begins at.
   int root_of(int i) const {
     while (parent(i) >= 0) i = parent(i);
     return i;
@@ -59,7 +65,8 @@ class Tree {
   std::vector<int> parents_;
 };
 
-/// From the root of `from_start` through a and b, the same state in both trees, to the root of `from_goals`.
+/// From the root of `from_start` through a and b, the same state in both trees, to the root of
+/// `from_goals`.
 inline std::vector<Vector> joined(const Tree& from_start, int a, const Tree& from_goals, int b) {
   std::vector<Vector> path = from_start.branch(a), rest = from_goals.branch(b);
   path.insert(path.end(), rest.rbegin() + 1, rest.rend());
