@@ -16,8 +16,10 @@
 
 namespace handsel::grasp_planner {
 
-/// Settings as the core takes them. ConfigError naming the field.
+/// Returns the settings of the grasp lists. ConfigError names the field that is wrong. `seed`: of
+/// the contact points and samples.
 GraspListSettings list_settings(const config::GraspPlannerSettings& text, std::uint64_t seed);
+/// Returns the settings of the choice. ConfigError names the field that is wrong.
 ChoiceSettings choice_settings(const config::GraspPlannerSettings& text);
 
 class Node {
@@ -30,7 +32,7 @@ class Node {
   void choose(const GraspRequest& request, bool reply);
   void propose(TimePoint now);
   void answer(const RegraspRequest& request);
-  /// Why hands for it cannot be looked for, one sentence; empty: they can.
+  /// Why hands for it cannot be searched, one sentence; empty: they can.
   std::string objection(const RegraspRequest& request) const;
 
   Bus& bus_;
@@ -39,8 +41,9 @@ class Node {
   std::shared_ptr<const HandKit> kit_;
   std::shared_ptr<const GraspChooser> chooser_;
   std::shared_ptr<GraspBook> book_;          // used by jobs only, one after the other
-  std::shared_ptr<TransferBook> transfers_;  // likewise; nullptr: no hand of a person is known
-  std::vector<ArmBook> arms_;                // likewise; the first has the kit and the book above
+  // used by jobs only; nullptr: no hand of a person is known
+  std::shared_ptr<TransferBook> transfers_;
+  std::vector<ArmBook> arms_;  // used by jobs only; the first has the geometry and the lists above
   RegraspSettings regrasp_settings_;
   std::unique_ptr<Publisher<GraspReply>> reply_out_;
   std::unique_ptr<Publisher<RegraspReply>> regrasp_out_;
@@ -53,7 +56,7 @@ class Node {
   std::optional<RequestId> regrasp_pending_;
   std::size_t regrasps_waiting_{0};
   std::optional<RegraspReply> regrasp_reply_;  // the latest
-  GraspRequest served_;                        // the request whose object candidates are kept up for
+  GraspRequest served_;  // the request whose object candidates are kept up for
   TimePoint served_at_{};
   bool serving_{}, proposing_{};
   Pose T_world_proposed_{Pose::Identity()};

@@ -27,7 +27,7 @@ struct Settings {
   double length_weight{0.05};         ///< cost of a radian where no person is concerned
   int smoothing_rounds{120};          ///< shortcuts and perturbations tried
   int patience{40};                   ///< stop smoothing after this many in a row without gain
-  /// L_max: a perturbation replaces at most this much of the path to either side [rad]
+  /// l_max: a perturbation replaces at most this much of the path to either side [rad]
   double longest_edge{0.6};
 };
 

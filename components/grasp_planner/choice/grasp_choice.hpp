@@ -1,5 +1,5 @@
-// From the list of an object to the grasps that serve now: this robot, this scene, these people, where the object is to go (chapter
-// sections 3.2.8 - 3.2.9 for one hand).
+// From the list of an object to the grasps that serve now: this robot, this scene, these people,
+// where the object is to go (chapter sections 3.2.8 - 3.2.9 for one hand).
 #pragma once
 
 #include <array>
@@ -20,22 +20,26 @@ struct ChoiceSettings {
   double support_gap{0.004};            ///< kept between hand and support [m]
   std::uint32_t reach_budget{400};      ///< inverse kinematics of the arm tried at most
   double rank_quality{1.0};             ///< weights of the order of the reply
-  double rank_posture{0.4};             ///< nearness to the rest posture of the arm
-  double rank_contacts{0.2};            ///< share of the fingers in contact
+  double rank_posture{0.4};             ///< nearness to the rest configuration of the arm
+  double rank_contacts{0.2};            ///< fraction of the fingers in contact
   double rank_room{0.3};                ///< surface left free; when a person is to take the object
-  double rank_partner{0.3};             ///< the person's best grasp beside it; then too, as the next two
-  double rank_exchange{0.3};            ///< the arm can hold the object out upright, the hand behind it, the person's wrist at ease
+  double rank_partner{0.3};  ///< the person's best grasp beside it; then too, as the next two
+  /// The arm can offer the object upright, the hand behind it, the person's wrist at ease
+  double rank_exchange{0.3};
   double rank_transfer{0.3};            ///< a place was found where the person can take it so
-  double rank_tilt{1.0};                ///< taken off for each radian the object must be tilted there
-  double rank_sturdy{1.0};              ///< the squeeze's margin / `sturdy_margin`, -2 to 1: what only just holds comes last
+  double rank_tilt{1.0};  ///< taken off for each radian the object must be tilted there
+  /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last
+  double rank_sturdy{1.0};
   double sturdy_margin{2.0};            ///< [N]
-  double rank_away{0.6};                ///< the hand stays on the robot's side of what a person holds
+  double rank_away{0.6};  ///< the hand stays on the robot's side of what a person holds
   double rank_stands{1.0};              ///< from a person's hand: it can be put down in this grasp
-  double off_fingers{0.01};             ///< kept between the robot and the hands of who holds it [m]
-  double off_giver{0.12};               ///< likewise and their head, torso, upper arms and legs: nearer the guard lets it only creep [m]
+  double off_fingers{0.01};  ///< kept between the robot and the hands of the giver [m]
+  /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
+  /// it only creep [m]
+  double off_giver{0.12};
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object
   double rank_drive{0.2};               ///< taken off for each metre the platform has to drive
-  double platform_room{0.5};            ///< kept between robot and people where the platform drives to [m]
+  double platform_room{0.5};  ///< kept between robot and people where the platform drives to [m]
   std::uint32_t platform_reaches{500};  ///< inverse kinematics tried for places of the platform
 };
 
@@ -43,21 +47,22 @@ struct ChoiceSettings {
 enum class ChoiceReason : std::uint8_t {
   chosen,
   below_support,  ///< some part of the hand would be in or under what the object stands on
-  out_of_reach,   ///< no arm posture reaches it
+  out_of_reach,   ///< no arm configuration reaches it
   collision,      ///< arm or hand collides there
   cannot_lift,    ///< the arm cannot go straight up with it
-  no_approach,    ///< no straight way in without touching the object or anything else
-  near_giver,     ///< too near to the body of who holds it
+  no_approach,    ///< no straight path in without touching the object or anything else
+  near_giver,     ///< too near to the body of the giver
   goal_support,   ///< the same where the object is to be put
   goal_taken,     ///< something is there already
   goal_out_of_reach,
   goal_collision,  ///< arm, hand or object
-  goal_lowering,   ///< no straight way down with the object
-  goal_leaving,    ///< no straight way off for the opened hand
+  goal_lowering,   ///< no straight path down with the object
+  goal_leaving,    ///< no straight path off for the opened hand
   hidden,          ///< too little of the object is seen past the hand
   not_considered,  ///< the budget was used up, or enough better ones were found
   count
 };
+/// Returns the reason as a phrase for reports, e.g. "arm or hand would collide at the grasp".
 const char* reason_text(ChoiceReason);
 
 /// How the object is put down in a grasp: arm axes.
@@ -68,22 +73,27 @@ struct PuttingDown {
 
 /// Where the platform was thought of.
 struct PlatformSearch {
-  bool asked{}, none{};  ///< none: the robot's description tells of no platform
+  bool asked{}, none{};  ///< none: the description of the robot has no platform
+  /// Places tried, and of these those where the robot would collide, is too near to a person, or no
+  /// grasp serves.
   std::uint64_t places{}, blocked{}, near_person{}, useless{};
 };
 
 struct Choice {
   std::vector<Grasp> grasps;       ///< with arm_joints and approach_joints, best first
   std::vector<PuttingDown> goals;  ///< of each grasp, when there is a goal
-  /// For a person, with the pairs known: how each of the grasps can be handed over; nullopt: no place was found.
+  /// For a person, with the pairs known: how each of the grasps can be handed over; nullopt: no
+  /// place was found.
   std::vector<std::optional<TransferPose>> transfers;
+  /// Listed grasps by ChoiceReason, for where the robot stands.
   std::array<std::uint64_t, static_cast<std::size_t>(ChoiceReason::count)> reasons{};
   std::uint64_t reaches{};           ///< inverse kinematics solved or tried
   std::uint64_t transfer_reaches{};  ///< those for places to hand over
-  std::uint64_t states{};            ///< robot states judged for collision
+  std::uint64_t states{};            ///< robot states checked for collision
   std::uint64_t touch_tests{};       ///< hand against object
-  PlatformSearch platform;
+  PlatformSearch platform;  ///< what came of the search for places of the platform
 
+  /// Returns the counts per reason of the grasps and places of the platform that do not serve.
   Refusals refusals() const;
   /// One sentence when there are no grasps: how many the list had, and what most of them failed on.
   std::string why_none(const GraspList& list) const;
@@ -92,17 +102,20 @@ struct Choice {
 /// What does not change from request to request.
 class GraspChooser {
  public:
-  /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not those of the hand description. `mobile`:
-  /// the robot on its platform (on_platform), or nullptr.
+  /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not
+  /// those of the hand description. `mobile`: the robot on its platform (on_platform), or nullptr.
   GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
                const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile = nullptr);
 
-  /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may be empty. `pairs`: of this list and the
-  /// hand of the person the object is for; without them only the room left counts. Where no grasp serves from where the robot stands and
-  /// the request allows it, places of the platform are searched, the shortest way first; the reasons stay those of where it stands.
+  /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may
+  /// be empty. `pairs`: of this list and the hand of the person the object is for; without them
+  /// only the room left counts. Where no grasp serves from where the robot stands and the request
+  /// allows it, places of the platform are searched, the shortest drive first; the reasons stay
+  /// those of where it stands.
   Choice choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene, const HumanState& people,
                 const std::function<bool()>& cancelled = {}, const TransferTable* pairs = nullptr) const;
 
+  /// Returns the robot model without a moving platform.
   const RobotModel& robot() const { return *robot_; }
 
  private:
@@ -117,7 +130,8 @@ class GraspChooser {
   ChoiceSettings settings_;
   const Group* arm_{};
   const Group* hand_{};
-  std::vector<Vector3> retreats_;  // unit, hand frame: ways to back off from a grasp, the straightest first
+  // unit, hand frame: ways to back off from a grasp, the straightest first
+  std::vector<Vector3> retreats_;
 };
 
 }  // namespace handsel::grasp_planner

@@ -1,4 +1,5 @@
-// The work of one choice: grasps judged one by one at the places the object is taken from and put to.
+// The work of one choice: grasps checked one by one at the places the object is taken from and put
+// to.
 #pragma once
 
 #include <optional>
@@ -7,7 +8,7 @@
 
 namespace handsel::grasp_planner {
 
-/// Weighed and judged: a grasp that serves.
+/// Weighed and checked: a grasp that serves.
 struct GraspChooser::Found {
   double rank{};
   Grasp grasp;
@@ -22,10 +23,11 @@ struct GraspChooser::Search {
   /// The robot stands elsewhere from now on.
   void stand(const Pose& T_world_base);
 
-  /// What can be said of a grasp before the arm is looked at.
+  /// What can be said of a grasp before the arm is checked.
   double rank(const ListedGrasp& listed, std::size_t index) const;
   bool below_support(const Grasp& g);
-  /// Where and how the object, tilted by that much, can be handed over in this grasp, the robot free of everything but the person's arms.
+  /// Where and how the object, tilted by that much, can be handed over in this grasp, the robot
+  /// free of everything but the person's arms.
   std::optional<TransferPose> transfer(std::size_t index, const Grasp& g, double tilt);
   /// Whether the grasp serves; writes the rest of `out`, whose rank and transfer are set.
   ChoiceReason consider(const Grasp& listed, Found& out);
@@ -37,7 +39,9 @@ struct GraspChooser::Search {
   };
   /// The middle place for the exchange, and how the object is held there.
   struct Exchange {
-    double behind{-1};  ///< how well the hand stays behind the object, [0, 1], in the best heading; -1: the arm gets to none
+    /// How well the hand stays behind the object, [0, 1], in the best heading; -1: the arm gets to
+    /// none
+    double behind{-1};
     Pose T_world_object{Pose::Identity()};
   };
 
@@ -52,16 +56,18 @@ struct GraspChooser::Search {
   std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const;
   bool free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q);
   bool way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
-  double stand_off() const;  ///< before the object, where the straight way in begins [m]
+  double stand_off() const;  ///< before the object, where the straight approach begins [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   bool something_at_goal() const;
   ChoiceReason pick_up(Grasp& g);
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
-  /// How far on the robot's side of the object the hand is, [0, 1]: the person who holds it is on the other.
+  /// How far on the robot's side of the object the hand is, [0, 1]: the person who holds it is on
+  /// the other.
   double on_our_side(const Grasp& g) const;
-  /// Whether the object can be stood on a surface in this grasp: the open hand is nowhere below its foot.
+  /// Whether the object can be stood on a surface in this grasp: the open hand is nowhere below its
+  /// foot.
   bool stands_in(const Grasp& g) const;
-  /// Far enough from head, torso, upper arms and legs of who holds it, the hand open.
+  /// Far enough from head, torso, upper arms and legs of the person that holds it, the hand open.
   bool off_giver(const Vector& arm_q, const Grasp& g);
   ChoiceReason put_down(const Grasp& g, PuttingDown& down);
 
@@ -75,9 +81,10 @@ struct GraspChooser::Search {
   Scene scene;
   Site start;
   std::optional<Site> goal;
-  std::optional<CollisionWorld> giver;     // who holds it, but for forearms and hands
+  std::optional<CollisionWorld> giver;     // the person that holds it, but for forearms and hands
   std::optional<CollisionWorld> carrying;  // about the goal, with the object in the hand
-  std::optional<CollisionWorld> held;      // likewise, at the exchange: the person's arms are no obstacle
+  // with the object in the hand, at the handover: the person's arms are no obstacle
+  std::optional<CollisionWorld> held;
   bool goal_is_taken{};
   Pose T_root_world{Pose::Identity()};
   std::optional<Vector3> eye;  // world: of the person, else of the robot

@@ -1,4 +1,4 @@
-// Where a robot's platform may stand to take something (ours).
+// Where a robot's platform may stand to take something. Own method.
 #pragma once
 
 #include "common/collision/collision_world.hpp"
@@ -11,22 +11,22 @@ struct PlatformPlace {
 };
 inline constexpr double kTurnWay = 0.3;  ///< [m/rad]
 
-/// Places about `p_world_object` from which `arm` may reach it by its length: four distances of its shoulder, sixteen directions, twelve
-/// headings; the shortest way first. `q`: all axes.
+/// Places about `p_world_object` from which `arm` may reach it by its length: four distances of its
+/// shoulder, sixteen directions, twelve headings; the shortest drive first. `q`: all axes.
 std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& arm, const Vector& q, const Pose& T_world_base,
                                          const Vector3& p_world_object);
 
 /// The robot's root where its platform is at `place`, as high as in T_world_base.
 Pose standing_at(const PlatformPlace& place, const Pose& T_world_base);
 
-/// Judges places. `mobile`: the robot on its platform (on_platform).
+/// Checks places. `mobile`: the robot on its platform (on_platform).
 class PlatformFloor {
  public:
   /// `room` [m]: kept between all of the robot and people.
   PlatformFloor(const RobotModel& mobile, ObjectLibrary library, const Scene& scene, const HumanState& people, double room);
 
   enum class Verdict : std::uint8_t { free, blocked, near_person };
-  /// The whole robot in posture q (its own axes) at the place.
+  /// Checks the whole robot in configuration q (its own axes) at the place.
   Verdict judge(const Vector& q, const Pose& T_world_base);
 
  private:

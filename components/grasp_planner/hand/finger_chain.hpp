@@ -1,4 +1,5 @@
-// One finger of a hand: where its links and fingertip are, and the inverse kinematics of the fingertip's centre. Any tree of joints.
+// One finger of a hand: where its links and fingertip are, and the inverse kinematics of the
+// fingertip's centre. Any tree of joints.
 #pragma once
 
 #include <vector>
@@ -13,36 +14,44 @@ class FingerChain {
 
   const std::vector<int>& axes() const { return axes_; }  ///< hand axes that move the fingertip
   double tip_radius() const { return tip_radius_; }       ///< [m]
-  /// Adds the efforts of the finger's axes that give `force` [N] to the object at the point `p_object` (both object frame).
+  /// Adds the efforts of the finger's axes that give `force` [N] to the object at the point
+  /// `p_object` (both object frame).
   void add_effort(const std::vector<Pose>& T_hand_step, const Pose& T_hand_object, const Vector3& p_object, const Vector3& force,
                   Vector& hand_effort) const;
   /// Links this finger's joints carry, and how each follows: T_hand_link = step pose * T_step_link.
   struct Carried {
-    int link{};
-    int step{};
-    Pose T_step_link{Pose::Identity()};
+    int link{};  ///< index of the link in the hand model
+    int step{};  ///< index of the moving joint that carries the link
+    Pose T_step_link{Pose::Identity()};  ///< fixed pose of the link in the frame of that joint
   };
+  /// Returns the links that the joints of this finger move.
   const std::vector<Carried>& carried() const { return carried_; }
+  /// Returns the number of moving joints of the finger, those beside the path to the tip included.
   int steps() const { return static_cast<int>(steps_.size()); }
 
-  /// Poses of the moving joints' frames in the hand frame; `T` is resized to steps(). `q`: all axes of the hand.
+  /// Poses of the moving joints' frames in the hand frame; `T` is resized to steps(). `q`: all axes
+  /// of the hand.
   void forward(const Vector& q, std::vector<Pose>& T) const;
   Vector3 tip(const Vector& q) const;  ///< centre of the fingertip sphere, hand frame [m]
+  /// The same from the poses of forward().
   Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_.translation(); }
-  Pose tip_pose(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_; }  ///< T_hand_tip
+  /// T_hand_tip
+  Pose tip_pose(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_; }
   /// 3 x axes().size(): velocity of the tip's centre for each of the finger's axes.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const { return jacobian(T, tip(T)); }
-  /// Likewise of the point of the outermost link that is at `p_hand` now.
+  /// The jacobian of the point of the outermost link that is at `p_hand` now.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T, const Vector3& p_hand) const;
   /// From the last joint to the tip's centre, hand frame, unit.
   Vector3 tip_direction(const std::vector<Pose>& T) const;
-  double closing_sign() const { return closing_sign_; }  ///< way the outermost axis closes
-  /// Where the tip goes when the finger's outermost axis closes (moves from the rest posture into its range), hand frame, unit: the way its
-  /// pad faces.
+  /// Sign of the closing motion of the outermost axis: 1 or -1
+  double closing_sign() const { return closing_sign_; }
+  /// Where the tip goes when the finger's outermost axis closes (moves from its rest position into
+  /// its range), hand frame, unit: the direction its pad faces.
   Vector3 closing_direction(const std::vector<Pose>& T) const;
 
-  /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of `p_hand_tip`, inside [lower, upper] (all
-  /// hand axes), starting from q. Damped least squares. False when it does not get there; q is then the nearest found.
+  /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of
+  /// `p_hand_tip`, inside [lower, upper] (all hand axes), starting from q. Damped least squares.
+  /// False when it does not get there; q is then the nearest found.
   bool inverse(const Vector3& p_hand_tip, const Vector& lower, const Vector& upper, Vector& q, double tolerance = 1e-4,
                int iterations = 30) const;
 

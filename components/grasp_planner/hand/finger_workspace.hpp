@@ -1,4 +1,5 @@
-// Where a fingertip can be: a grid of sampled forward kinematics and a hierarchy of spheres inside it (chapter section 3.2.5).
+// Where a fingertip can be: a grid of sampled forward kinematics and a hierarchy of spheres inside
+// it (chapter section 3.2.5).
 #pragma once
 
 #include <array>
@@ -12,34 +13,41 @@ namespace handsel::grasp_planner {
 struct WorkspaceSettings {
   double step{0.005};          ///< edge of a grid cell [m]
   double least_radius{0.004};  ///< spheres smaller than this are not made [m]
-  std::uint32_t max_spheres{60};
+  std::uint32_t max_spheres{60};  ///< at most so many are made; smaller ones are left out
 };
 
 struct WorkspaceSphere {
   Vector3 centre{Vector3::Zero()};  ///< hand frame [m]
-  double radius{};
+  double radius{};  ///< [m]
 };
 
 class FingerWorkspace {
  public:
-  /// Samples the finger's axes within the contact bounds of the hand. The other axes of the hand do not matter.
+  /// Samples the finger's axes within the contact bounds of the hand. The other axes of the hand do
+  /// not matter.
   FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings = {});
 
-  /// Largest first; strictly inside the workspace. A workspace without volume (fewer than three axes) is covered by balls of one cell
-  /// instead: there the inverse kinematics decides.
+  /// Largest first; strictly inside the workspace. A workspace without volume (fewer than three
+  /// axes) is covered by balls of one cell instead: there the inverse kinematics decides.
   const std::vector<WorkspaceSphere>& spheres() const { return spheres_; }
+  /// Returns whether a sphere of least_radius fits inside; false for fewer than three axes.
   bool has_volume() const { return has_volume_; }
-  /// Joint values (the chain's axes) that put the tip into the cell of a point: up to three, clearly different, the farthest from the joint
-  /// bounds first. Empty outside the workspace.
+  /// Joint values (the chain's axes) that put the tip into the cell of a point: up to three,
+  /// clearly different, the farthest from the joint bounds first. Empty outside the workspace.
   struct Seed {
-    Vector q;
-    double centrality{};                                                           ///< least distance to a bound / half range, [0, 1]
-    Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};  ///< hand frame, unit
+    Vector q;  ///< values of the chain's axes [rad]
+    double centrality{};  ///< least distance to a bound / half range, [0, 1]
+    /// Hand frame, unit
+    Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};
   };
+  /// Returns the seeds of the cell that holds a point, hand frame [m]; empty where the tip does not
+  /// reach.
   const std::vector<Seed>& seeds(const Vector3& p_hand) const;
   /// Centres of the grid cells the tip reaches, hand frame [m].
   std::vector<Vector3> cells() const;
+  /// Returns the axis-aligned box around all sampled tip centres, hand frame [m].
   Eigen::AlignedBox3d box() const { return box_; }
+  /// Returns the mean of the centres of all cells reached, hand frame [m].
   Vector3 centroid() const { return centroid_; }
 
  private:

@@ -1,4 +1,5 @@
-// What grasping needs to know of a hand, whatever the object: chains and solids; its workspaces apart, because they take a moment to make.
+// What grasping needs to know of a hand, whatever the object: chains and solids; its workspaces
+// apart, because they take a moment to make.
 #pragma once
 
 #include <vector>
@@ -12,20 +13,21 @@ namespace handsel::grasp_planner {
 struct HandKit {
   explicit HandKit(const HandModel& hand_model);
 
-  /// Step poses of every finger for the posture q of the hand.
+  /// Step poses of every finger for the configuration q of the hand.
   void forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const;
   /// Largest fingertip radius [m].
   double tip_radius() const;
   /// Does this hand axis move more than one finger?
   bool shared(int axis) const;
 
-  HandModel hand;
-  std::vector<FingerChain> chains;
-  HandShape shape;
+  HandModel hand;  ///< the hand as its description has it
+  std::vector<FingerChain> chains;  ///< one for each finger, in the order of the hand model
+  HandShape shape;  ///< solids of palm and fingers
 };
 
 /// One a finger, in their order.
 using FingerWorkspaces = std::vector<FingerWorkspace>;
+/// Samples the workspace of each finger of the hand.
 FingerWorkspaces make_workspaces(const HandKit& kit, const WorkspaceSettings& settings = {});
 
 }  // namespace handsel::grasp_planner

@@ -1,5 +1,5 @@
-// The hand's own solids for touch tests: slender cylinders, capsules and spheres as capsules (closed forms), the rest through
-// common/collision.
+// The hand's own solids for touch tests: slender cylinders, capsules and spheres as capsules
+// (closed forms), the rest through common/collision.
 #pragma once
 
 #include <vector>
@@ -17,43 +17,52 @@ class HandShape {
 
   /// Links that no finger moves. `clearance` [m] is kept from the surface (capsules only).
   bool palm_touches(const Graspable& object, const Pose& T_object_hand, double clearance = 0.0) const;
-  /// All links of a finger, its solids grown by `clearance` [m]; negative shrinks: a fingertip in contact must not count as a collision.
+  /// All links of a finger, its solids grown by `clearance` [m]; negative shrinks: a fingertip in
+  /// contact must not count as a collision.
   bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
                       double clearance) const;
+  /// Returns whether a finger touches links that no finger moves; pairs the model disables do not
+  /// count.
   bool finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const;
+  /// Returns whether finger `a` touches finger `b`; pairs the model disables do not count.
   bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const;
   /// The whole hand, palm and fingers.
   bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
                double clearance) const;
   /// Each solid's middle and lowest height in the world.
   struct Low {
-    Vector3 middle{Vector3::Zero()};
-    double height{};
+    Vector3 middle{Vector3::Zero()};  ///< world [m]
+    double height{};                  ///< lowest z of the solid, world [m]
   };
+  /// Returns middle and lowest height of every solid, for the hand at a pose in the world.
   std::vector<Low> lows(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_world_hand) const;
   /// The whole hand placed in some frame, for tests of hands against each other.
   struct Placed {
+    /// Whether the solid has a closed form as a capsule; whether it is part of the palm.
     bool capsule{}, palm{};
-    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  // capsules
-    double radius{};
-    CollisionShapePtr shape;  // the others
-    Pose T_frame_shape{Pose::Identity()};
-    ConvexCore core;  // but meshes
-    Vector3 middle{Vector3::Zero()};
-    double bound{};  // all of it is this near to its middle
+    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis of a capsule [m]
+    double radius{};                            ///< of a capsule [m]
+    CollisionShapePtr shape;                    ///< of solids that are no capsules
+    Pose T_frame_shape{Pose::Identity()};       ///< pose of `shape` in the frame
+    ConvexCore core;                            ///< of `shape` in the frame; unused for meshes
+    Vector3 middle{Vector3::Zero()};            ///< centre of the ball around the solid [m]
+    double bound{};                             ///< radius of the ball around the solid [m]
   };
   struct PlacedHand {
-    std::vector<Placed> solids;
-    Eigen::AlignedBox3d box;
+    std::vector<Placed> solids;  ///< palm first, then finger by finger
+    Eigen::AlignedBox3d box;  ///< around the balls of all solids [m]
   };
+  /// Places palm and fingers in the frame of T_frame_hand.
   PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
   /// Nearer than `clearance` [m], or a palm nearer to the other hand than `palm_clearance`.
   static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance, double palm_clearance = 0.0);
-  /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For free-room estimates.
+  /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For
+  /// free-room estimates.
   struct Round {
-    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};
-    double radius{};
+    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis, equal for a ball [m]
+    double radius{};                                 ///< [m]
   };
+  /// Returns palm and fingers for these poses of the joints, hand frame.
   std::vector<Round> rounds(const std::vector<std::vector<Pose>>& T_hand_step) const;
 
  private:
@@ -80,7 +89,9 @@ class HandShape {
   std::vector<Solid> palm_;
   std::vector<std::vector<Solid>> fingers_;
   int links_{};
-  std::vector<bool> disabled_;  // adjacent, excluded by the model, or touching in the hand's own rest and pre-grasp postures
+  // adjacent, excluded by the model, or touching in the hand's own rest and pre-grasp
+  // configurations
+  std::vector<bool> disabled_;
 };
 
 }  // namespace handsel::grasp_planner

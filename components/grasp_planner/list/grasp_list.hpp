@@ -1,4 +1,5 @@
-// The list of grasps of one hand on one object (chapter sections 3.2.1 - 3.2.7): deterministic, unbiased, resumable.
+// The list of grasps of one hand on one object (chapter sections 3.2.1 - 3.2.7): deterministic,
+// unbiased, resumable.
 #pragma once
 
 #include <array>
@@ -24,21 +25,23 @@ struct QualityWeights {
 
 struct GraspListSettings {
   std::uint32_t positions{60};      ///< of the grasp frame in the object's box, uniform
-  double spacing{0.04};             ///< in a large box as many more as make them about this far apart [m]; 0: never more
+  /// In a large box as many more as make them about this far apart [m]; 0: never more
+  double spacing{0.04};
   std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
   double step_share{0.6};           ///< distance of contact points / fingertip radius
   double friction{0};               ///< Coulomb coefficient; 0: the object's
   int cone_edges{8};                ///< of a linearised friction cone, >= 6
   double full_epsilon{0.25};        ///< an epsilon from which on the stability counts as 1
-  QualityWeights weights;
+  QualityWeights weights;  ///< of the terms of the quality
   std::uint32_t contacts_per_finger{4};  ///< alternatives kept for each finger of a frame
-  std::uint32_t tries_per_finger{24};    ///< candidates judged for them
-  double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
-  double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
-  double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
+  std::uint32_t tries_per_finger{24};    ///< candidates checked for them
+  double depth{0.0008};  ///< how deep the model of a touching finger may be in the object [m]
+  double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
   GripForceSettings grip;                ///< how hard it is held, and what it must bear
-  double free_distance{0.03};            ///< surface this far from the hand counts as room for another hand [m]
-  std::uint64_t seed{1};
+  /// Surface this far from the hand counts as room for another hand [m]
+  double free_distance{0.03};
+  std::uint64_t seed{1};  ///< of the contact points; the same gives the same list
 };
 
 /// Why frames were given up; each frame that gave no grasp counts once.
@@ -55,6 +58,7 @@ enum class FrameReason : std::uint8_t {
   pad_off_surface,   ///< a pinching hand: a pad does not lie on the surface
   count
 };
+/// Returns the reason as a phrase for reports, e.g. "no surface in the workspace of the thumb".
 const char* reason_text(FrameReason);
 
 struct GraspScores {
@@ -63,14 +67,15 @@ struct GraspScores {
 
 struct ListedGrasp {
   Grasp grasp;  ///< id = number of its frame; contacts in the order of the fingers
-  GraspScores scores;
-  double room{};  ///< share of the surface that is free for another hand, [0, 1]
+  GraspScores scores;  ///< terms of the quality before weighting
+  double room{};  ///< fraction of the surface that is free for another hand, [0, 1]
 };
 
 struct GraspList {
-  std::string hand, object;
+  std::string hand, object;  ///< names of the hand and of the object model
   std::vector<ListedGrasp> grasps;  ///< best quality first; ties by id
   std::uint64_t frames{};           ///< tested
+  /// Frames tested, by FrameReason; `grasped` those with a grasp.
   std::array<std::uint64_t, static_cast<std::size_t>(FrameReason::count)> reasons{};
   std::uint64_t finger_solutions{}, touch_tests{}, closure_tests{};  ///< work done
 
@@ -78,7 +83,8 @@ struct GraspList {
   Refusals refusals() const;
 };
 
-/// Positions of the grasp frame: cell centres of a uniform grid over the box, about `count` of them.
+/// Positions of the grasp frame: cell centres of a uniform grid over the box, about `count` of
+/// them.
 std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count);
 
 /// How many positions the settings want in a box.
@@ -92,7 +98,8 @@ GraspList merged(std::vector<GraspList> parts);
 
 class GraspLister {
  public:
-  /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is gone on with. Empty: from the first frame.
+  /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is
+  /// continued. Empty: from the first frame.
   GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
               std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun = {});
   ~GraspLister();
@@ -100,10 +107,11 @@ class GraspLister {
 
   std::uint64_t frames() const;  ///< in all
   std::size_t found() const;     ///< grasps so far
-  /// Tests these frames, each independent of all others: several listers may share the work, their lists are merged afterwards.
+  /// Tests these frames, each independent of all others: several listers may share the work, their
+  /// lists are merged afterwards.
   void test(std::uint64_t first, std::uint64_t count);
-  /// Tests at most `count` more frames; false when there are none left. Frames go through all positions of an orientation before the next,
-  /// so that more orientations only extend the list.
+  /// Tests at most `count` more frames; false when there are none left. Frames go through all
+  /// positions of an orientation before the next, so that more orientations only extend the list.
   bool advance(std::uint64_t count);
   /// The list so far, sorted.
   GraspList list() const;

@@ -1,5 +1,6 @@
-// Grasps of a hand of two pads: a place of the surface for the first pad, the surface opposite for the second, patches of contact on both
-// (ours). The pads' areas hold what two points could not.
+// Grasps of a hand of two pads: a place of the surface for the first pad, the surface opposite for
+// the second, patches of contact on both. Own method. The pads' areas hold what two points could
+// not.
 #pragma once
 
 #include <optional>
@@ -8,16 +9,20 @@
 
 namespace handsel::grasp_planner {
 
-/// How the two pads of a hand close: all its axes together, from the widest opening (0) to the narrowest (1).
+/// How the two pads of a hand close: all its axes together, from the widest opening (0) to the
+/// narrowest (1).
 class PinchMotion {
  public:
   explicit PinchMotion(const HandKit& kit);
 
-  Vector posture(double closed) const { return open_ + closed * (closed_ - open_); }  ///< all hand axes
-  /// Distance of the pads along the way the first one presses [m].
+  /// All hand axes
+  Vector posture(double closed) const { return open_ + closed * (closed_ - open_); }
+  /// Returns the distance of the pads along the direction the first one presses [m].
   double gap(const Vector& q) const;
+  /// Returns the gap of the hand at its widest opening [m].
   double widest() const { return widest_; }
-  /// The posture whose gap this is; nothing when there is none.
+  /// Returns the configuration with this gap [m]; nullopt when the hand opens less or closes no
+  /// further.
   std::optional<Vector> at_gap(double gap) const;
   /// Frame of a finger's pad in the hand.
   Pose T_hand_pad(std::size_t finger, const std::vector<Pose>& T_hand_step) const;
@@ -32,14 +37,15 @@ class PinchSearch {
  public:
   PinchSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
 
-  /// Places of the surface times turns of the hand about the surface's normal; as many as the settings' positions and orientations, or
-  /// fewer.
+  /// Places of the surface times turns of the hand about the surface's normal; as many as the
+  /// settings' positions and orientations, or fewer.
   std::uint64_t frames() const { return places_ * kTurns; }
 
-  /// A grasp without its quality. Its contacts are the corners of the patches, in the order of the fingers.
+  /// A grasp without its quality. Its contacts are the corners of the patches, in the order of the
+  /// fingers.
   struct Found {
-    Grasp grasp;
-    std::vector<PointContact> contacts;
+    Grasp grasp;  ///< with contacts, hand configuration and pre-grasp
+    std::vector<PointContact> contacts;  ///< corners of the patches, object frame
     double force{};  ///< mean cosine between the surface and the pads
   };
   /// `counters`: work done is added. `why` says what was wrong when there is none.

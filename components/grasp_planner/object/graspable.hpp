@@ -15,25 +15,38 @@ namespace handsel::grasp_planner {
 
 class Graspable {
  public:
-  /// `tip_radius` [m] sets the sampling step (`step_share` of it) and the ball of the curvature. ConfigError when the mesh has no surface,
-  /// or a size no hand can mean (below 5 mm or above 2 m): it says what to scale.
+  /// `tip_radius` [m] sets the sampling step (`step_share` of it) and the ball of the curvature.
+  /// ConfigError when the mesh has no surface, or a size no hand can mean (below 5 mm or above 2
+  /// m): it says what to scale.
   Graspable(const ObjectModel& object, double tip_radius, double step_share, std::uint64_t seed);
 
   /// Of the contact point nearest to `position` on the same side.
   double curvature_near(const Vector3& position, const Vector3& normal) const;
+  /// Returns the name of the object model.
   const std::string& name() const { return name_; }
+  /// Returns the mended mesh, object frame [m].
   const TriangleMesh& mesh() const { return *mesh_; }
+  /// Returns what was found and mended in the mesh.
   const MeshFindings& findings() const { return findings_; }
-  /// Contact points. Those more than 4 mm deep in one of the object's convex parts are left out: there its physical form is solid.
+  /// Contact points. Those more than 4 mm deep in one of the object's convex parts are left out:
+  /// there its physical form is solid.
   const std::vector<SurfacePoint>& points() const { return points_; }
-  /// Over the places of a fingertip's centre when it touches: point + tip_radius * normal, same indices as points().
+  /// Over the places of a fingertip's centre when it touches: point + tip_radius * normal, same
+  /// indices as points().
   const PointTree& tip_centres() const { return tip_centres_; }
+  /// Returns the centre of a touching fingertip at contact point `i`, object frame [m].
   const Vector3& tip_centre(std::uint32_t i) const { return centres_[i]; }
+  /// Returns the tree of the mended mesh for exact distances, object frame.
   const TriangleTree& triangles() const { return triangles_; }
+  /// Returns the mended mesh as an exact collision shape, object frame.
   const CollisionShapePtr& shape() const { return shape_; }
+  /// Returns the axis-aligned box around the mesh, object frame [m].
   const Eigen::AlignedBox3d& box() const { return triangles_.box(); }
+  /// Returns the mass centre, object frame [m].
   const Vector3& com() const { return com_; }
-  double radius() const { return radius_; }  ///< largest distance of the surface from the mass centre [m]
+  /// Largest distance of the surface from the mass centre [m]
+  double radius() const { return radius_; }
+  /// Returns the Coulomb coefficient of the surface.
   double friction() const { return friction_; }
   double mass() const { return mass_; }  ///< [kg]
 

@@ -1,4 +1,5 @@
-// Hierarchy of axis-aligned boxes over points, split along the longer side down to single points (chapter section 3.2.4).
+// Hierarchy of axis-aligned boxes over points, split along the longer side down to single points
+// (chapter section 3.2.4).
 #pragma once
 
 #include <cstdint>
@@ -15,11 +16,14 @@ class PointTree {
   PointTree() = default;
   explicit PointTree(const std::vector<Vector3>& points);
 
-  /// Appends the indices of the points inside the ball (boundary included), in the order of the tree.
+  /// Appends the indices of the points inside the ball (boundary included), in the order of the
+  /// tree.
   void inside_ball(const Vector3& centre, double radius, std::vector<std::uint32_t>& out) const;
   /// The nodes' boxes at a depth of the tree (0: the root's), leaves above it included.
   std::vector<Eigen::AlignedBox3d> boxes(int depth) const;
+  /// Returns the axis-aligned box around all points; empty without points.
   const Eigen::AlignedBox3d& box() const { return box_; }
+  /// Returns the number of points.
   std::size_t size() const { return points_.size(); }
 
  private:

@@ -1,5 +1,5 @@
-// Postures of an arm whose hand stays on an object that is carried along a way: what a closed chain of two arms can follow from its start
-// to its end (ours). Pure.
+// Configurations of an arm whose hand stays on an object that is carried along a path: what a
+// closed chain of two arms can follow from its start to its end. Own method. Pure.
 #pragma once
 
 #include <vector>
@@ -9,21 +9,25 @@
 namespace handsel::grasp_planner {
 
 struct CarriedWay {
-  std::vector<Vector> joints;  ///< arm axes at each pose of the way [rad]
-  double room{};               ///< least distance of a joint from its limits on the way [rad]
+  std::vector<Vector> joints;  ///< arm axes at each pose of the path [rad]
+  double room{};               ///< least distance of a joint from its limits on the path [rad]
 };
 
 struct CarriedSettings {
-  int elbows{24};            ///< angles of the elbow on its circle that are tried; it keeps its angle on the whole way
+  /// Angles of the elbow on its circle that are tried; it keeps its angle all along the path
+  int elbows{24};
   double least_room{0.06};   ///< [rad]
-  double largest_step{0.5};  ///< of a joint from one pose to the next: more is a jump from branch to branch [rad]
+  /// Of a joint from one pose to the next: more is a jump from branch to branch [rad]
+  double largest_step{0.5};
 };
 
-/// Poses of the object from `from` over those that follow, straight from each to the next, at most `step` [m] (or 5 * step [rad]) apart.
+/// Poses of the object from `from` over those that follow, straight from each to the next, at most
+/// `step` [m] (or 5 * step [rad]) apart.
 std::vector<Pose> way_of_object(const std::vector<Pose>& corners, double step);
 
-/// The ways on which the arm's tip goes through all of these poses without a jump, the roomiest first; none for an arm that is not one of
-/// shoulder, elbow and wrist. `q`: all axes, where the others are.
+/// Returns the motions on which the arm's tip goes through all of these poses without a jump, the
+/// roomiest first; none for an arm that is not one of shoulder, elbow and wrist. `q`: all axes,
+/// where the others are.
 std::vector<CarriedWay> carried_ways(const RobotModel& robot, const Group& arm, const Vector& q, const std::vector<Pose>& T_root_tip,
                                      const CarriedSettings& settings = {});
 

@@ -1,4 +1,5 @@
-// Double grasps: two hands on one object at a time, of a robot or of a robot and a person (chapter section 3.2.8).
+// Double grasps: two hands on one object at a time, of a robot or of a robot and a person (chapter
+// section 3.2.8).
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,10 @@ namespace handsel::grasp_planner {
 
 /// One hand's side of a double grasp.
 struct HandSide {
-  const HandKit* kit{};
-  const GraspList* list{};
-  /// How natural the arm reaches each grasp, one a grasp of the list, the higher the better (posture_scores()); below 0: not at all, such
-  /// grasps are left out. Empty: not asked.
+  const HandKit* kit{};  ///< geometry of the hand
+  const GraspList* list{};  ///< grasps of the hand on the object
+  /// How naturally the arm reaches each grasp, one a grasp of the list, the higher the better
+  /// (posture_scores()); below 0: not at all, such grasps are left out. Empty: not asked.
   std::vector<double> posture{};
   std::vector<std::size_t> also{};  ///< grasps that are taken whatever the settings say
 };
@@ -22,35 +23,42 @@ struct DoubleGrasp {
   std::size_t first{}, second{};  ///< indices into the two lists
   double quality{};               ///< the smaller of the two
   double posture{};               ///< the smaller of the two; 0 when not asked
-  double opposition{};            ///< angle between the wrists' directions, the z axes of the hands [rad]; pi: straight against each other
-  Vector3 way_first{Vector3::Zero()}, way_second{Vector3::Zero()};  ///< hand frames: how each can leave or come; 0 when not asked
-  double score{};                                                   ///< quality and posture, each normalised over the list, summed
+  /// Angle between the wrists' directions, the z axes of the hands [rad]; pi: straight against each
+  /// other
+  double opposition{};
+  /// Hand frames: how each can leave or come; 0 when not asked
+  Vector3 way_first{Vector3::Zero()}, way_second{Vector3::Zero()};
+  double score{};  ///< quality and posture, each normalised over the list, summed
 };
 
-/// Which grasps of a list are paired: the best, or the best of every orientation and side of the object in turn (ours: what is best of all
-/// is at the middle of the object, where there is no room for a second hand).
+/// Which grasps of a list are paired: the best, or the best of every orientation and side of the
+/// object in turn (own method: what is best of all is at the middle of the object, where there is
+/// no room for a second hand).
 enum class Taken : std::uint8_t { best, spread };
 
-/// Indices into the list, `count` at most and those of `also`. `p_object_middle`: of the object's box.
+/// Indices into the list, `count` at most and those of `also`. `p_object_middle`: of the object's
+/// box.
 std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, Taken taken, const Vector3& p_object_middle,
                                       const std::vector<std::size_t>& also = {});
 
 struct DoubleSettings {
   std::size_t most_of_each{200};  ///< grasps taken from each list
-  Taken taken{Taken::best};
+  Taken taken{Taken::best};  ///< how those are chosen
   Vector3 p_object_middle{Vector3::Zero()};  ///< for spread grasps
   double clearance{0.0};                     ///< between the hands [m]
-  double palm_clearance{0.0};                ///< between either palm and the other hand, when more [m]
-  double least_opposition{0.0};              ///< [rad] for a transfer: wrists opposed by at least this
-  /// For passing the object on: either hand, opened, must be able to come and to leave straight over `stand_off`, past the object and the
-  /// other hand. Needs the object.
+  double palm_clearance{0.0};  ///< between either palm and the other hand, when more [m]
+  double least_opposition{0.0};  ///< [rad] for a transfer: wrists opposed by at least this
+  /// For passing the object on: either hand, opened, must be able to come and to leave straight
+  /// over `stand_off`, past the object and the other hand. Needs the object.
   const Graspable* passed{};
   double stand_off{0.09};       ///< [m]
-  double way_clearance{0.002};  ///< kept on that way [m]
+  double way_clearance{0.002};  ///< kept on that path [m]
 };
 
 struct DoubleList {
   std::vector<DoubleGrasp> grasps;  ///< best score first
+  /// Pairs examined, and of these those left out: hands collide; wrists not opposed enough; no room
+  /// to come or leave; an arm does not reach.
   std::uint64_t pairs{}, colliding{}, not_opposed{}, no_way{}, out_of_reach{};
 
   /// Counts per reason of the pairs without a double grasp.
@@ -60,11 +68,12 @@ struct DoubleList {
 /// All pairs that do not collide.
 DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings = {});
 
-/// Nearness of an arm's posture to its rest posture, [0, 1]: one minus the mean share of the ranges its axes are away from it.
+/// Returns the nearness of an arm to its rest configuration, [0, 1]: one minus the mean fraction of
+/// the ranges its axes are away from there.
 double posture_score(const RobotModel& robot, const Group& arm, const Vector& arm_q);
 
-/// For each grasp of a list the smaller posture_score() of reaching it with the object at its start and at its goal; -1 when the arm does
-/// not reach one of them. `q_seed`: all axes.
+/// For each grasp of a list the smaller posture_score() of reaching it with the object at its start
+/// and at its goal; -1 when the arm does not reach one of them. `q_seed`: all axes.
 std::vector<double> posture_scores(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
                                    const std::vector<Pose>& T_root_object);
 

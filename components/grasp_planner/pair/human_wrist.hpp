@@ -1,4 +1,5 @@
-// How comfortable a person's wrist and arm are with the hand in a place (chapter section 3.2.9; the measure is ours).
+// How comfortable a person's wrist and arm are with the hand in a place (chapter section 3.2.9).
+// Own method: the measure.
 #pragma once
 
 #include <optional>
@@ -9,7 +10,7 @@ namespace handsel::grasp_planner {
 
 /// Where an arm starts and how long it is.
 struct HumanArm {
-  Side side{Side::right};
+  Side side{Side::right};  ///< which arm of the person
   Vector3 shoulder{Vector3::Zero()};  ///< world [m]
   Vector3 outward{Vector3::UnitY()};  ///< level, away from the other shoulder, unit
   double upper{}, forearm{};          ///< lengths [m]
@@ -25,22 +26,26 @@ struct WristPosture {
   double radial{};                 ///< of the hand toward the thumb; negative: ulnar
   double pronation{};              ///< of the forearm from thumb up; negative: supination
   double elevation{};              ///< of the upper arm from hanging
-  double strain{};                 ///< the largest share of its range any of the four uses, 0: neutral, 1: at an end
+  /// The largest fraction of its range any of the four uses, 0: neutral, 1: at an end
+  double strain{};
 };
 
-/// Ranges of the joints of a grown person: flexion 80, extension 70, radial 20, ulnar 30, pronation and supination 80 degrees (American
-/// Academy of Orthopaedic Surgeons); upper arm 100 degrees here, so that its comfortable part ends at 60 (ISO 11226).
+/// Ranges of the joints of a grown person: flexion 80, extension 70, radial 20, ulnar 30, pronation
+/// and supination 80 degrees (American Academy of Orthopaedic Surgeons); upper arm 100 degrees
+/// here, so that its comfortable part ends at 60 (ISO 11226).
 struct WristRanges {
+  /// All from the neutral position, > 0 [rad].
   double flexion, extension, radial, ulnar, pronation, supination, elevation;
 };
 inline constexpr WristRanges kWristRanges{1.396, 1.222, 0.349, 0.524, 1.396, 1.396, 1.745};
 
-/// Up to this share of the ranges a posture counts as comfortable (ours).
+/// Up to this fraction of the ranges an arm counts as comfortable.
 inline constexpr double kComfortableStrain = 0.6;
 
-/// The posture of least strain, the elbow anywhere from straight below the line from shoulder to wrist to level outward. `T_world_wrist`:
-/// the hand's frame, in the wrist, z along the fingers, x out of the palm. nullopt when the wrist is out of the arm's reach, or nearer than
-/// 0.2 m.
+/// Returns the configuration of least strain, the elbow anywhere from straight below the line from
+/// shoulder to wrist to level outward. `T_world_wrist`: the hand's frame, in the wrist, z along the
+/// fingers, x out of the palm. nullopt when the wrist is out of the arm's reach, or nearer than 0.2
+/// m.
 std::optional<WristPosture> wrist_posture(const HumanArm&, const Pose& T_world_wrist);
 
 }  // namespace handsel::grasp_planner

@@ -1,5 +1,5 @@
-// Grasps that leave a person a good one (chapter section 3.2.9): which grasps of the person's hand go with each of the robot's, and where
-// and how the object is best held out for them.
+// Grasps that leave a person a good one (chapter section 3.2.9): which grasps of the person's hand
+// go with each of the robot's, and where and how the object is best offered to them.
 #pragma once
 
 #include <functional>
@@ -16,9 +16,12 @@ struct TransferSettings {
   double palm_clearance{0.01};    ///< between either palm and the other hand [m]
   double least_opposition{2.1};   ///< angle of the wrists, more than 120 degrees [rad]
   std::size_t most_of_each{400};  ///< best grasps taken from each list
-  std::size_t partners{10};       ///< grasps of the person kept for each of the robot, clearly different ones
+  /// Grasps of the person kept for each of the robot, clearly different ones
+  std::size_t partners{10};
+  /// Strain of wrist and arm of the person; beyond it a pose is left out
   double most_strain{kComfortableStrain};
-  double most_aim{1.05};  ///< angle between the person's hand and the level way from their body to the object [rad]
+  /// Angle between the person's hand and the level direction from their body to the object [rad]
+  double most_aim{1.05};
   int headings{24};       ///< of the object
   double most_tilt{0};    ///< it may be tilted by up to this [rad]; upright is better
 };
@@ -38,9 +41,12 @@ class TransferTable {
 
   /// Of grasp `robot_grasp` of the robot's list, best first; empty: nothing is left for the person.
   const std::vector<TransferPartner>& partners(std::size_t robot_grasp) const;
-  /// How good the best partner is, [0, 1]: opposition and quality; 0 when there is none. What can be said before anybody's place is known.
+  /// How good the best partner is, [0, 1]: opposition and quality; 0 when there is none. What can
+  /// be said before anybody's place is known.
   double promise(std::size_t robot_grasp) const;
+  /// Returns the counts of the double grasps behind the table; its own grasps are empty.
   const DoubleList& doubles() const { return doubles_; }
+  /// Returns the settings the table was made with.
   const TransferSettings& settings() const { return settings_; }
 
  private:
@@ -49,15 +55,16 @@ class TransferTable {
   std::vector<std::vector<TransferPartner>> partners_;
 };
 
-/// A place to hold the object out.
+/// A place to offer the object.
 struct TransferPose {
-  Pose T_world_object{Pose::Identity()};
+  Pose T_world_object{Pose::Identity()};  ///< where and how the object is offered
   Vector arm_joints;  ///< of the robot
-  TransferPartner partner;
+  TransferPartner partner;  ///< grasp of the person that the pose is for
   WristPosture wrist;  ///< of the person
-  double aim{};        ///< angle between the person's hand and the way from their body to the object [rad]
+  /// Angle between the person's hand and the direction from their body to the object [rad]
+  double aim{};
   double tilt{};       ///< of the object, against how it is held now [rad]
-  double score{};      ///< [0, 1]: legibility (opposition), comfort (strain), aim, little tilt
+  double score{};      ///< at most 1: legibility (opposition), comfort (strain), aim, little tilt
 };
 
 /// How far the object may be tilted, in steps, upright first [rad].
@@ -70,8 +77,9 @@ class TransferPlaces {
   TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot, const Eigen::Matrix3d& R_world_object,
                  const Vector3& p_object_middle);
 
-  /// The best place for a grasp of the robot, the object tilted by `tilt` [rad] some way, at which `reach` finds an arm posture for the
-  /// robot's hand. `reach` is asked `most_reaches` times at most, best score first.
+  /// The best place for a grasp of the robot, the object tilted by `tilt` [rad] in some direction,
+  /// at which `reach` finds an arm configuration for the robot's hand. `reach` is asked
+  /// `most_reaches` times at most, best score first.
   std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
                                    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach,
                                    int most_reaches) const;

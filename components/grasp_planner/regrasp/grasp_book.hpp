@@ -1,4 +1,5 @@
-// The lists of one hand, made when first asked for, then remembered, and kept on disk when there is a store. For one thread at a time.
+// The lists of one hand, made when first asked for, then remembered, and kept on disk when there is
+// a store. For one thread at a time.
 #pragma once
 
 #include <functional>
@@ -13,15 +14,16 @@ namespace handsel::grasp_planner {
 
 /// An object with its list.
 struct GraspPage {
-  std::shared_ptr<const Graspable> object;
-  GraspList list;
+  std::shared_ptr<const Graspable> object;  ///< prepared for grasping, as the list has it
+  GraspList list;  ///< all its grasps by this hand
 };
 
 class GraspBook {
  public:
   GraspBook(std::shared_ptr<const HandKit> kit, const GraspListSettings& settings, GraspStore store);
 
-  /// nullptr when cancelled. Throws ConfigError when the object cannot be grasped by any hand (its mesh).
+  /// nullptr when cancelled. Throws ConfigError when the object cannot be grasped by any hand (its
+  /// mesh).
   std::shared_ptr<const GraspPage> page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
 
  private:
@@ -32,7 +34,8 @@ class GraspBook {
   std::map<std::uint64_t, std::shared_ptr<const GraspPage>> pages_;
 };
 
-/// Which grasps of a person's hand go with those of the robot's, by object; made when first asked for. For one thread at a time.
+/// Which grasps of a person's hand go with those of the robot's, by object; made when first asked
+/// for. For one thread at a time.
 class TransferBook {
  public:
   TransferBook(std::shared_ptr<const HandKit> robot, std::shared_ptr<const HandKit> taker, const GraspListSettings& taker_settings,

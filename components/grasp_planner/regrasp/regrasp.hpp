@@ -1,5 +1,6 @@
-// From one grasp of an object to another, or from one place to another that one grasp does not serve: picking up, passing from hand to hand
-// and putting down, as few times as can be (chapter section 3.2.10).
+// From one grasp of an object to another, or from one place to another that one grasp does not
+// serve: picking up, passing from hand to hand and putting down, as few times as can be (chapter
+// section 3.2.10).
 #pragma once
 
 #include <functional>
@@ -18,20 +19,20 @@ namespace handsel::grasp_planner {
 
 /// An arm with the grasps of its hand on the object.
 struct RegraspArm {
-  Manipulator arm;
-  const HandKit* kit{};
-  const GraspList* list{};
+  Manipulator arm;  ///< groups of arm and hand in the robot model
+  const HandKit* kit{};  ///< geometry of the hand of this arm; must outlive this struct
+  const GraspList* list{};  ///< grasps of that hand on the object; must outlive this struct
 };
 
 /// One hand holds the object, or it stands somewhere.
 struct ObjectState {
   int arm{-1};                            ///< index of the arm; -1: it stands
-  std::optional<std::size_t> grasp;       ///< index into the arm's list; as a goal it may be left open
+  std::optional<std::size_t> grasp;  ///< index into the arm's list; as a goal it may be left open
   Pose T_world_object{Pose::Identity()};  ///< where it stands
 };
 
 struct RegraspTask {
-  ObjectState start, goal;
+  ObjectState start, goal;  ///< where the object is, and where it is to be
   std::vector<Pose> placements;  ///< T_world_object: where else it can be put down
 };
 
@@ -39,23 +40,27 @@ enum class RegraspStepKind { pick, pass, place, join };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
-  RegraspStepKind kind{};
-  int from{-1}, to{-1};  ///< arms: who lets go, who takes
-  std::size_t grasp_from{}, grasp_to{};
-  Pose T_world_object{Pose::Identity()};
+  RegraspStepKind kind{};  ///< what happens to the object
+  int from{-1}, to{-1};  ///< indices of the arm that releases and the arm that takes; -1: none
+  std::size_t grasp_from{}, grasp_to{};  ///< indices into the lists of these arms
+  Pose T_world_object{Pose::Identity()};  ///< where the object is during the step
   Vector q;       ///< all hands that touch the object closed on it
   Vector before;  ///< pick, pass, join: the hand that comes, opened, off the object
-  Vector after;   ///< pass, place: the hand that went, opened, off the object; both when two put it down
+  /// Pass, place: the hand that went, opened, off the object; both when two put it down
+  Vector after;
 };
 
 struct RegraspSettings {
-  std::size_t most_of_each{200};         ///< grasps of each list that are considered, spread over all orientations
+  /// Grasps of each list that are considered, spread over all orientations
+  std::size_t most_of_each{200};
   double clearance{0.004};               ///< between the hands [m]
-  double slack{0.005};                   ///< what is held may lie this far from where it was planned to, when the other hand comes [m]
+  /// What is held may lie this far from its planned place when the other hand comes [m]
+  double slack{0.005};
   double stand_off{0.09};                ///< of a hand before it comes and after it went [m]
-  double lift{0.08};                     ///< what is picked up or put down must be able to go this far straight up [m]
-  int exchange_tries{200};               ///< places and turns of the object tried to pass it in one double grasp
-  std::uint64_t most_steps_tried{3000};  ///< the search ends when so many picks, passes and places were judged
+  double lift{0.08};  ///< what is picked up or put down must be able to go this far straight up [m]
+  int exchange_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
+  /// The search ends when so many picks, passes and places were checked
+  std::uint64_t most_steps_tried{3000};
   GripForceSettings grip;                ///< of hands that share a load
   double least_apart{0.25};              ///< of the palms of two hands that carry together [m]
   std::size_t most_pairs_tried{400};     ///< of two hands at once
@@ -63,28 +68,32 @@ struct RegraspSettings {
 
 struct RegraspPlan {
   std::vector<RegraspStep> steps;  ///< empty when nothing has to change, or when there is none
-  bool solved{};
+  bool solved{};  ///< the object gets to the goal; also when nothing has to change
   std::string reason;  ///< why not, one sentence
-  Refusals rejected;   ///< steps that were judged and why they cannot be made
+  Refusals rejected;   ///< steps that were checked and why they cannot be made
+  /// Steps checked in detail; pairs of grasps of two hands that do not collide.
   std::uint64_t judged{}, double_grasps{};
-  std::vector<LoadShare> shares;  ///< of two hands at once, one an arm: how each squeezes
+  std::vector<LoadShare> shares;  ///< of two hands at once, one an arm: grip of each
 };
 
-/// Keeps what it found about an object on a robot in a scene: later tasks with the same object are answered faster. For one thread.
+/// Keeps what it found about an object on a robot in a scene: later tasks with the same object are
+/// answered faster. For one thread.
 class RegraspPlanner {
  public:
-  /// `arms`: one or two. The scene's boxes are obstacles; its objects are too, but the one with the id `object_id`.
+  /// `arms`: one or two. The scene's boxes are obstacles; its objects are too, but the one with the
+  /// id `object_id`.
   RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object, ObjectLibrary library, const Scene& scene,
                  const std::string& object_id, const RegraspSettings& settings = {});
   ~RegraspPlanner();
 
-  /// The sequence with the fewest steps; among those of equal length about the one of the best grasps. ConfigError when start or goal name
-  /// an arm or a grasp that is not there.
+  /// The sequence with the fewest steps; among those of equal length about the one of the best
+  /// grasps. ConfigError when start or goal name an arm or a grasp that is not there.
   RegraspPlan plan(const RegraspTask& task, const std::function<bool()>& cancelled = {});
 
-  /// Two hands that take it at once where it stands, up by `lift`, straight over and down: pick, join, place. On the whole way both arms
-  /// keep the angles of their elbows, stay inside their limits and touch nothing, and the fingers of both bear the load. ConfigError when
-  /// there is one arm.
+  /// Two hands that take it at once where it stands, up by `lift`, straight over and down: pick,
+  /// join, place. All along the path both arms keep the angles of their elbows, stay inside their
+  /// limits and touch nothing, and the fingers of both bear the load. ConfigError when there is one
+  /// arm.
   RegraspPlan plan_together(const Pose& T_world_start, const Pose& T_world_goal, const std::function<bool()>& cancelled = {});
 
  private:
@@ -92,6 +101,7 @@ class RegraspPlanner {
   std::unique_ptr<Impl> impl_;
 };
 
+/// Returns a word for reports: "pick", "pass", "place" or "join".
 const char* name(RegraspStepKind);
 
 }  // namespace handsel::grasp_planner

@@ -1,4 +1,5 @@
-// Answers which hands to take an object with: the planner's steps with the grasps as messages have them.
+// Answers which hands to take an object with: the planner's steps with the grasps as messages have
+// them.
 #pragma once
 
 #include <functional>
@@ -12,20 +13,21 @@
 
 namespace handsel::grasp_planner {
 
-/// An arm, the kit of its hand and the lists of that hand.
+/// An arm, the geometry of its hand and the grasp lists of that hand.
 struct ArmBook {
-  Manipulator arm;
-  std::shared_ptr<const HandKit> kit;
-  std::shared_ptr<GraspBook> book;
+  Manipulator arm;  ///< groups of arm and hand in the robot model
+  std::shared_ptr<const HandKit> kit;  ///< geometry of the hand of this arm
+  std::shared_ptr<GraspBook> book;  ///< grasp lists of that hand, made when first asked for
 };
 
 struct RegraspAnswer {
-  RegraspReply reply;
-  std::uint64_t judged{};  ///< steps
+  RegraspReply reply;  ///< as sent to the client; its reason says why there is no sequence
+  std::uint64_t judged{};  ///< steps checked in detail
   std::uint64_t listed{};  ///< grasps that were listed for it
 };
 
-/// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no sequence.
+/// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no
+/// sequence.
 RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& robot, const std::vector<ArmBook>& arms,
                              const ObjectModel& model, const ObjectLibrary& library, const Scene& scene, const RegraspSettings& settings,
                              const std::function<bool()>& cancelled = {});
