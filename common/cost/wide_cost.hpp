@@ -45,11 +45,11 @@ class WideCost {
   /// The states from + at[i] (to - from), i < count <= kStates, with the first `points` of the
   /// points. False: not for this path.
   bool run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points);
-  /// Returns the safety cost, [0, 1], of one state of the last run() for a person by index. `lane`:
-  /// index of the state.
+  /// Returns the safety cost, [0, 1], of a person by index in one state of the last run(), by
+  /// index.
   double safety(std::size_t person, int lane) const { return safety_[person * kStates + static_cast<std::size_t>(lane)]; }
-  /// Returns the visibility cost, [0, 1], of the first point of one state of the last run() for a
-  /// person by index.
+  /// Returns the visibility cost, [0, 1], of the first point for a person by index in one state of
+  /// the last run(), by index.
   double visibility(std::size_t person, int lane) const { return visibility_[person * kStates + static_cast<std::size_t>(lane)]; }
   Vector3 point(std::size_t i, int lane) const {  ///< world [m]
     const float* p = point_.get() + 3 * i * kStates + lane;

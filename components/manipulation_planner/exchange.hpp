@@ -1,5 +1,5 @@
-// Where and how to offer an object: exchange poses ranked by comfort, safety, visibility, legibility and the robot's effort
-// (chapter sections 3.2.9 and 4.1.2; the sum is ours). Pure.
+// Where and how to offer an object: exchange poses ranked by comfort, safety, visibility,
+// legibility and the robot's effort (chapter sections 3.2.9 and 4.1.2). Own method: the sum. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@
 namespace handsel::manipulation_planner {
 
 struct ExchangePose {
-  Pose T_world_object{Pose::Identity()};
+  Pose T_world_object{Pose::Identity()};  ///< where and how the object is offered
   Vector arm_joints;  ///< arm axes that put the held object there
-  double cost{};
+  double cost{};  ///< as exchange_cost() counts it, the lower the better
 };
 
 struct ExchangeSearch {
@@ -27,18 +27,21 @@ struct ExchangeSearch {
   std::uint32_t tried{};            ///< inverse kinematics solved for
 };
 
-/// Where the fingers of a hand that pinches stand, seen from the object (outward normals, object frame): it cannot be drawn out that way.
-/// Empty when more than two fingers hold it: they open away from it.
+/// Where the fingers of a hand that pinches stand, seen from the object (outward normals, object
+/// frame): it cannot be drawn out that way. Empty when more than two fingers hold it: they open
+/// away from it.
 std::vector<Vector3> barred_ways(const Grasp& grasp);
 
-/// `q`: all axes, near which postures are sought; `T_world_object_now`: where the object is. The object keeps its tilt; only its place and
-/// heading change. Places in, under or behind furniture as the person sees it, and those an outside layer forbids, are none.
-/// `barred`: as barred_ways() gives them; the person must be able to draw the object toward them.
+/// `q`: all axes, near which configurations are searched; `T_world_object_now`: where the object
+/// is. The object keeps its tilt; only its place and heading change. Places in, under or behind
+/// furniture as the person sees it, and those an outside layer forbids, are none. `barred`: as
+/// barred_ways() gives them; the person must be able to draw the object toward them.
 ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
                              const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
                              const std::vector<Vector3>& barred = {});
 
-/// What a pose of the object costs as find_exchange() counts it, whether the robot reaches it or not; nullopt: it could not be one.
+/// What a pose of the object costs as find_exchange() counts it, whether the robot reaches it or
+/// not; nullopt: it could not be one.
 std::optional<double> exchange_cost(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object,
                                     const Pose& T_world_object_now, const Pose& T_tool_object,
                                     const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred = {});

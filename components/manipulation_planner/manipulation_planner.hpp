@@ -1,5 +1,6 @@
-// The human-aware manipulation planner (MHP, chapter section 2.1): brings grasp, path and trajectory planner together to carry out one
-// action. Pure: messages come in, time comes in, messages go out through the Outbox.
+// The human-aware manipulation planner (MHP, chapter section 2.1): brings grasp, path and
+// trajectory planner together to carry out one action. Pure: messages come in, time comes in,
+// messages go out through the Outbox.
 #pragma once
 
 #include <cstdint>
@@ -32,12 +33,12 @@ namespace handsel::manipulation_planner {
 
 /// What the core wants sent; the node empties it after each step.
 struct Outbox {
-  std::vector<GraspRequest> grasp_requests;
-  std::vector<RegraspRequest> regrasp_requests;
-  std::vector<PathRequest> path_requests;
-  std::vector<TrajectoryRequest> trajectory_requests;
-  std::vector<TrajectoryCommand> trajectories;
-  std::vector<HandCommand> hand_commands;
+  std::vector<GraspRequest> grasp_requests;  ///< to the grasp planner
+  std::vector<RegraspRequest> regrasp_requests;  ///< to the grasp planner, for two hands
+  std::vector<PathRequest> path_requests;  ///< to the path planner; also those that cancel
+  std::vector<TrajectoryRequest> trajectory_requests;  ///< to the trajectory planner
+  std::vector<TrajectoryCommand> trajectories;  ///< to the trajectory controller
+  std::vector<HandCommand> hand_commands;  ///< to the controller of the hand
   std::vector<std::function<void()>> jobs;  ///< long work; call job_done() after each
 };
 
@@ -54,7 +55,7 @@ enum class MotionEnd : std::uint8_t {
 
 /// Outcome of a part of an action.
 struct Outcome {
-  bool good{true};
+  bool good{true};  ///< the part has succeeded
   std::string reason;                       ///< why not, one sentence
   MotionEnd end{MotionEnd::reached};        ///< failed also where no motion was part of it
   ActionFailure kind{ActionFailure::none};  ///< of a failure: recovery is chosen by it
@@ -62,51 +63,77 @@ struct Outcome {
   bool target_moved() const { return end == MotionEnd::target_moved || end == MotionEnd::giver_approached; }
   /// Returns whether another attempt at the same motion is of no use.
   bool is_final() const { return target_moved() || end == MotionEnd::taken || end == MotionEnd::late; }
+  /// Makes a failure for a reason of its own; `why`: one sentence.
   static Outcome failure(std::string why, ActionFailure of_kind = ActionFailure::other) {
     return {false, std::move(why), MotionEnd::failed, of_kind};
   }
   /// Returns this failure with the part of the action in front of its reason.
   Outcome of(const std::string& part) const { return {good, part + ": " + reason, end, kind}; }
+  /// Makes the failure that a planner, e.g. "path", has not replied in time.
   static Outcome no_answer(const std::string& planner) {
     return failure("the " + planner + " planner does not answer", ActionFailure::no_answer);
   }
+  /// Makes the failure that an object or a person is not seen any more.
   static Outcome out_of_sight(const std::string& what) { return failure(what + " is out of sight", ActionFailure::not_visible); }
 };
 
 class ManipulationPlanner {
  public:
-  /// `client` makes request ids unique over restarts; trajectory and hand command ids start above it.
+  /// `client` makes request ids unique over restarts; trajectory and hand command ids start above
+  /// it.
   ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
                       std::uint64_t client, CostSettings cost = {});
 
+  /// Begins an action in place of the one that runs, or cancels the one with that id. A goal with
+  /// the id of the last action changes nothing.
   void on(const ActionGoal& goal);
+  /// Takes the newest scene; objects, boxes and base of the robot in the world frame.
   void on(const Scene& scene) { scene_ = scene; }
+  /// Takes the newest people, joints in the world frame.
   void on(const HumanState& people) { people_ = people; }
+  /// Takes the facts that hold now; they replace all before.
   void on(const Facts& facts) { facts_ = facts; }
   /// `sent`: when its writer sent the layer.
   void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
+  /// Takes the advised period of replanning and the gain of the human-aware cost; both hold for a
+  /// moment only.
   void on(const AttentionAdvice& advice, TimePoint now) {
     live_pace_.advise(advice.replan_period, now);
     cost_gain_ = advice.cost_gain;
   }
+  /// Takes the newest report of the controller: what holds the robot back, and how its command
+  /// goes.
   void on(const ExecutionStatus& status);
+  /// Takes what the controller runs, and its set point: the joints as commanded.
   void on(const ActiveTrajectory& active);
+  /// Takes a reply; ignored unless it answers the newest request.
   void on(const GraspReply& reply);
+  /// Takes a reply; ignored unless it answers the newest request.
   void on(const RegraspReply& reply);
+  /// Takes a reply; ignored unless it answers the newest request.
   void on(const PathReply& reply);
+  /// Takes a reply; ignored unless it answers the newest request or the comparison that was asked
+  /// for.
   void on(const TrajectoryReply& reply);
+  /// Counts one job of the outbox as ended; what it wrote may be read from now on.
   void job_done() { ++jobs_done_; }
 
   /// What became of running paths.
   struct LiveCounts {
-    /// Asked for; came back as they were; cheaper but longer; gone over to; turned down on the way; kept, but timed anew.
+    /// Asked for; came back as they were; cheaper but longer; switched to; refused before the
+    /// switch; kept, but timed anew.
     std::uint64_t looks{}, kept{}, slower{}, taken{}, refused{}, retimed{};
   };
+  /// Returns the counts since the start of the planner.
   const LiveCounts& live_counts() const { return live_counts_; }
 
+  /// Carries the action on to `now` and adds to the outbox what it wants sent; called periodically,
+  /// from one thread.
   void step(TimePoint now, Outbox& out);
+  /// Returns the state of the action that runs or ran last, as of the last step().
   const ActionStatus& status() const { return status_; }
-  std::string complaint(TimePoint now) { return layers_.complaint(now); }  ///< about layers left out; empty: none
+  /// About layers left out; empty: none
+  std::string complaint(TimePoint now) { return layers_.complaint(now); }
 
  private:
   static constexpr double kAnyLength = 1e9;
@@ -115,20 +142,25 @@ class ManipulationPlanner {
     std::vector<Vector> goals;  // arm axes, alternatives
     bool straight{false};
     std::vector<std::string> allowed;
-    std::vector<std::string> tolerated;  // the plan keeps off these, but a brush foreseen on the way is no reason to hold
+    // the plan keeps clearance to these, but a brush foreseen on the path is no reason to hold
+    std::vector<std::string> tolerated;
     double speed{1.0};
-    double longest{kAnyLength};            // a path that is longer is none, sum of the legs' max norms [rad]
+    double longest{kAnyLength};  // a path that is longer is none, sum of the legs' max norms [rad]
     double think{};                        // for the path at most [s]; 0: as set
-    std::string receiver;                  // the goals are exchange postures for this person, chosen anew as they move; empty: they stay
+    // the goals are handover configurations for this person, chosen anew as they move; empty: they
+    // stay
+    std::string receiver;
     Vector3 receiver_at{Vector3::Zero()};  // their torso when the goals were chosen, world [m]
-    std::string yields_to;                 // who takes hold of what is held ends the motion; empty: nobody
-    std::string aims_at;                   // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
+    // the motion ends when this person takes hold of what is held; empty: nobody
+    std::string yields_to;
+    // object that is to stay within aim_slack [m] of p_world_aim until the motion ends; empty: none
+    std::string aims_at;
     Vector3 p_world_aim{Vector3::Zero()};
     double aim_slack{};
     double patience{std::numeric_limits<double>::infinity()};  // given up when it takes longer [s]
-    std::string makes_room_for;                                // ends when this person offers what the goal is about ...
+    std::string makes_room_for;  // ends when this person offers what the goal is about ...
     bool any_offer{};                                          // ... however little room they have
-    std::optional<Grasp> follows;                              // led before where that grasp is now, while it moves
+    std::optional<Grasp> follows;  // led before where that grasp is now, while it moves
   };
   struct PlannedPath {
     Outcome outcome;
@@ -145,10 +177,12 @@ class ManipulationPlanner {
   /// A path that is offered while another runs.
   struct Ways {
     std::optional<Trajectory> over;   // onto it; empty: nothing leads there
-    std::optional<Trajectory> along;  // the old one, timed for the people as they are now; empty: it must be left
-    bool worth{true};                 // going over to it
-    double share{1};                  // of the velocity limits, that what leads over keeps where it is not faster already
-    double reach{};                   // joined at most this far from where the old one is left, max norm [rad]
+    // the old one, timed for the people as they are now; empty: it must be left
+    std::optional<Trajectory> along;
+    bool worth{true};                 // switching to it
+    // of the velocity limits, that what leads over keeps where it is not faster already
+    double share{1};
+    double reach{};  // joined at most this far from where the old one is left, max norm [rad]
   };
   /// Where the path that runs would be left, and what runs from there on.
   struct Leave {
@@ -174,14 +208,14 @@ class ManipulationPlanner {
   struct Serving {
     Outcome outcome;
     std::map<std::size_t, Destination> at;  // by the grasp's place in the list
-    std::string objections;                 // what stood in the way of the others on the last surface
+    std::string objections;  // what stood in the way of the others on the last surface
   };
 
   // Actions.
   Routine<Outcome> run(ActionGoal goal);
   /// `onto`: the surface it will be put down on, empty if that is not known.
   Routine<Outcome> pick(const std::string& object, const std::string& for_human, const std::string& onto);
-  /// Who is out of reach is waited for until `patience`.
+  /// A person out of reach is waited for until that time.
   Routine<Outcome> keep_givable(std::vector<Grasp>& grasps, const std::string& object, const std::string& human, TimePoint patience);
   Routine<Outcome> try_grasp(const std::string& object, const std::string& for_human, const Grasp& grasp);
   Routine<Outcome> lift(const std::string& object, const std::string& for_human);
@@ -189,35 +223,41 @@ class ManipulationPlanner {
   Routine<Outcome> place(const std::string& object, const std::string& surface);
   /// What is held, to above its place and down to it.
   Routine<Outcome> lower(const PuttingPosture& posture);
-  /// `wanted` empty: whatever is offered; `giver` empty: whoever offers; `onto` as of pick(), empty: any surface.
+  /// `wanted` empty: whatever is offered; `giver` empty: whoever offers; `onto` as of pick(),
+  /// empty: any surface.
   Routine<Outcome> receive(const std::string& wanted, const std::string& giver, const std::string& onto);
-  /// `attempt`, from 1: the later, the longer may the arm's way there be.
+  /// `attempt`, from 1: the later, the longer may the path of the arm be.
   Routine<Outcome> take(const std::string& object, const std::string& giver, const Grasp& grasp, std::uint32_t attempt);
   Motion approach_to(const std::string& object, const std::string& giver, const Grasp& grasp, std::uint32_t attempt) const;
-  /// Leaves the grasps whose way in and closing fingers keep off the giver's hand, as it is seen now; with none left it says so.
+  /// Leaves the grasps whose approach and closing fingers keep clearance to the giver's hand, as it
+  /// is seen now; with none left the result says so.
   Routine<Outcome> keep_off_fingers(const std::string& object, const std::string& giver, std::vector<Grasp>& grasps);
-  /// From the offered object with the hand opened, the way it came; the result is `why`.
+  /// From the offered object with the hand opened, along the path it came; the result is `why`.
   Routine<Outcome> draw_back(const std::string& object, const std::string& giver);
   Routine<Outcome> step_back(const std::string& object, const std::string& giver);
   Routine<Outcome> back_off(const std::string& object, const std::string& giver, const Grasp& grasp, const Outcome& why);
-  /// Who holds out what.
+  /// An object and the person that offers it.
   struct Offer {
     std::string object, giver;
   };
-  /// Draws the hand back where it leaves no room to hold something out; nullopt: nothing was offered until `patience`.
+  /// Retreats the hand where it leaves no room for an offer; nullopt: nothing was offered until
+  /// that time.
   Routine<std::optional<Offer>> watch_for_offer(const std::string& wanted, const std::string& giver, TimePoint patience);
-  /// The arm at rest, or moved from there as little as gives room before this person, else as far as it goes; nearest to rest first.
+  /// The arm at rest, or moved from there as little as gives room before this person, else as far
+  /// as it goes; nearest to rest first.
   std::vector<Vector> postures_before(const Person&) const;
   /// To one of these. `for_offer`: only until there is one.
   Routine<Outcome> make_room(const std::string& giver, bool for_offer = false);
-  /// How much farther than it must be hand and arm are, in this posture, from where this person would hold something out [m].
+  /// How much farther than it must be hand and arm are, in this configuration, from where this
+  /// person would make an offer [m].
   double room_before(const Person&, const Vector& posture) const;
   bool crowds(const std::string& giver) const;
   bool room_is_made(const Motion& motion) const;
   bool holds_out(const Person& who, const SceneObject& held) const;
   void watch_offer();
-  bool comes_on(const std::string& giver) const;  ///< a step toward the hand that is near what they hold
-  bool still_offered() const;                     ///< what was taken up is held out, or was so just now
+  /// A step toward the hand that is near what they hold
+  bool comes_on(const std::string& giver) const;
+  bool still_offered() const;  ///< the accepted object is offered, or was so just now
   std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
   /// The grasp for where the object is now; nullopt: the arm does not reach it there.
   std::optional<Grasp> aimed(const std::string& object, const Grasp& grasp) const;
@@ -225,8 +265,10 @@ class ManipulationPlanner {
   /// A hand of that person has come to what the robot holds.
   bool comes_to_hand() const;
   bool takes_hold(const std::string& who) const;
-  bool at_hand_of(const std::string& who, const std::string& object) const;  ///< a hand of theirs is at it
-  /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or the arm does not reach there.
+  /// A hand of theirs is at it
+  bool at_hand_of(const std::string& who, const std::string& object) const;
+  /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or
+  /// the arm does not reach there.
   std::optional<Vector3> follow_offer(Motion& motion);
   Routine<Outcome> go_to_rest();
 
@@ -239,9 +281,11 @@ class ManipulationPlanner {
   Routine<Outcome> use_arm(const std::string& arm);
   Routine<RegraspSteps> ask_regrasp(const std::string& object, const Pose& T_world_goal, bool both);
   Routine<Outcome> regrasp(const ActionGoal& goal);
-  /// Until the scene has it standing somewhere, for a moment: what was just put down may still seem to be held.
+  /// Until the scene has it standing somewhere, for a moment: what was just put down may still seem
+  /// to be held.
   Routine<Outcome> wait_standing(const std::string& object);
-  /// Where the object can stand: where the goal says, else free places on its surface, the nearest to an arm first.
+  /// Where the object can stand: where the goal says, else free places on its surface, the nearest
+  /// to an arm first.
   std::vector<Pose> places_for(const ActionGoal& goal, const SceneObject& object, const ObjectModel& model) const;
   Routine<Outcome> pass(const std::string& object, const RegraspStep& step);
   std::optional<Vector> meeting_posture(const RegraspStep& step) const;
@@ -260,10 +304,11 @@ class ManipulationPlanner {
   Routine<Outcome> run_to_end(const TrajectoryCommand& command);
   HandState hand_state() const;
   std::string hand_name() const { return hand_ == 0 ? "" : fingers_.name; }  // as messages have it
-  bool holds(const std::string& object) const;                               // the hand in use holds it, as the scene has it
+  bool holds(const std::string& object) const;  // the hand in use holds it, as the scene has it
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
-  /// Until `reply` has come: asks again each request_retry, since asking twice is harmless; false: it has not come within `patience` [s].
+  /// Until `reply` has come: asks again each request_retry, since asking twice is harmless; false:
+  /// no reply within the time allowed [s].
   template <class Request, class Reply>
   Routine<bool> ask(std::vector<Request> Outbox::*desk, const Request& request, std::optional<Reply>& reply, double patience) {
     reply.reset();
@@ -275,10 +320,12 @@ class ManipulationPlanner {
     co_return reply.has_value();
   }
   Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human, std::uint32_t most);
-  /// Which of the grasps, the first `most` of them, serve at one of the best `places` of the surface too (`onto` empty: of any), and where.
+  /// Which of the grasps, the first `most` of them, serve at one of the best `places` of the
+  /// surface too (`onto` empty: of any), and where.
   Routine<Serving> serving(const std::string& object, const std::string& onto, const std::vector<Grasp>& grasps, std::size_t most,
                            std::size_t places);
-  /// Grasps that serve at a free place of that surface too, which place() then tries first; if there is none, any.
+  /// Grasps that serve at a free place of that surface too, which place() then tries first; if
+  /// there is none, any.
   Routine<GraspList> ask_grasps_onto(const std::string& object, const std::string& surface);
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
   Routine<Outcome> move(const Motion& motion);
@@ -287,15 +334,16 @@ class ManipulationPlanner {
   Routine<Outcome> go_on(Running& running, const Motion& motion);
   Routine<Outcome> go_over(Running& running, const Motion& motion, const Leave& leave, const std::shared_ptr<Ways>& ways,
                            const TrajectoryReply& timed, const std::vector<Vector>& nodes);
-  /// The path that runs, as it would be timed for the people as they are now, where that makes a difference.
+  /// The path that runs, as it would be timed for the people as they are now, where that makes a
+  /// difference.
   Routine<Outcome> retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes);
   bool gone(const Running& running) const;
   bool slipped() const;
   bool in_hand(const SceneObject& held) const;  ///< it is where the hand has hold of it
   void halt(Outbox& out);
   void lose_object(Outbox& out);
-  /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good exchange posture any more; true: it is none, even
-  /// where there is no other.
+  /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good handover
+  /// configuration any more; true: it is none, even where there is no other.
   Routine<bool> follow(Motion& motion, const Vector& goal);
   struct ExchangeChoice {
     Outcome outcome;
@@ -307,7 +355,7 @@ class ManipulationPlanner {
   PathRequest path_request(const Vector& start, const Motion& motion);
   TrajectoryRequest trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion);
   TrajectoryCommand command_for(const Trajectory& trajectory, const Motion& motion);
-  /// What a motion that leads over from one trajectory to another is judged in.
+  /// What a motion that leads over from one trajectory to another is checked in.
   struct Around {
     Scene scene;
     HumanState people;
@@ -315,7 +363,7 @@ class ManipulationPlanner {
     Attachment attachment;
     std::vector<std::string> allowed;
     Vector posture;       // axes that are not the arm's
-    double cost_gain{1};  // what a share of the human-aware cost counts for more, as attention has it
+    double cost_gain{1};  // factor of what is saved of the human-aware cost, as attention has it
   };
   void weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const;
   double cost_at(const Vector& q, const Vector& posture) const;
@@ -325,9 +373,9 @@ class ManipulationPlanner {
   /// `share_of_mass`: of what is grasped, that this hand bears.
   Routine<HandResult> hand(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr,
                            double share_of_mass = 1.0);
-  /// The same, only until the controller has heard of it.
+  /// The same, only until the controller has acknowledged the command.
   Routine<Outcome> tell_hand(HandAction action, const Vector& position, const Vector* effort = nullptr, double share_of_mass = 1.0);
-  Routine<Outcome> hand_opened();  ///< which was told to move
+  Routine<Outcome> hand_opened();  ///< after it was commanded to move
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
   Routine<Outcome> work(const std::function<void()>& job);
@@ -336,12 +384,17 @@ class ManipulationPlanner {
   bool at_rest() const;
   bool may_move() const;
   Outcome not_permitted() const;
-  Vector posture() const;  // the arm as commanded, hand and head as measured: squeezing fingers are commanded beyond what they touch
+  // the arm as commanded, hand and head as measured: gripping fingers are commanded beyond what
+  // they touch
+  Vector posture() const;
   const SceneObject* object(const std::string& id) const;
-  const SceneBox* surface(const std::string& id) const;      // null: no box of that name on which things can stand
-  const ObjectModel* model_of(const std::string& id) const;  // of an object of the scene; null: unknown
+  // null: no box of that name on which things can stand
+  const SceneBox* surface(const std::string& id) const;
+  // of an object of the scene; null: unknown
+  const ObjectModel* model_of(const std::string& id) const;
   const Person* person(const std::string& id) const;         // empty id: the nearest
-  bool lost(const std::string& id) const;                    // a person who might be anywhere near where they were last seen
+  // a person who might be anywhere near where they were last seen
+  bool lost(const std::string& id) const;
   void hold(const SceneObject& object);
   void release_object();
   void drop_action();
@@ -350,7 +403,8 @@ class ManipulationPlanner {
   static void place_world(CollisionWorld& world, const Scene& scene, const HumanState& people);
   Pose T_world_tool() const;
   std::optional<Vector> reach(const Pose& T_world_tool) const;
-  std::vector<Vector3> ways_out(const std::string& touched) const;  // directions in the world, the likeliest first
+  // directions in the world, the likeliest first
+  std::vector<Vector3> ways_out(const std::string& touched) const;
 
   config::ManipulationPlannerSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
@@ -369,9 +423,11 @@ class ManipulationPlanner {
   Routine<Outcome> action_;
   ActionGoal goal_;
   Offer taken_up_;                  // by receive; empty: none
-  bool waited_long_{};              // nothing was held out farther for so long that what is held before the body counts as offered
-  std::optional<Vector> opens_to_;  // the hand, while it moves: motions are planned for what it will be
-  bool at_offer_{};                 // the hand, from the straight way in until it has drawn back
+  // nothing was offered farther out for so long that what is held before the body counts as offered
+  bool waited_long_{};
+  // the hand, while it moves: motions are planned for what it will be
+  std::optional<Vector> opens_to_;
+  bool at_offer_{};  // the hand, from the straight approach until the retreat has ended
   ActionStatus status_;
   Outbox* out_{nullptr};
 
@@ -383,16 +439,18 @@ class ManipulationPlanner {
   Vector set_point_, set_point_velocity_;
   ActiveTrajectory active_;
   TimePoint free_at_{}, held_back_at_{}, held_at_{}, offered_at_{};
-  double blocked_for_{0};  // how long the forecast, or a person too near, has held the robot back [s]
+  // how long the forecast, or a person too near, has held the robot back [s]
+  double blocked_for_{0};
   bool too_near_{false};
   std::optional<GraspReply> grasp_reply_;
   std::optional<RegraspReply> regrasp_reply_;
   std::optional<PathReply> path_reply_;
   std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
-  RequestId comparison_;                   // for the time that the path which runs would take from now on
+  RequestId comparison_;  // for the time that the path which runs would take from now on
   bool path_awaited_{false};               // the newest path request is without a reply
   bool drop_path_{false};                  // and nobody wants it any more
-  std::optional<TrajectoryCommand> halt_;  // what a dropped action has set in motion is to end, until the controller has heard it
+  // what a dropped action has set in motion is to end, until the controller has acknowledged it
+  std::optional<TrajectoryCommand> halt_;
   TimePoint halted_at_{};
 
   Attachment attachment_;

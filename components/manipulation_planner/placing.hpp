@@ -1,4 +1,4 @@
-// Where an object can be put down on a surface, and how the arm gets it there (ours). Pure.
+// Where an object can be put down on a surface, and how the arm gets it there. Own method. Pure.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@
 
 namespace handsel::manipulation_planner {
 
-/// What is put down is let go this far above the surface [m].
+/// What is put down is released this far above the surface [m].
 inline constexpr double kAbovePlace = 0.004;
 
 struct PlacingSettings {
@@ -22,22 +22,23 @@ struct PlacingSettings {
   double edge{0.03};                ///< of the surface that is kept free [m]
   double grid{0.04};                ///< places are tried so far apart [m]
   double apart{0.12};               ///< those that are given are at least so far apart [m]
-  double at_reach{0.6};             ///< share of the arm's reach at which it works best
+  double at_reach{0.6};             ///< fraction of the arm's reach at which it works best
   double above{kAbovePlace};        ///< lowered to this above the surface [m]
   std::optional<ArmReach> reach{};  ///< of the arm that puts it down; left out: of the group "arm"
 };
 
-/// Free places for an object that stands upright there, T_world_object each, the best first: where the arm reaches well, away from other
-/// things and from people. It has turned about the vertical by as much as the arm turns to get there from `T_world_object`.
+/// Free places for an object that stands upright there, T_world_object each, the best first: where
+/// the arm reaches well, away from other things and from people. It has turned about the vertical
+/// by as much as the arm turns to get there from `T_world_object`.
 std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const HumanState& people, const ObjectLibrary& library,
                               const std::string& object, const SceneBox& surface, const Pose& T_world_object, std::size_t most,
                               const PlacingSettings& settings = {});
 
-/// Postures that put what the hand holds at a place: from above, then down to it.
+/// Configurations that put what the hand holds at a place: from above, then down to it.
 struct PuttingPosture {
   Pose T_world_object{Pose::Identity()};  ///< at the place
   Vector arm_above, arm_at;               ///< arm axes [rad]
-  bool opens{};                           ///< the hand can open there without touching anything else
+  bool opens{};  ///< the hand can open there without touching anything else
 };
 
 /// Puts what is held on a surface, somewhere.
@@ -47,12 +48,14 @@ class Putting {
   Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm, const Pose& T_world_base, std::vector<Pose> places,
           double from_above);
 
-  /// At this place, its object turned about the vertical as is best for the arm, where the hand can open if possible; nullopt: what stands
-  /// in the way is counted. `q`: all axes, the hand closed on the object; `opened`: likewise, when it has let go.
+  /// At this place, its object turned about the vertical as is best for the arm, where the hand can
+  /// open if possible; nullopt: what stands in the way is counted. `q`: all axes, the hand closed
+  /// on the object; `opened`: all axes, after the release.
   std::optional<PuttingPosture> at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held);
   /// At the first `most` places where it can be, those where the hand can open before the others.
   std::vector<PuttingPosture> anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t most);
-  /// What stood in the way most often so far, and how often: "12 out of reach, 3 because link forearm would touch box table".
+  /// What stood in the way most often so far, and how often: "12 out of reach, 3 because link
+  /// forearm would touch box table".
   std::string objections() const;
 
  private:

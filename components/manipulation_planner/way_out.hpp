@@ -1,4 +1,5 @@
-// Off from people the arm stands too near to (ours): the guard lets a motion go there only when every link near them leads clearly away.
+// Off from people the arm stands too near to. Own method. The guard lets a motion go there only
+// when every link near them leads clearly away.
 #pragma once
 
 #include <vector>
@@ -12,12 +13,14 @@ class WayOut {
  public:
   WayOut(const RobotModel& robot, const Group& arm);
 
-  /// Does the straight motion of all axes [rad, m] begin with every link that is near a person going clearly away from them?
+  /// Does the straight motion of all axes [rad, m] begin with every link that is near a person
+  /// going clearly away from them?
   bool leads_away(const Vector& from, const Vector& to, const Pose& T_world_base, const HumanState& people) const;
-  /// Postures of the arm, each about a centimetre's step further, that lead every link near a person away from them, at most `way` [m] in
-  /// all, ending where nobody is near any more or a link or a joint limit allows no more; empty: nobody is near, or nothing leads away.
+  /// Returns configurations of the arm, each about a centimetre further, that lead every link near
+  /// a person away from them, at most `way` [m] in all, ending where nobody is near any more or a
+  /// link or a joint limit allows no more; empty: nobody is near, or nothing leads away.
   std::vector<Vector> steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people, double way) const;
-  /// Between the robot in this posture and a point of the world [m].
+  /// Returns the distance between the robot in a configuration and a point of the world [m].
   double distance(const Vector& posture, const Pose& T_world_base, const Vector3& p_world) const;
 
  private:

@@ -33,7 +33,8 @@ struct Settings {
 
 /// What is held stays upright: an axis of the tool frame within an angle of up.
 struct Upright {
-  Vector3 axis_tool{Vector3::UnitZ()};  ///< axis in the tool frame that is to point up, of any length
+  /// Axis in the tool frame that is to point up, of any length
+  Vector3 axis_tool{Vector3::UnitZ()};
   Vector3 up_root{Vector3::UnitZ()};  ///< up in the frame of the robot's root link
   double most{};                      ///< [rad], in (0, pi)
 };

@@ -30,7 +30,8 @@ class FingerWorkspace {
   /// Largest first; strictly inside the workspace. A workspace without volume (fewer than three
   /// axes) is covered by balls of one cell instead: there the inverse kinematics decides.
   const std::vector<WorkspaceSphere>& spheres() const { return spheres_; }
-  /// Returns whether a sphere of least_radius fits inside; false for fewer than three axes.
+  /// Returns whether the smallest sphere of the settings fits inside; false for fewer than three
+  /// axes.
   bool has_volume() const { return has_volume_; }
   /// Joint values (the chain's axes) that put the tip into the cell of a point: up to three,
   /// clearly different, the farthest from the joint bounds first. Empty outside the workspace.

@@ -28,7 +28,7 @@ struct DoubleGrasp {
   double opposition{};
   /// Hand frames: how each can leave or come; 0 when not asked
   Vector3 way_first{Vector3::Zero()}, way_second{Vector3::Zero()};
-  double score{};  ///< quality and posture, each normalised over the list, summed
+  double score{};  ///< sum of quality and nearness to rest, each normalised over the list
 };
 
 /// Which grasps of a list are paired: the best, or the best of every orientation and side of the

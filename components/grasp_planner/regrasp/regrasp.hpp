@@ -61,7 +61,7 @@ struct RegraspSettings {
   int exchange_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
   /// The search ends when so many picks, passes and places were checked
   std::uint64_t most_steps_tried{3000};
-  GripForceSettings grip;                ///< of hands that share a load
+  GripForceSettings grip;                ///< of hands that bear a load together
   double least_apart{0.25};              ///< of the palms of two hands that carry together [m]
   std::size_t most_pairs_tried{400};     ///< of two hands at once
 };
