@@ -8,17 +8,18 @@
 namespace handsel {
 
 struct GridValue {
-  /// [0, 1], of the neighbouring points that are not forbidden; 0 outside the grid, 1 where all are
+  /// [0, 1], of the neighbouring points that are not forbidden; 0 outside the grid, 1 where all
+  /// are.
   double cost{};
   Vector3 gradient{Vector3::Zero()};  ///< of `cost` [1/m]
   bool inside{};                      ///< the point lies in the grid
-  /// At least half of the neighbouring points, by their weights, are forbidden or out of reach
+  /// At least half of the neighbouring points, by their weights, are forbidden or out of reach.
   bool forbidden{};
 };
 
 class CostGrid {
  public:
-  /// Why a map cannot be used, one sentence; empty when it can.
+  /// Returns why a map cannot be used, one sentence; empty when it can.
   static std::string fault(const Costmap& map);
   /// Of a map without fault.
   explicit CostGrid(Costmap map);

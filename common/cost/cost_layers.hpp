@@ -18,14 +18,14 @@ struct OutsideCost {
 };
 
 struct LayersNow {
-  /// Arm comfort of comfort->person(), validated against the furniture; or null
+  /// Arm comfort of comfort->person(), validated against the furniture; or null.
   std::shared_ptr<const CostGrid> comfort;
-  /// What others add, in the order of their names
+  /// What others add, in the order of their names.
   std::vector<std::shared_ptr<const CostGrid>> outside;
 
   /// Returns the comfort layer when it is about this person, else nullptr.
   const CostGrid* comfort_of(const std::string& person) const { return comfort && comfort->person() == person ? comfort.get() : nullptr; }
-  /// What outside layers say about a place in the world.
+  /// Returns what outside layers add at a place in the world [m].
   OutsideCost outside_cost(const Vector3& p) const;
 };
 
@@ -36,15 +36,16 @@ class CostLayers {
   /// `stale`: a layer last sent longer ago counts no more.
   explicit CostLayers(Duration stale = std::chrono::seconds(1)) : stale_(stale) {}
 
-  /// `sent`: when its writer sent it, on the clock of `now`.
+  /// Takes a sample of a layer; a faulty or stale one is left out; "safety", "visibility" and
+  /// "total" are ignored. `sent`: when its writer sent it, on the clock of `now`.
   void put(const Costmap& map, TimePoint sent, TimePoint now);
   /// Returns the layers that are not stale at `now`; drops those that are.
   LayersNow at(TimePoint now);
 
-  /// Samples with a fault or sent too long ago, and layers that fell silent
+  /// Returns the number of samples with a fault or sent too long ago, and layers that fell silent.
   std::uint64_t left_out() const { return left_out_; }
-  /// What was left out last, one sentence; empty when that layer came again since, or ten seconds
-  /// have passed.
+  /// Returns what was left out last, one sentence; empty when that layer came again since, or ten
+  /// seconds have passed.
   std::string complaint(TimePoint now);
 
  private:

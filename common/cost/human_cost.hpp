@@ -1,5 +1,5 @@
-// The human-aware costs (chapter section 4.1.2, eq. 1): safety, visibility, arm comfort, each in
-// [0, 1], and their weighted sum.
+// The human-aware costs (chapter section 4.1.2, eq. 1): safety, visibility, arm comfort, each
+// in [0, 1], and their weighted sum.
 #pragma once
 
 #include <memory>
@@ -18,15 +18,15 @@ namespace handsel {
 struct CostSettings {
   double safety_radius{1.0};                                ///< R [m]
   double visibility_cutoff{3.0};  ///< nothing beyond this distance of the eyes [m]
-  /// >= 0, not all 0; their sum is scaled to 1
+  /// >= 0, not all 0; their sum is scaled to 1.
   double w_safety{1.0}, w_visibility{0.3}, w_comfort{0.3};
 };
 
 /// Returns 1 at contact, 0 from `radius` [m] on, falling exponentially in between (formula of
 /// section 4.1.2).
 double safety_cost(double distance, double radius);
-/// Returns angle(gaze, p - eyes) / pi, in [0, 1]; 0 beyond `cutoff` [m] from the eyes. `p`: world
-/// [m].
+/// Returns angle(gaze, p - eyes) / pi, in [0, 1]; 0 beyond `cutoff` [m] from the eyes. `p`:
+/// world [m].
 double visibility_cost(const Sight&, const Vector3& p, double cutoff);
 /// The same for a person; where the gaze is unknown the body's front stands in for it. 0 when not
 /// even the head is known.
@@ -42,45 +42,45 @@ struct ArmSize {
   double upper{};  ///< shoulder to elbow [m]
   double fore{};   ///< elbow to wrist to hand [m]
 };
-/// nullopt when the joints of that arm are not all there.
+/// Returns the lengths of an arm; nullopt when its joints are not all known.
 std::optional<ArmSize> arm_size(const Person&, Side side);
-/// arm_comfort_cost of an arm alone: p from the shoulder, along (forward, outward, up) of the torso
-/// [m].
+/// arm_comfort_cost of an arm alone: p from the shoulder, along (forward, outward, up) of the
+/// torso [m].
 double arm_comfort_cost(const ArmSize& arm, const Vector3& p_arm);
 /// An arm where it is.
 struct PlacedArm {
   /// Lengths of its two parts.
   ArmSize size;
   Vector3 shoulder{Vector3::Zero()};                        ///< world [m]
-  /// From the world to (forward, outward, up) of the torso
+  /// From the world to (forward, outward, up) of the torso.
   Eigen::Matrix3d to_arm{Eigen::Matrix3d::Identity()};
   double length() const { return size.upper + size.fore; }  ///< shoulder to hand [m]
 };
 /// Returns the arm with its shoulder and the axes of the torso; nullopt when its joints are not all
 /// known.
 std::optional<PlacedArm> placed_arm(const Person&, Side side);
-/// Comfort cost of the better of these arms at p: from the layer where there is one (out of reach,
-/// or furniture in the way: 1), else arm_comfort_cost.
+/// Returns the comfort cost of the better of these arms at p: from the layer where there is one
+/// (out of reach, or blocked by furniture: 1), else arm_comfort_cost.
 double arm_comfort_cost(const CostGrid* layer, const std::vector<PlacedArm>& arms, const Vector3& p);
-/// Those of the person that are known.
+/// Returns the arms of the person whose joints are known.
 std::vector<PlacedArm> placed_arms(const Person&);
-/// Some arm reaches p with the torso where it is.
+/// Returns whether an arm reaches p (world) with the torso where it is.
 bool within_reach(const Person&, const Vector3& p);
-/// Shoulder to hand, the longer arm [m].
+/// Returns the length of the longer arm, shoulder to hand [m]; 0 when no arm is known.
 double arm_length(const Person&);
 
 /// The parts of the cost of one configuration, before weighting.
 struct CostParts {
   /// Each in [0, 1]; comfort is that of the arm.
   double safety{}, visibility{}, comfort{};
-  double distance{};  ///< robot to the simplified body [m]; +inf if nobody
+  double distance{};  ///< robot to the simplified body [m]; +inf without people
   double outside{};   ///< what outside layers add, weighted, each where the robot fares worst in it
 };
 
 /// Returns the sum of safety, visibility and comfort by their weights, in [0, 1], plus what outside
 /// layers add.
 double weighted_cost(const CostParts&, const CostSettings&);
-/// The costs of a hand or object at p, as a point, for one person.
+/// Returns the costs of a hand or object at p, as a point, for one person.
 CostParts point_cost(const Person&, const Vector3& p, const CostSettings&);
 
 /// What an outside layer forbids: which link is there.
@@ -97,8 +97,8 @@ class HumanCost {
   HumanCost(const RobotModel& robot, CostSettings settings);
   /// Replaces all people; their joints are in the world frame.
   void set_people(const HumanState& people);
-  /// Arm comfort of the person it is about comes from the layer then (out of reach, or furniture in
-  /// the way: 1), that of others and without a layer from arm_comfort_cost.
+  /// Arm comfort of the person it is about comes from the layer then (out of reach, or blocked by
+  /// furniture: 1), that of others and without a layer from arm_comfort_cost.
   void set_layers(LayersNow layers);
   /// Sets the pose of the root link of the robot in the world.
   void set_base(const Pose& T_world_base);
@@ -108,10 +108,10 @@ class HumanCost {
   void set_moving_axes(const std::vector<int>& axes);
   /// Returns whether at least one person is in the scene.
   bool anyone() const { return !people_.people.empty(); }
-  /// Somebody is there, or somebody outside adds a layer; else every cost is 0.
+  /// Returns whether a person is in the scene or an outside layer adds costs; else every cost is 0.
   bool concerned() const { return anyone() || !layers_.outside.empty(); }
   double operator()(const Vector& q) const;  ///< all axes; in [0, 1] without outside layers
-  /// The costs of the states from + at[i] (to - from), i < count.
+  /// Writes the costs of the states from + at[i] (to - from), i < count.
   void on_line(const Vector& from, const Vector& to, const double* at, int count, double* cost) const;
   CostParts parts(const Vector& q) const;    ///< of the person it is worst for
   bool forbids() const { return forbids_; }  ///< some outside layer forbids some place
@@ -151,8 +151,8 @@ class HumanCost {
   mutable std::vector<double> bounds_;
 };
 
-/// Distance of a capsule (segment and radius) to the simplified body [m]; negative when they
-/// overlap.
+/// Returns the distance of a capsule (segment and radius) to the simplified body [m]; negative when
+/// they overlap.
 double simplified_distance(const SimplifiedBody&, const Vector3& a, const Vector3& b, double radius);
 
 }  // namespace handsel

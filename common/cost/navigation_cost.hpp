@@ -1,5 +1,5 @@
 // What a platform that drives past people costs them (chapter section 4.1, after Sisbot): safety,
-// visibility from behind, and the path ahead of somebody walking. In the plane. Pure.
+// visibility from behind, and the path ahead of a person that walks. In the plane. Pure.
 #pragma once
 
 #include <vector>
@@ -12,10 +12,10 @@ namespace handsel {
 
 struct NavigationSettings {
   double radius{1.3};         ///< R: nothing beyond this gap between platform and person [m]
-  double radius_moving{1.5};  ///< R beside somebody moving [m]
-  double moving{0.2};         ///< from this speed on somebody moves [m/s]
+  double radius_moving{1.5};  ///< R beside a person that moves [m]
+  double moving{0.2};         ///< from this speed on a person counts as moving [m/s]
   double field{M_PI / 4};     ///< within this angle of the gaze the platform is seen [rad]
-  double cone{0.5};           ///< half the angle of the cone ahead of somebody moving [rad]
+  double cone{0.5};           ///< half the angle of the cone ahead of a person that moves [rad]
   double cone_time{2.0};      ///< its length beyond R: where they are after this [s]
 };
 
@@ -32,8 +32,8 @@ class NavigationCost {
   void set_people(const HumanState& people);
   /// Returns whether at least one person is in the scene; else every cost is 0.
   bool anyone() const { return !someone_.empty(); }
-  /// x, y [m] and heading [rad] of the platform in the world; of the person it is worst for, in [0,
-  /// 1].
+  /// x, y [m] and heading [rad] of the platform in the world; of the person it is worst for,
+  /// in [0, 1].
   double operator()(double x, double y, double heading) const;
 
  private:

@@ -29,8 +29,8 @@ class WideCost {
   /// `points`: visibility is that of the first.
   WideCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points);
 
-  /// States in which only `axes` differ are asked about; when another one does, the robot is folded
-  /// anew. Empty: nothing is answered.
+  /// Sets the axes in which the states of a batch differ; where another axis has changed, the fixed
+  /// parts of the robot are placed anew. Empty: run() is false.
   void set_axes(const std::vector<int>& axes);
   /// Sets the pose of the root link of the robot in the world.
   void set_base(const Pose& T_world_base);
@@ -42,8 +42,9 @@ class WideCost {
   /// of the eyes [m].
   void set_people(std::vector<Someone> people, double safety_radius, double visibility_cutoff);
 
-  /// The states from + at[i] (to - from), i < count <= kStates, with the first `points` of the
-  /// points. False: not for this path.
+  /// Evaluates the states from + at[i] (to - from), i < count <= kStates, with the first `points`
+  /// of the points. False where a batch does not apply: no axes are set, another axis differs
+  /// between the ends, or an axis turns too far for single precision.
   bool run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points);
   /// Returns the safety cost, [0, 1], of a person by index in one state of the last run(), by
   /// index.
@@ -51,11 +52,12 @@ class WideCost {
   /// Returns the visibility cost, [0, 1], of the first point for a person by index in one state of
   /// the last run(), by index.
   double visibility(std::size_t person, int lane) const { return visibility_[person * kStates + static_cast<std::size_t>(lane)]; }
-  Vector3 point(std::size_t i, int lane) const {  ///< world [m]
+  /// Returns where a point by index is in one state of the last run(), world [m].
+  Vector3 point(std::size_t i, int lane) const {
     const float* p = point_.get() + 3 * i * kStates + lane;
     return base_.translation() + Vector3(p[0], p[kStates], p[2 * kStates]);
   }
-  /// Another width than the widest, for tests and measurements.
+  /// Sets another register width than the widest, for tests and measurements.
   void set_kernel(const detail::CostKernel& kernel) { kernel_ = &kernel; }
 
  private:

@@ -27,9 +27,9 @@ struct ExchangeSearch {
   std::uint32_t tried{};            ///< inverse kinematics solved for
 };
 
-/// Where the fingers of a hand that pinches stand, seen from the object (outward normals, object
-/// frame): it cannot be drawn out that way. Empty when more than two fingers hold it: they open
-/// away from it.
+/// Returns where the fingers of a hand that pinches stand, seen from the object (outward normals,
+/// object frame): the object cannot be drawn out in these directions. Empty when more than two
+/// fingers hold it: they open away from it.
 std::vector<Vector3> barred_ways(const Grasp& grasp);
 
 /// `q`: all axes, near which configurations are searched; `T_world_object_now`: where the object
@@ -40,8 +40,8 @@ ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const 
                              const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
                              const std::vector<Vector3>& barred = {});
 
-/// What a pose of the object costs as find_exchange() counts it, whether the robot reaches it or
-/// not; nullopt: it could not be one.
+/// Returns what a pose of the object costs as find_exchange() counts it, whether the robot reaches
+/// it or not; nullopt: it could not be one.
 std::optional<double> exchange_cost(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object,
                                     const Pose& T_world_object_now, const Pose& T_tool_object,
                                     const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred = {});

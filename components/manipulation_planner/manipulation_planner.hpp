@@ -132,7 +132,7 @@ class ManipulationPlanner {
   void step(TimePoint now, Outbox& out);
   /// Returns the state of the action that runs or ran last, as of the last step().
   const ActionStatus& status() const { return status_; }
-  /// About layers left out; empty: none
+  /// Returns which cost layer was left out and why, one sentence; empty: none was.
   std::string complaint(TimePoint now) { return layers_.complaint(now); }
 
  private:
@@ -208,7 +208,7 @@ class ManipulationPlanner {
   struct Serving {
     Outcome outcome;
     std::map<std::size_t, Destination> at;  // by the grasp's place in the list
-    std::string objections;  // what stood in the way of the others on the last surface
+    std::string objections;  // why the others do not serve on the last surface
   };
 
   // Actions.
@@ -255,7 +255,7 @@ class ManipulationPlanner {
   bool room_is_made(const Motion& motion) const;
   bool holds_out(const Person& who, const SceneObject& held) const;
   void watch_offer();
-  /// A step toward the hand that is near what they hold
+  /// A step toward the hand that is near what they hold.
   bool comes_on(const std::string& giver) const;
   bool still_offered() const;  ///< the accepted object is offered, or was so just now
   std::optional<Offer> offered(const std::string& wanted, const std::string& giver) const;
@@ -265,7 +265,7 @@ class ManipulationPlanner {
   /// A hand of that person has come to what the robot holds.
   bool comes_to_hand() const;
   bool takes_hold(const std::string& who) const;
-  /// A hand of theirs is at it
+  /// A hand of theirs is at it.
   bool at_hand_of(const std::string& who, const std::string& object) const;
   /// Other goals when what it aims at was shifted: for where that is now; nullopt: it was not, or
   /// the arm does not reach there.
@@ -393,7 +393,7 @@ class ManipulationPlanner {
   // of an object of the scene; null: unknown
   const ObjectModel* model_of(const std::string& id) const;
   const Person* person(const std::string& id) const;         // empty id: the nearest
-  // a person who might be anywhere near where they were last seen
+  // whether this person is out of sight and may be near their last place
   bool lost(const std::string& id) const;
   void hold(const SceneObject& object);
   void release_object();
@@ -448,7 +448,7 @@ class ManipulationPlanner {
   std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
   RequestId comparison_;  // for the time that the path which runs would take from now on
   bool path_awaited_{false};               // the newest path request is without a reply
-  bool drop_path_{false};                  // and nobody wants it any more
+  bool drop_path_{false};                  // the reply to it is not needed any more
   // what a dropped action has set in motion is to end, until the controller has acknowledged it
   std::optional<TrajectoryCommand> halt_;
   TimePoint halted_at_{};

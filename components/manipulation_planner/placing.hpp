@@ -27,9 +27,9 @@ struct PlacingSettings {
   std::optional<ArmReach> reach{};  ///< of the arm that puts it down; left out: of the group "arm"
 };
 
-/// Free places for an object that stands upright there, T_world_object each, the best first: where
-/// the arm reaches well, away from other things and from people. It has turned about the vertical
-/// by as much as the arm turns to get there from `T_world_object`.
+/// Returns free places for an object that stands upright there, T_world_object each, the best
+/// first: where the arm reaches well, away from other things and from people. It has turned about
+/// the vertical by as much as the arm turns to get there from `T_world_object`.
 std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const HumanState& people, const ObjectLibrary& library,
                               const std::string& object, const SceneBox& surface, const Pose& T_world_object, std::size_t most,
                               const PlacingSettings& settings = {});
@@ -49,12 +49,12 @@ class Putting {
           double from_above);
 
   /// At this place, its object turned about the vertical as is best for the arm, where the hand can
-  /// open if possible; nullopt: what stands in the way is counted. `q`: all axes, the hand closed
-  /// on the object; `opened`: all axes, after the release.
+  /// open if possible; nullopt: the reason is counted for objections(). `q`: all axes, the hand
+  /// closed on the object; `opened`: all axes, after the release.
   std::optional<PuttingPosture> at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held);
   /// At the first `most` places where it can be, those where the hand can open before the others.
   std::vector<PuttingPosture> anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t most);
-  /// What stood in the way most often so far, and how often: "12 out of reach, 3 because link
+  /// Returns the most frequent reasons so far, with their counts: "12 out of reach, 3 because link
   /// forearm would touch box table".
   std::string objections() const;
 

@@ -22,7 +22,7 @@ class [[nodiscard]] Routine {
 
     /// Makes the owner of the frame.
     Routine get_return_object() { return Routine(Handle::from_promise(*this)); }
-    /// Suspends at the begin: the routine runs when it is started or awaited.
+    /// Suspends at the beginning: the routine runs when it is started or awaited.
     std::suspend_always initial_suspend() noexcept { return {}; }
     /// Continues the routine that awaits this one; the frame stays until its owner destroys it.
     auto final_suspend() noexcept {
@@ -88,7 +88,8 @@ class Waiting {
     const auto handle = std::exchange(handle_, {});
     handle.resume();
   }
-  /// Drops the condition: the routine that waits is not resumed any more. Before it is destroyed.
+  /// Drops the condition: the routine that waits is not resumed any more. Needed where that routine
+  /// is destroyed.
   void clear() { handle_ = {}; }
   /// Sets the time that timeouts count from.
   void set_now(TimePoint now) { now_ = now; }

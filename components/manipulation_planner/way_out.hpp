@@ -13,12 +13,12 @@ class WayOut {
  public:
   WayOut(const RobotModel& robot, const Group& arm);
 
-  /// Does the straight motion of all axes [rad, m] begin with every link that is near a person
-  /// going clearly away from them?
+  /// Returns whether the straight motion of all axes [rad, m] begins with every link that is near a
+  /// person going clearly away from that person.
   bool leads_away(const Vector& from, const Vector& to, const Pose& T_world_base, const HumanState& people) const;
   /// Returns configurations of the arm, each about a centimetre further, that lead every link near
-  /// a person away from them, at most `way` [m] in all, ending where nobody is near any more or a
-  /// link or a joint limit allows no more; empty: nobody is near, or nothing leads away.
+  /// a person away from them, at most `way` [m] in all, ending where no person is near any more or
+  /// a link or a joint limit allows no more; empty: no person is near, or nothing leads away.
   std::vector<Vector> steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people, double way) const;
   /// Returns the distance between the robot in a configuration and a point of the world [m].
   double distance(const Vector& posture, const Pose& T_world_base, const Vector3& p_world) const;

@@ -10,12 +10,12 @@ namespace handsel::path_planner {
 
 struct CartesianProblem {
   Vector start;                        ///< all axes of the robot [rad]
-  /// Of the tool, robot root frame; the elbow may end anywhere
+  /// Of the tool, robot root frame; the elbow may end anywhere.
   Pose T_root_goal{Pose::Identity()};
   std::vector<int> also;               ///< further active axes (hand, head)
   Vector also_goal;                    ///< of those [rad]
   std::uint64_t seed{1};  ///< of the random samples; the same gives the same result
-  /// States that may be checked; each solution of the inverse kinematics counts as one, too
+  /// States that may be checked; each solution of the inverse kinematics counts as one, too.
   std::uint64_t budget{100000};
 };
 
@@ -23,10 +23,10 @@ struct CartesianSettings {
   double metre{3.0};         ///< that many radians count as much as a metre [rad/m]
   double elbow{0.5};         ///< weight of a radian of the elbow angle
   double range{0.6};         ///< longest edge of the tree, in that measure
-  /// The inverse kinematics is solved this often along a local path, in that measure
+  /// The inverse kinematics is solved this often along a local path, in that measure.
   double step{0.04};
-  /// No joint moves farther between two samples, however close they are; farther is a jump, refused
-  /// [rad]
+  /// No joint moves farther between two samples, however close they are; farther is a jump,
+  /// refused [rad].
   double largest_step{0.1};
   double goal_bias{0.1};     ///< fraction of the samples that are goals
   int goal_elbows{48};       ///< elbow angles tried at the goal
@@ -46,10 +46,10 @@ struct CartesianResult {
   bool cancelled{};    ///< ended by its cancel hook before the budget was used up
   std::string reason;  ///< why not, one sentence
   std::vector<CartesianNode> nodes;  ///< of the path, the start first
-  /// All axes, along the local paths; neighbours differ by at most largest_step in every joint
+  /// All axes, along the local paths; neighbours differ by at most largest_step in every joint.
   std::vector<Vector> samples;
-  /// This many motions of the samples, the first, are of the joints: they bend the arm the goal's
-  /// way
+  /// This many motions of the samples, the first, are of the joints: they bend the arm as it is
+  /// bent at the goal.
   std::size_t in_joints{};
   double cost{};                ///< integral of the human-aware cost along the samples [rad]
   double work{};                ///< sum of the rises of that cost
@@ -58,14 +58,14 @@ struct CartesianResult {
 };
 
 /// Goals on the branch of the start come first; where none is reached, the arm changes to another
-/// branch in joint space before. Two trees, RRT-Connect where nobody is there, with the transition
-/// test of T-RRT where somebody is. The arm must be one of shoulder, elbow and wrist (ik::SrsArm).
-/// The path from one orientation to another is their displacement: one axis and an angle up to pi;
-/// at pi, where the axis is not defined, there is no local path.
+/// branch in joint space before. Two trees, RRT-Connect where no person is present, with the
+/// transition test of T-RRT where a person is. The arm must be one of shoulder, elbow and wrist
+/// (ik::SrsArm). The path from one orientation to another is their displacement: one axis and an
+/// angle up to pi; at pi, where the axis is not defined, there is no local path.
 CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
                                const CartesianSettings& settings, const Hooks& hooks = {});
 
-/// The same as a path of these axes.
+/// Returns the same as a path of these axes.
 Result in_joints(const CartesianResult& found, const std::vector<int>& axes);
 
 }  // namespace handsel::path_planner

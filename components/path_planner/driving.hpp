@@ -8,7 +8,7 @@
 
 namespace handsel::path_planner {
 
-/// Whether the group is one that on_platform adds.
+/// Returns whether the group is one that on_platform adds.
 bool drives(const std::string& group);
 
 /// `mobile`: a robot on its platform (on_platform). Completes a problem whose axes are those of a

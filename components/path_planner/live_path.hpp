@@ -20,9 +20,9 @@ enum class LiveOutcome {
 const char* name(LiveOutcome);
 
 struct LiveSettings {
-  /// A start farther from the path than this is not on it (corners are cut, max norm) [rad]
+  /// A start farther from the path than this is not on it (corners are cut, max norm) [rad].
   double reach{0.5};
-  /// l_max: the path is cut into pieces of at most this before it is repaired [rad]
+  /// l_max: the path is cut into pieces of at most this before it is repaired [rad].
   double piece{0.15};
   double least_gain{0.02};  ///< a path cheaper by less than this fraction is not worth switching to
   double verify_step{0.002};  ///< states on what is returned are checked this close [rad]
@@ -32,7 +32,7 @@ struct LiveSettings {
 
 struct LiveResult {
   LiveOutcome outcome{LiveOutcome::kept};  ///< what was done with the running path
-  /// front() of the path = start of the problem; unsolved when blocked, with the reason
+  /// front() of the path = start of the problem; unsolved when blocked, with the reason.
   Result result;
   double before{};  ///< price of the remainder as it was, for the costs now (infinite: blocked)
   double after{};   ///< price of the path returned

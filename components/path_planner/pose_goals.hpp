@@ -14,11 +14,11 @@ namespace handsel::path_planner {
 struct PoseGoal {
   Pose T_root_tip{Pose::Identity()};  ///< pose of the tip, frame of the root link
   Vector3 slack{Vector3::Zero()};  ///< half extents of a box along the pose's axes [m]
-  double turn{};                   ///< about the pose's z axis either way [rad]
+  double turn{};                   ///< about the pose's z axis in either direction [rad]
 };
 
 struct PoseGoals {
-  /// Configurations of the group, by pose; inside the limits, collisions are not checked
+  /// Configurations of the group, by pose; inside the limits, collisions are not checked.
   std::vector<Vector> goals;
   std::vector<std::size_t> pose;  ///< which pose each of them is for
   std::string reason;             ///< when there is none

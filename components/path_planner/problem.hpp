@@ -15,25 +15,25 @@
 namespace handsel::path_planner {
 
 struct Settings {
-  /// States along a motion are checked at least this close while searching [rad, max norm]
+  /// States along a motion are checked at least this close while searching [rad, max norm].
   double step{0.02};
   double verify_step{0.0002};         ///< and this close on the path that is returned [rad]
   double connect_range{0.7};          ///< longest edge of RRT and RRT-Connect [rad]
   double transition_range{0.3};       ///< longest edge of T-RRT and BiT-RRT [rad]
   double initial_temperature{0.002};  ///< of the transition test, in units of cost
-  /// Of the budget for the first planner; the rest is for RRT-Connect when it finds nothing
+  /// Of the budget for the first planner; the rest is for RRT-Connect when it finds nothing.
   double search_share{0.7};
   double cost_step{0.1};              ///< spacing of cost samples along a motion [rad]
   double length_weight{0.05};         ///< cost of a radian where no person is concerned
   int smoothing_rounds{120};          ///< shortcuts and perturbations tried
   int patience{40};                   ///< stop smoothing after this many in a row without gain
-  /// l_max: a perturbation replaces at most this much of the path to either side [rad]
+  /// l_max: a perturbation replaces at most this much of the path to either side [rad].
   double longest_edge{0.6};
 };
 
 /// What is held stays upright: an axis of the tool frame within an angle of up.
 struct Upright {
-  /// Axis in the tool frame that is to point up, of any length
+  /// Axis in the tool frame that is to point up, of any length.
   Vector3 axis_tool{Vector3::UnitZ()};
   Vector3 up_root{Vector3::UnitZ()};  ///< up in the frame of the robot's root link
   double most{};                      ///< [rad], in (0, pi)
@@ -44,7 +44,7 @@ struct Upright {
 /// planned for, too; the worse of the two.
 struct Driving {
   std::array<int, 3> axes{};  ///< robot axes of x, y [m] and heading [rad]
-  /// Of the platform in the world; never null, must outlive the problem
+  /// Of the platform in the world; never null, must outlive the problem.
   const NavigationCost* cost{};
 };
 
@@ -54,9 +54,9 @@ struct Problem {
   std::vector<int> axes;      ///< robot axes to plan for, in the order of `goals`
   Vector start;               ///< all axes of the robot [rad]
   std::vector<Vector> goals;  ///< alternatives, `axes` only [rad]
-  /// Which search; automatic chooses by whether people are concerned
+  /// Which search; automatic chooses by whether people are concerned.
   PlannerKind planner{PlannerKind::automatic};
-  /// OMPL's planner of that name instead of the own one, for comparison; automatic: as without
+  /// OMPL's planner of that name instead of the own one, for comparison; automatic: as without.
   bool stock{};
   std::uint64_t seed{1};  ///< of all random numbers; the same gives the same result
   std::uint64_t budget{100000};      ///< states that may be checked
@@ -86,7 +86,7 @@ struct Result {
   bool solved{};  ///< the path ends at a goal and is free at the finest step
   bool cancelled{};           ///< ended by its cancel hook before the budget was used up
   std::string reason;         ///< why not, one sentence
-  /// Id of the object, box or person the robot touches at the start; empty: none
+  /// Id of the object, box or person the robot touches at the start; empty: none.
   std::string start_touches;
   std::size_t goal{};         ///< index of the goal reached
   std::vector<Vector> path;   ///< `axes` only; front() = start, back() = goals[goal]

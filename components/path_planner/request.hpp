@@ -10,14 +10,14 @@
 
 namespace handsel::path_planner {
 
-/// Why nobody could plan for this request, one sentence; empty: it makes sense. What needs the
-/// scene is not checked.
+/// Returns why no planner could serve this request, one sentence; empty: the request makes sense.
+/// What needs the scene is not checked.
 std::string contradiction(const RobotModel& robot, const PathRequest& request);
 
-/// The places of the tip in the frame of the robot's root link.
+/// Returns the places of the tip in the frame of the robot's root link.
 std::vector<PoseGoal> pose_goals(const PathRequest& request, const Pose& T_world_root);
 
-/// Without goals and budget. The request is without contradiction.
+/// Returns the problem without goals and budget. The request is without contradiction.
 Problem problem_of(const RobotModel& robot, const PathRequest& request, const Pose& T_world_root);
 
 }  // namespace handsel::path_planner

@@ -19,10 +19,10 @@
 namespace handsel::trajectory_planner {
 
 struct CartesianWaypoint {
-  /// Wanted pose of the tip of the arm, frame of the root link
+  /// Wanted pose of the tip of the arm, frame of the root link.
   Pose T_root_tool{Pose::Identity()};
   /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad];
-  /// left out: chosen so that the joints keep clearance to their limits
+  /// left out: chosen so that the joints keep clearance to their limits.
   std::optional<double> elbow{};
   Vector also{};                  ///< positions of the further active axes [rad]
 };
@@ -37,13 +37,13 @@ struct HeldLevel {
 struct CartesianRequest {
   Vector start;  ///< all axes of the robot [rad]; the first node is where it is
   /// Robot axes that are active besides the arm: hand, head; of a robot on its platform
-  /// (common/model/platform.hpp) x, y, heading too
+  /// (common/model/platform.hpp) x, y, heading too.
   std::vector<int> also;
   std::vector<CartesianWaypoint> nodes;  ///< after the start
   std::optional<HeldLevel> level{};  ///< what is held is to stay upright; empty: nothing is
   std::optional<JoinedArm> joined{};  ///< follows; every node is then a stop
   double speed_scale{1};              ///< (0, 1] on all velocity limits
-  /// Lowers those of the active axes along the path; null: nobody is there
+  /// Lowers those of the active axes along the path; null: no people.
   const SpeedAlong* people{};
 };
 
@@ -53,14 +53,14 @@ struct RateBounds {
 };
 
 struct CartesianSettings {
-  /// Of each coordinate of the tool's position [m/s, m/s^2, m/s^3]
+  /// Of each coordinate of the tool's position [m/s, m/s^2, m/s^3].
   RateBounds translation{0.25, 0.6, 2.0};
-  /// Of each coordinate of its rotation vector; no turn is faster than their norm [rad/s, ...]
+  /// Of each coordinate of its rotation vector; no turn is faster than their norm [rad/s, ...].
   RateBounds rotation{0.6, 1.5, 5.0};
   RateBounds elbow{0.6, 1.5, 5.0};         ///< [rad/s, ...]
   double allowed_excess{0.1};              ///< of three segments at corners
   double period{0.002};                    ///< the joints are computed this often [s]
-  /// A joint that moves farther in a period has changed branch: refused [rad]
+  /// A joint that moves farther in a period has changed branch: refused [rad].
   double largest_step{0.1};
   double collision_step{0.01};  ///< configurations are checked this often [rad, max norm]
   int elbows{24};                          ///< angles tried at a node that leaves its elbow open
@@ -80,8 +80,8 @@ class CartesianTrajectory {
 
   /// Returns the time from the first node to the last [s].
   double duration() const { return active_.duration(); }
-  /// Returns the trajectory of the active axes: position [m], rotation vector, elbow, further axes
-  /// [rad].
+  /// Returns the trajectory of the active axes: position [m], rotation vector, elbow, further
+  /// axes [rad].
   const Trajectory& active() const { return active_; }
   /// Returns the nodes the motion leads by, the start first.
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -89,7 +89,7 @@ class CartesianTrajectory {
   Pose pose(double t) const;
   /// Returns the angle [rad] of the elbow on its circle at time t [s].
   double elbow(double t) const { return active_.at(t).position[6]; }
-  /// From active values near a node.
+  /// Returns the pose for active values near a node, frame of the root link.
   Pose pose_at(const Vector& active, std::size_t node) const;
   /// Returns the index of the node whose blend or adjacent halves of segments are run at t [s].
   std::size_t node_at(double t) const;
@@ -105,17 +105,17 @@ struct CartesianMotion {
   bool solved{};  ///< every node of the request is reached
   std::string reason;     ///< why not, one sentence
   /// Nodes of the request on the path that follows; all of them when solved. Never a node that
-  /// collides
+  /// collides.
   std::size_t reached{};
   CartesianTrajectory path;  ///< TR, as far as the motion goes
   double duration_ptp{};              ///< with a stop at each node [s]
   std::vector<CornerReport> corners;  ///< of nodes of `path`
-  /// Of each node of `path` the number in the request; the start is 0
+  /// Of each node of `path` the number in the request; the start is 0.
   std::vector<std::size_t> given;
-  /// Of each segment of `path`, because of people; empty: nobody is there
+  /// Of each segment of `path`, because of people; empty: no people.
   std::vector<SpeedZones> speeds;
   double cost{};                      ///< largest human-aware cost on the path, [0, 1]
-  /// Robot axes of what follows: those of the arm, the further ones, then those of the joined arm
+  /// Robot axes of what follows: those of the arm, the further ones, then those of the joined arm.
   std::vector<int> axes;
   JoinError joined{};                 ///< largest on the path, of TR_app
   std::vector<Vector> samples;        ///< positions at each period of `path`

@@ -33,12 +33,12 @@ class ClosedChain {
   ClosedChain(const ClosedChain&) = delete;
   ClosedChain& operator=(const ClosedChain&) = delete;
 
-  /// Why the arm cannot follow, one sentence; empty: it can. The tips must be joined at the start
-  /// as they are said to be.
+  /// Returns why the arm cannot follow, one sentence; empty: it can. The tips must be joined at the
+  /// start as they are said to be.
   std::string objection(const Pose& T_root_tip) const;
   /// Returns the robot axes of the second arm, in the order of joints().
   const std::vector<int>& axes() const { return joined_.arm->axes; }
-  /// Joints of the second arm after the last follow() that was true [rad]
+  /// Joints of the second arm after the last follow() that was true [rad].
   const Vector& joints() const { return q_; }
   /// Returns the arm to its joints at the start; the next follow() is near those.
   void restart() { q_ = start_; }

@@ -10,7 +10,7 @@
 
 namespace handsel::trajectory_planner {
 
-/// Who is around the robot, and where it stands.
+/// The people around the robot, and where the robot stands.
 struct Surroundings {
   HumanState people;  ///< joints in the world frame
   /// Pose of the root link of the robot in the world.
@@ -22,12 +22,12 @@ struct SpeedSettings {
   double cost_step{0.1};           ///< the path is sampled this often [rad, max norm]
   double least_speed_factor{0.5};  ///< where the cost is 1; 1 where it is 0, linear between
   /// What people do counts in full up to half this distance from the tool, and fades to nothing
-  /// here [m]
+  /// here [m].
   double concern_radius{1.5};
-  /// A trunk that comes nearer to the tool this fast, or faster, counts in full [m/s]
+  /// A trunk that comes nearer to the tool this fast, or faster, counts in full [m/s].
   double approach_speed{0.8};
   double approach_factor{0.7};     ///< then it is this, (0, 1]
-  /// A tool this far from where someone looks, or farther, counts as unseen [rad]
+  /// A tool this far from where someone looks, or farther, counts as unseen [rad].
   double unseen_angle{1.2};
   double unseen_factor{0.8};       ///< then it is this, (0, 1]
 };
@@ -42,12 +42,12 @@ class SpeedAlong {
     double cost{};    ///< human-aware, [0, 1]
     double share{1};  ///< factor of the velocity limits
   };
-  /// Returns whether nobody is there and no layer adds a cost: the factor is 1 everywhere.
+  /// Returns whether no person is present and no layer adds a cost: the factor is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
   Look at(const Vector& q) const;                                       ///< all axes [rad]
-  /// The straight motion between two configurations, ends included
+  /// Returns samples of the straight motion between two configurations, ends included.
   std::vector<Look> along(const Vector& from, const Vector& to) const;
-  /// Factor of the velocity limits because of what people do, (0, 1]; 1 without people
+  /// Factor of the velocity limits because of what people do, (0, 1]; 1 without people.
   double what_people_do(const Vector& q) const;
 
   /// Between two samples the lower factor of both counts, in steps of kStep downward, never below

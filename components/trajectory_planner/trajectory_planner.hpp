@@ -12,10 +12,10 @@
 namespace handsel::trajectory_planner {
 
 struct Settings {
-  /// Blends are checked this often for places outside layers forbid [rad, max norm]
+  /// Blends are checked this often for places outside layers forbid [rad, max norm].
   double corner_step{0.02};
   SpeedSettings speed;  ///< how people lower the speed along the path
-  /// Of motions of the tool; its allowed excess holds for those of joints too
+  /// Of motions of the tool; its allowed excess holds for those of joints too.
   CartesianSettings tool;
 };
 
@@ -23,7 +23,7 @@ struct Result {
   TrajectoryReply reply;  ///< as sent to the client; its reason says why there is no trajectory
   std::uint64_t checks{};          ///< configurations checked
   double cost{};                   ///< largest human-aware cost along the line, [0, 1]
-  /// Least factor of the comfort velocity limits: asked for x because of people
+  /// Least factor of the comfort velocity limits: asked for x because of people.
   double speed_factor{1.0};
   std::vector<SpeedZones> speeds;  ///< of each segment, because of people
 };

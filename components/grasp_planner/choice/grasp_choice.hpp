@@ -24,18 +24,18 @@ struct ChoiceSettings {
   double rank_contacts{0.2};            ///< fraction of the fingers in contact
   double rank_room{0.3};                ///< surface left free; when a person is to take the object
   double rank_partner{0.3};  ///< the person's best grasp beside it; then too, as the next two
-  /// The arm can offer the object upright, the hand behind it, the person's wrist at ease
+  /// The arm can offer the object upright, the hand behind it, the person's wrist at ease.
   double rank_exchange{0.3};
   double rank_transfer{0.3};            ///< a place was found where the person can take it so
   double rank_tilt{1.0};  ///< taken off for each radian the object must be tilted there
-  /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last
+  /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last.
   double rank_sturdy{1.0};
   double sturdy_margin{2.0};            ///< [N]
   double rank_away{0.6};  ///< the hand stays on the robot's side of what a person holds
   double rank_stands{1.0};              ///< from a person's hand: it can be put down in this grasp
   double off_fingers{0.01};  ///< kept between the robot and the hands of the giver [m]
   /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
-  /// it only creep [m]
+  /// it only creep [m].
   double off_giver{0.12};
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object
   double rank_drive{0.2};               ///< taken off for each metre the platform has to drive
@@ -130,7 +130,7 @@ class GraspChooser {
   ChoiceSettings settings_;
   const Group* arm_{};
   const Group* hand_{};
-  // unit, hand frame: ways to back off from a grasp, the straightest first
+  // unit, hand frame: directions to back off from a grasp, the straightest first
   std::vector<Vector3> retreats_;
 };
 

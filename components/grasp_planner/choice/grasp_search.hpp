@@ -40,7 +40,7 @@ struct GraspChooser::Search {
   /// The middle place for the exchange, and how the object is held there.
   struct Exchange {
     /// How well the hand stays behind the object, [0, 1], in the best heading; -1: the arm gets to
-    /// none
+    /// none.
     double behind{-1};
     Pose T_world_object{Pose::Identity()};
   };
@@ -61,8 +61,8 @@ struct GraspChooser::Search {
   bool something_at_goal() const;
   ChoiceReason pick_up(Grasp& g);
   bool can_lift(const Pose& T_world_hand, const Vector& grasp_q, const Grasp& g);
-  /// How far on the robot's side of the object the hand is, [0, 1]: the person who holds it is on
-  /// the other.
+  /// How far on the robot's side of the object the hand is, [0, 1]: the person with the object in
+  /// the hand is on the other.
   double on_our_side(const Grasp& g) const;
   /// Whether the object can be stood on a surface in this grasp: the open hand is nowhere below its
   /// foot.

@@ -29,24 +29,25 @@ class FingerChain {
   /// Returns the number of moving joints of the finger, those beside the path to the tip included.
   int steps() const { return static_cast<int>(steps_.size()); }
 
-  /// Poses of the moving joints' frames in the hand frame; `T` is resized to steps(). `q`: all axes
-  /// of the hand.
+  /// Computes the poses of the moving joints' frames in the hand frame; `T` is resized to steps().
+  /// `q`: all axes of the hand.
   void forward(const Vector& q, std::vector<Pose>& T) const;
   Vector3 tip(const Vector& q) const;  ///< centre of the fingertip sphere, hand frame [m]
   /// The same from the poses of forward().
   Vector3 tip(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_.translation(); }
-  /// T_hand_tip
+  /// Returns the pose of the fingertip in the hand frame, from the poses of forward().
   Pose tip_pose(const std::vector<Pose>& T) const { return T[static_cast<std::size_t>(tip_step_)] * T_step_tip_; }
-  /// 3 x axes().size(): velocity of the tip's centre for each of the finger's axes.
+  /// Returns the Jacobian of the tip's centre, 3 x axes().size(): velocity of the tip's centre for
+  /// each of the finger's axes.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T) const { return jacobian(T, tip(T)); }
-  /// The jacobian of the point of the outermost link that is at `p_hand` now.
+  /// Returns the Jacobian of the point of the outermost link that is at `p_hand` now.
   Eigen::Matrix3Xd jacobian(const std::vector<Pose>& T, const Vector3& p_hand) const;
-  /// From the last joint to the tip's centre, hand frame, unit.
+  /// Returns the direction from the last joint to the tip's centre, hand frame, unit.
   Vector3 tip_direction(const std::vector<Pose>& T) const;
-  /// Sign of the closing motion of the outermost axis: 1 or -1
+  /// Returns the sign of the closing motion of the outermost axis: 1 or -1.
   double closing_sign() const { return closing_sign_; }
-  /// Where the tip goes when the finger's outermost axis closes (moves from its rest position into
-  /// its range), hand frame, unit: the direction its pad faces.
+  /// Returns where the tip goes when the finger's outermost axis closes (moves from its rest
+  /// position into its range), hand frame, unit: the direction its pad faces.
   Vector3 closing_direction(const std::vector<Pose>& T) const;
 
   /// Moves this finger's axes of `q` (its other axes stay) until the tip is within `tolerance` of

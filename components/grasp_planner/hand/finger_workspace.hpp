@@ -38,7 +38,7 @@ class FingerWorkspace {
   struct Seed {
     Vector q;  ///< values of the chain's axes [rad]
     double centrality{};  ///< least distance to a bound / half range, [0, 1]
-    /// Hand frame, unit
+    /// Hand frame, unit.
     Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};
   };
   /// Returns the seeds of the cell that holds a point, hand frame [m]; empty where the tip does not

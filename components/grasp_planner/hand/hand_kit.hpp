@@ -13,11 +13,11 @@ namespace handsel::grasp_planner {
 struct HandKit {
   explicit HandKit(const HandModel& hand_model);
 
-  /// Step poses of every finger for the configuration q of the hand.
+  /// Computes the poses of the moving joints of every finger for the configuration q of the hand.
   void forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const;
-  /// Largest fingertip radius [m].
+  /// Returns the largest fingertip radius [m].
   double tip_radius() const;
-  /// Does this hand axis move more than one finger?
+  /// Returns whether this hand axis moves more than one finger.
   bool shared(int axis) const;
 
   HandModel hand;  ///< the hand as its description has it

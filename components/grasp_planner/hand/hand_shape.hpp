@@ -15,10 +15,11 @@ class HandShape {
  public:
   HandShape(const HandModel& hand, const std::vector<FingerChain>& chains);
 
-  /// Links that no finger moves. `clearance` [m] is kept from the surface (capsules only).
+  /// Returns whether a link that no finger moves touches the object. `clearance` [m] is kept from
+  /// the surface (capsules only).
   bool palm_touches(const Graspable& object, const Pose& T_object_hand, double clearance = 0.0) const;
-  /// All links of a finger, its solids grown by `clearance` [m]; negative shrinks: a fingertip in
-  /// contact must not count as a collision.
+  /// Returns whether a link of a finger touches the object, its solids grown by `clearance` [m];
+  /// negative shrinks: a fingertip in contact must not count as a collision.
   bool finger_touches(int finger, const std::vector<Pose>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
                       double clearance) const;
   /// Returns whether a finger touches links that no finger moves; pairs the model disables do not
@@ -26,7 +27,7 @@ class HandShape {
   bool finger_touches_palm(int finger, const std::vector<Pose>& T_hand_step) const;
   /// Returns whether finger `a` touches finger `b`; pairs the model disables do not count.
   bool fingers_touch(int a, const std::vector<Pose>& T_hand_step_a, int b, const std::vector<Pose>& T_hand_step_b) const;
-  /// The whole hand, palm and fingers.
+  /// Returns whether the hand, palm or fingers, touches the object.
   bool touches(const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
                double clearance) const;
   /// Each solid's middle and lowest height in the world.
@@ -54,7 +55,8 @@ class HandShape {
   };
   /// Places palm and fingers in the frame of T_frame_hand.
   PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;
-  /// Nearer than `clearance` [m], or a palm nearer to the other hand than `palm_clearance`.
+  /// Returns whether two hands are nearer than `clearance` [m], or a palm nearer to the other hand
+  /// than `palm_clearance`.
   static bool hands_touch(const PlacedHand& a, const PlacedHand& b, double clearance, double palm_clearance = 0.0);
   /// Capsules of the whole hand in the hand frame; other solids as the ball around them. For
   /// free-room estimates.

@@ -25,7 +25,7 @@ struct QualityWeights {
 
 struct GraspListSettings {
   std::uint32_t positions{60};      ///< of the grasp frame in the object's box, uniform
-  /// In a large box as many more as make them about this far apart [m]; 0: never more
+  /// In a large box as many more as make them about this far apart [m]; 0: never more.
   double spacing{0.04};
   std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
   double step_share{0.6};           ///< distance of contact points / fingertip radius
@@ -39,7 +39,7 @@ struct GraspListSettings {
   double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
   double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
   GripForceSettings grip;                ///< how hard it is held, and what it must bear
-  /// Surface this far from the hand counts as room for another hand [m]
+  /// Surface this far from the hand counts as room for another hand [m].
   double free_distance{0.03};
   std::uint64_t seed{1};  ///< of the contact points; the same gives the same list
 };
@@ -87,13 +87,13 @@ struct GraspList {
 /// them.
 std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint32_t count);
 
-/// How many positions the settings want in a box.
+/// Returns how many positions the settings give in a box.
 std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings);
 
-/// Frames of a hand on an object with these settings.
+/// Returns how many frames these settings give for a hand on an object.
 std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
 
-/// Lists of different frames as one.
+/// Returns lists of different frames of the same hand and object as one.
 GraspList merged(std::vector<GraspList> parts);
 
 class GraspLister {
@@ -107,13 +107,13 @@ class GraspLister {
 
   std::uint64_t frames() const;  ///< in all
   std::size_t found() const;     ///< grasps so far
-  /// Tests these frames, each independent of all others: several listers may share the work, their
+  /// Tests these frames, each independent of all others: several listers may divide the work, their
   /// lists are merged afterwards.
   void test(std::uint64_t first, std::uint64_t count);
   /// Tests at most `count` more frames; false when there are none left. Frames go through all
   /// positions of an orientation before the next, so that more orientations only extend the list.
   bool advance(std::uint64_t count);
-  /// The list so far, sorted.
+  /// Returns the list so far, best quality first.
   GraspList list() const;
 
  private:

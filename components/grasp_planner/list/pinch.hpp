@@ -15,7 +15,8 @@ class PinchMotion {
  public:
   explicit PinchMotion(const HandKit& kit);
 
-  /// All hand axes
+  /// Returns the configuration of all hand axes. `closed`: 0 at the widest opening, 1 at the
+  /// narrowest.
   Vector posture(double closed) const { return open_ + closed * (closed_ - open_); }
   /// Returns the distance of the pads along the direction the first one presses [m].
   double gap(const Vector& q) const;
@@ -24,7 +25,7 @@ class PinchMotion {
   /// Returns the configuration with this gap [m]; nullopt when the hand opens less or closes no
   /// further.
   std::optional<Vector> at_gap(double gap) const;
-  /// Frame of a finger's pad in the hand.
+  /// Returns the frame of a finger's pad in the hand.
   Pose T_hand_pad(std::size_t finger, const std::vector<Pose>& T_hand_step) const;
 
  private:
@@ -37,8 +38,8 @@ class PinchSearch {
  public:
   PinchSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
 
-  /// Places of the surface times turns of the hand about the surface's normal; as many as the
-  /// settings' positions and orientations, or fewer.
+  /// Returns the number of frames: places of the surface times turns of the hand about the
+  /// surface's normal; as many as the settings' positions and orientations, or fewer.
   std::uint64_t frames() const { return places_ * kTurns; }
 
   /// A grasp without its quality. Its contacts are the corners of the patches, in the order of the
@@ -48,7 +49,8 @@ class PinchSearch {
     std::vector<PointContact> contacts;  ///< corners of the patches, object frame
     double force{};  ///< mean cosine between the surface and the pads
   };
-  /// `counters`: work done is added. `why` says what was wrong when there is none.
+  /// Tests the frame with this number, below frames(). `counters`: work done is added. `why` says
+  /// what was wrong when there is none.
   std::optional<Found> frame(std::uint64_t id, GraspList& counters, FrameReason& why);
 
  private:

@@ -44,7 +44,7 @@ class Graspable {
   const Eigen::AlignedBox3d& box() const { return triangles_.box(); }
   /// Returns the mass centre, object frame [m].
   const Vector3& com() const { return com_; }
-  /// Largest distance of the surface from the mass centre [m]
+  /// Largest distance of the surface from the mass centre [m].
   double radius() const { return radius_; }
   /// Returns the Coulomb coefficient of the surface.
   double friction() const { return friction_; }

@@ -11,7 +11,7 @@ namespace handsel::grasp_planner {
 struct MassProperties {
   double volume{};  ///< [m^3]; not above 0: the surface is open or inside out
   Vector3 com{Vector3::Zero()};                               ///< frame of the mesh [m]
-  /// About the com, axes of the mesh [m^2]
+  /// About the com, axes of the mesh [m^2].
   Eigen::Matrix3d inertia_per_mass{Eigen::Matrix3d::Zero()};
 };
 /// Returns volume, centre and inertia of the volume inside the mesh.
@@ -19,7 +19,7 @@ MassProperties mass_properties(const TriangleMesh& mesh);
 
 /// A face of the convex hull over which the mass centre stands.
 struct Placement {
-  /// Support: plane z = 0, up is z; the mass centre is on the z axis
+  /// Support: plane z = 0, up is z; the mass centre is on the z axis.
   Pose T_support_object{Pose::Identity()};
   double height{};                          ///< of the mass centre [m]
   double margin{};  ///< from below the mass centre to the nearest edge it could tip over [m]

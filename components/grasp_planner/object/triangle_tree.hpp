@@ -12,7 +12,7 @@ namespace handsel::grasp_planner {
 /// Where a ray meets the surface.
 struct SurfaceHit {
   double along{};                                               ///< from the ray's start [m]
-  /// Of its triangle, by its orientation
+  /// Of its triangle, by its orientation.
   Vector3 position{Vector3::Zero()}, normal{Vector3::UnitZ()};
   std::uint32_t triangle{};  ///< index into the triangles of the mesh
   Vector3 barycentric{Vector3::Zero()};  ///< weights of the three corners of the triangle, sum 1
@@ -31,8 +31,8 @@ class TriangleTree {
   SurfaceHit nearest(const Vector3& p) const;
   /// Inside a closed mesh: most of three rays cross it an odd number of times.
   bool contains(const Vector3& p) const;
-  /// All places where the ray from `p` along the unit vector `d` meets the surface within `length`
-  /// [m], nearest first.
+  /// All places where the ray from `p` along the unit vector `d` meets the surface within
+  /// `length` [m], nearest first.
   void hits(const Vector3& p, const Vector3& d, double length, std::vector<SurfaceHit>& out) const;
   /// Returns the axis-aligned box around all triangles [m].
   const Eigen::AlignedBox3d& box() const { return box_; }

@@ -24,9 +24,9 @@ struct DoubleGrasp {
   double quality{};               ///< the smaller of the two
   double posture{};               ///< the smaller of the two; 0 when not asked
   /// Angle between the wrists' directions, the z axes of the hands [rad]; pi: straight against each
-  /// other
+  /// other.
   double opposition{};
-  /// Hand frames: how each can leave or come; 0 when not asked
+  /// Hand frames: how each can leave or come; 0 when not asked.
   Vector3 way_first{Vector3::Zero()}, way_second{Vector3::Zero()};
   double score{};  ///< sum of quality and nearness to rest, each normalised over the list
 };

@@ -26,7 +26,7 @@ struct WristPosture {
   double radial{};                 ///< of the hand toward the thumb; negative: ulnar
   double pronation{};              ///< of the forearm from thumb up; negative: supination
   double elevation{};              ///< of the upper arm from hanging
-  /// The largest fraction of its range any of the four uses, 0: neutral, 1: at an end
+  /// The largest fraction of its range any of the four uses, 0: neutral, 1: at an end.
   double strain{};
 };
 

@@ -26,7 +26,8 @@ struct LoadShare {
 /// what `settings.acceleration` exceeds gravity by may come from any side.
 GripLoad carried_load(double mass, const Eigen::Matrix3d& R_world_object, const GripForceSettings& settings);
 
-/// One share a hand. `centre` of the load and its directions: object frame.
+/// Returns what each hand has to do, in the order of `hands`. `centre` of the load and its
+/// directions: object frame.
 std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const Vector3& centre, const GripLoad& load,
                                   const GripForceSettings& settings);
 

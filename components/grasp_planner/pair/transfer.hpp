@@ -16,11 +16,11 @@ struct TransferSettings {
   double palm_clearance{0.01};    ///< between either palm and the other hand [m]
   double least_opposition{2.1};   ///< angle of the wrists, more than 120 degrees [rad]
   std::size_t most_of_each{400};  ///< best grasps taken from each list
-  /// Grasps of the person kept for each of the robot, clearly different ones
+  /// Grasps of the person kept for each of the robot, clearly different ones.
   std::size_t partners{10};
-  /// Strain of wrist and arm of the person; beyond it a pose is left out
+  /// Strain of wrist and arm of the person; beyond it a pose is left out.
   double most_strain{kComfortableStrain};
-  /// Angle between the person's hand and the level direction from their body to the object [rad]
+  /// Angle between the person's hand and the level direction from their body to the object [rad].
   double most_aim{1.05};
   int headings{24};       ///< of the object
   double most_tilt{0};    ///< it may be tilted by up to this [rad]; upright is better
@@ -39,10 +39,11 @@ class TransferTable {
  public:
   TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object, const TransferSettings& settings = {});
 
-  /// Of grasp `robot_grasp` of the robot's list, best first; empty: nothing is left for the person.
+  /// Returns the person's grasps for grasp `robot_grasp` of the robot's list, best first; empty:
+  /// nothing is left for the person.
   const std::vector<TransferPartner>& partners(std::size_t robot_grasp) const;
-  /// How good the best partner is, [0, 1]: opposition and quality; 0 when there is none. What can
-  /// be said before anybody's place is known.
+  /// Returns how good the best partner is, [0, 1]: opposition and quality; 0 when there is none.
+  /// Independent of where the person is.
   double promise(std::size_t robot_grasp) const;
   /// Returns the counts of the double grasps behind the table; its own grasps are empty.
   const DoubleList& doubles() const { return doubles_; }
@@ -61,13 +62,13 @@ struct TransferPose {
   Vector arm_joints;  ///< of the robot
   TransferPartner partner;  ///< grasp of the person that the pose is for
   WristPosture wrist;  ///< of the person
-  /// Angle between the person's hand and the direction from their body to the object [rad]
+  /// Angle between the person's hand and the direction from their body to the object [rad].
   double aim{};
   double tilt{};       ///< of the object, against how it is held now [rad]
   double score{};      ///< at most 1: legibility (opposition), comfort (strain), aim, little tilt
 };
 
-/// How far the object may be tilted, in steps, upright first [rad].
+/// Returns how far the object may be tilted, in steps, upright first [rad].
 std::vector<double> tilt_levels(const TransferSettings& settings);
 
 /// Exchange poses for one person: places before their chest and headings of the object.
@@ -77,8 +78,8 @@ class TransferPlaces {
   TransferPlaces(const Person& person, const HumanArm& arm, const Vector3& p_world_robot, const Eigen::Matrix3d& R_world_object,
                  const Vector3& p_object_middle);
 
-  /// The best place for a grasp of the robot, the object tilted by `tilt` [rad] in some direction,
-  /// at which `reach` finds an arm configuration for the robot's hand. `reach` is asked
+  /// Returns the best place for a grasp of the robot, the object tilted by `tilt` [rad] in some
+  /// direction, at which `reach` finds an arm configuration for the robot's hand. `reach` is asked
   /// `most_reaches` times at most, best score first.
   std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
                                    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach,

@@ -46,20 +46,20 @@ struct RegraspStep {
   Pose T_world_object{Pose::Identity()};  ///< where the object is during the step
   Vector q;       ///< all hands that touch the object closed on it
   Vector before;  ///< pick, pass, join: the hand that comes, opened, off the object
-  /// Pass, place: the hand that went, opened, off the object; both when two put it down
+  /// Pass, place: the hand that went, opened, off the object; both when two put it down.
   Vector after;
 };
 
 struct RegraspSettings {
-  /// Grasps of each list that are considered, spread over all orientations
+  /// Grasps of each list that are considered, spread over all orientations.
   std::size_t most_of_each{200};
   double clearance{0.004};               ///< between the hands [m]
-  /// What is held may lie this far from its planned place when the other hand comes [m]
+  /// What is held may lie this far from its planned place when the other hand comes [m].
   double slack{0.005};
   double stand_off{0.09};                ///< of a hand before it comes and after it went [m]
   double lift{0.08};  ///< what is picked up or put down must be able to go this far straight up [m]
   int exchange_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
-  /// The search ends when so many picks, passes and places were checked
+  /// The search ends when so many picks, passes and places were checked.
   std::uint64_t most_steps_tried{3000};
   GripForceSettings grip;                ///< of hands that bear a load together
   double least_apart{0.25};              ///< of the palms of two hands that carry together [m]

@@ -24,14 +24,15 @@ class Budget {
     exact_more_ = more;
     exact_before_ = judge_.exact_checks();
   }
-  /// Work that counts like that many checks
+  /// Adds work that counts like that many checks.
   void charge(std::uint64_t checks) { charged_ += checks; }
   /// Returns the number of checks at which the budget is used up.
   std::uint64_t limit() const { return limit_; }
-  void limit(std::uint64_t checks) { limit_ = checks; }  ///< counted from the beginning
+  /// Sets the limit, counted from the beginning.
+  void limit(std::uint64_t checks) { limit_ = checks; }
   /// Returns whether the cancel hook or the condition of stop_when() ends the plan.
   bool cancelled() const { return (hooks_.cancelled && hooks_.cancelled()) || (stop_ && stop_()); }
-  /// Besides; empty: no longer
+  /// Sets a further condition that ends the plan; empty: none.
   void stop_when(std::function<bool()> stop) { stop_ = std::move(stop); }
   /// Returns whether the checks are used up or the plan is cancelled.
   bool exhausted() const { return checks() >= limit_ || cancelled(); }

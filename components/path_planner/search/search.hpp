@@ -11,10 +11,10 @@ namespace handsel::path_planner {
 struct Found {
   std::vector<Vector> path;   ///< empty when nothing was found
   std::size_t goal{};         ///< index into `goals`
-  /// Least distance between the two trees, or tree and goals, when nothing was found [rad]
+  /// Least distance between the two trees, or tree and goals, when nothing was found [rad].
   double closest{};
   std::size_t nodes{};        ///< of the tree or trees
-  /// Of the planners here: from the start, and where one was grown from the goals
+  /// Of the planners here: from the start, and where one was grown from the goals.
   std::vector<Tree> trees{};
 };
 

@@ -33,7 +33,8 @@ class SearchSpace : public Budget {
   /// Returns whether states may have a cost: a person is there or a layer adds one.
   bool concerns_people() const { return cost_.concerned() || (problem_.driving && problem_.driving->cost->anyone()); }
 
-  /// Empty when inside the position limits, else which axis is not and by how much.
+  /// Returns an empty text inside the position limits, else which axis is outside, where and of
+  /// which limits.
   std::string outside_limits(const Vector& q) const;
   /// Returns whether every planned axis is within its bounds, without tolerance.
   bool inside(const Vector& q) const;
@@ -63,26 +64,28 @@ class SearchSpace : public Budget {
   /// Returns how close the checked states of a motion are [rad, max norm].
   double step() const { return step_; }
 
-  /// How far what is held leans over [rad]; 0 where nothing asks for it to be upright.
+  /// Returns how far what is held leans over [rad]; 0 where nothing asks for it to be upright.
   double tilt(const Vector& q) const;
   /// Returns whether tilt() is within the bound; true where nothing asks for it.
   bool upright(const Vector& q) const { return !problem_.upright || tilt(q) <= problem_.upright->most; }
-  /// Everywhere on the straight line. Its ends may be on the bound, what is between is sampled
-  /// every few hundredths of a radian.
+  /// Returns whether the whole straight line is upright. Its ends may be on the bound, what is
+  /// between is sampled every few hundredths of a radian.
   bool line_upright(const Vector& from, const Vector& to) const;
-  /// The state made upright, near by and inside the limits; may fail, then it is not upright.
+  /// Returns a state near by that is upright and inside the limits; where none is found, one that
+  /// is not upright.
   Vector righted(Vector q) const;
-  /// The end of a motion toward a target, at most `range` far [rad]; where an upright configuration
-  /// is asked for a short motion, bent back to it. `from` itself when there is none.
+  /// Returns the end of a motion toward a target, at most `range` far [rad]; where an upright
+  /// configuration is asked for a short motion, bent back to it. `from` itself when there is none.
   Vector toward(const Vector& from, const Vector& target, double range) const;
 
   double cost(const Vector& q) const;  ///< of one state, [0, 1]
-  /// Of the ends of equal steps of a motion.
+  /// Returns the costs at the ends of equal steps of a motion; valid until the next call for a
+  /// cost.
   const std::vector<double>& costs_at_steps(const Vector& from, const Vector& to, int steps) const;
   double integral_cost(const Vector& from, const Vector& to) const;  ///< along a motion [rad]
   double work(const Vector& from, const Vector& to) const;  ///< rises of the cost along a motion
-  /// What smoothing makes smaller: integral of the cost above that of the cheapest of start and
-  /// goals, and length_weight times the length.
+  /// Returns what smoothing makes smaller: integral of the cost above that of the cheapest of start
+  /// and goals, and length_weight times the length.
   double price(const Vector& from, const Vector& to) const;
 
   /// Reports the begin of a stage to the hook of the caller, when there is one.
@@ -117,7 +120,7 @@ class SearchSpace : public Budget {
   double reach_{};
 };
 
-/// Euclidean length of a broken line [rad].
+/// Returns the Euclidean length of a broken line [rad].
 double path_length(const std::vector<Vector>& path);
 
 }  // namespace handsel::path_planner
