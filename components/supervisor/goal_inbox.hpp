@@ -10,7 +10,8 @@
 
 namespace handsel::supervisor {
 
-/// Pause, resume, cancel, acknowledge, speed, clear_person: they have room of their own, so that a flood of tasks does not keep them out.
+/// Pause, resume, cancel, acknowledge, speed, clear_person: they have room of their own, so that a
+/// flood of tasks does not keep them out.
 inline bool is_control(TaskKind kind) { return kind >= TaskKind::pause; }
 
 class GoalInbox {
@@ -20,9 +21,13 @@ class GoalInbox {
 
   enum class Admission {
     taken,
-    known,        ///< its id came before
-    turned_away,  ///< as many as may wait do; it is refused in the next cycle, or only counted when too many are refused already
+    known,  ///< the id came before
+    /// As many as may wait do; the goal is refused in the next cycle, or only counted when too many
+    /// are refused already.
+    turned_away,
   };
+  /// Queues a goal for the next cycle and remembers its id. Tasks and controls are counted
+  /// separately; the newest 256 ids are remembered.
   Admission put(const TaskGoal& goal);
   /// The goals that wait, in the order in which they came.
   std::vector<TaskGoal> take();
@@ -31,9 +36,13 @@ class GoalInbox {
   /// Goals to refuse, for want of room.
   std::vector<TaskGoal> take_turned_away();
 
+  /// Returns whether no goal waits; goals to refuse do not count.
   bool empty() const { return waiting_.empty(); }
+  /// Number of goals that wait, tasks and controls together.
   std::size_t size() const { return waiting_.size(); }
+  /// Number of tasks that may wait, and separately of controls.
   std::size_t max() const { return max_; }
+  /// Returns whether a goal with this id was taken and is still remembered.
   bool knows(std::uint64_t id) const;
   std::uint64_t turned_away() const { return turned_away_; }  ///< so far
 

@@ -16,20 +16,29 @@ class Situation {
  public:
   explicit Situation(Ability ability) : ability_(std::move(ability)) {}
 
+  /// Replaces the facts and remembers the people they are about, see met(). `now`: time of arrival.
   void on(const Facts& facts, TimePoint now);
+  /// Replaces the scene. `now`: time of arrival.
   void on(const Scene& scene, TimePoint now);
+  /// Replaces the status of the running action; what the hand holds enters world() at once.
   void on(const ActionStatus& status);
-  /// Of the arm, world [m].
+  /// Sets the shoulder of the arm in the world [m]; from then on the reach of the arms counts.
   void set_shoulder(const Vector3& shoulder);
+  /// Sets shoulder and reach of the other arms, which count once set_shoulder() was called.
   void set_other_arms(const std::vector<Ability::Arm>& arms) { ability_.other_arms = arms; }
 
+  /// Returns whether facts and scene have both arrived.
   bool known() const { return facts_.has_value() && scene_.has_value(); }
-  double known_for(TimePoint now) const { return known() ? to_seconds(now - known_since_) : 0.0; }  ///< [s]
+  /// Time for which known() has been true [s]; 0 while it is not.
+  double known_for(TimePoint now) const { return known() ? to_seconds(now - known_since_) : 0.0; }
   /// Only when known().
   World& world();
+  /// Newest scene; valid only when known().
   const Scene& scene() const { return *scene_; }
+  /// Newest status of an action; nothing before the first one.
   const std::optional<ActionStatus>& action() const { return action_; }
-  bool met(const std::string& person) const { return met_.contains(person); }  ///< was seen some time
+  /// Returns whether a fact about this person has arrived since the start (at most 1024 people).
+  bool met(const std::string& person) const { return met_.contains(person); }
 
   std::string held();                                 ///< what the robot holds; empty: nothing
   std::string surface_of(const std::string& object);  ///< empty: it stands on none

@@ -1,4 +1,5 @@
-// The task planner and supervision (chapter section 2.1): goals become actions one at a time; their fate is watched and told. Pure.
+// The task planner and supervision (chapter section 2.1): goals become actions one at a time; their
+// outcome is monitored and reported. Pure.
 #pragma once
 
 #include <cstdint>
@@ -21,37 +22,51 @@
 
 namespace handsel::supervisor {
 
+/// Messages and requests that one step of the supervisor produces.
 struct Outbox {
-  std::vector<ActionGoal> action_goals;
-  std::vector<TaskStatus> task_statuses;
-  std::optional<Go> go;
-  std::optional<SafetyState> safety;  ///< to be published; ages count from now
-  std::optional<DurableState> store;  ///< to be stored; on_stored() or on_store_failure() answers, until then no other comes
+  std::vector<ActionGoal> action_goals;   ///< to be sent, in order
+  std::vector<TaskStatus> task_statuses;  ///< to be sent, in order
+  std::optional<Go> go;                   ///< to be sent: on a change, and repeated at the Go rate
+  std::optional<SafetyState> safety;      ///< to be published; ages count from now
+  /// To be stored; on_stored() or on_store_failure() answers, until then no other comes.
+  std::optional<DurableState> store;
 };
 
 class Supervisor {
  public:
-  /// `first_action`: ids of action goals grow from here; unique over restarts. `restored`: what the store has kept, ages as of `now`.
+  /// `first_action`: ids of action goals grow from here; unique over restarts. `restored`: what the
+  /// store has kept, ages as of `now`.
   Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action,
              const DurableState& restored, TimePoint now);
   /// The same, started by a person: no latch stands.
   Supervisor(const config::SupervisorSettings& settings, Domain domain, Ability ability, std::uint64_t first_action);
 
+  /// Queues the goal for the next step(). A pause that finds no room takes effect at once.
   void on(const TaskGoal& goal, TimePoint arrival);
+  /// Replaces the facts of the world model.
   void on(const Facts& facts, TimePoint arrival) { situation_.on(facts, arrival); }
+  /// Replaces the scene of the world model.
   void on(const Scene& scene, TimePoint arrival) { situation_.on(scene, arrival); }
+  /// Takes the status of the running action.
   void on(const ActionStatus& status, TimePoint) { situation_.on(status); }
+  /// Notes that a required component is alive or stopping; that of SPARK also gives its start time.
   void on(const ComponentHealth& health, TimePoint arrival);
+  /// Takes the status of the controller; a fault, or a stop this process has missed, is latched.
   void on(const ExecutionStatus& status, TimePoint arrival);
+  /// Latches a protective, user or emergency stop when the robot side enters one.
   void on(const RobotState& robot, TimePoint) { latches_.on(robot); }
+  /// Updates the people lost from sight. `writer`: identifies the SPARK process.
   void on(const HumanState& people, TimePoint arrival, std::uint64_t writer) { lost_.on(people, arrival, writer); }
+  /// Takes the advice of attention; the next step() acts on its change of the task.
   void on(const AttentionAdvice& advice, TimePoint) { advice_ = advice; }
+  /// Sets the shoulder of the arm in the world [m]; from then on the reach of the arms counts.
   void set_shoulder(const Vector3& shoulder) { situation_.set_shoulder(shoulder); }
+  /// Sets shoulder and reach of the other arms of the robot.
   void set_other_arms(const std::vector<Ability::Arm>& arms) { situation_.set_other_arms(arms); }
 
   /// Goals that found no room so far.
   std::uint64_t goals_turned_away() const { return inbox_.turned_away(); }
-  /// Scene and facts have come: tasks can be judged.
+  /// Scene and facts have come: tasks can be evaluated.
   bool knows_world() const { return situation_.known(); }
   /// The state of this revision has been stored.
   void on_stored(std::uint64_t revision);
@@ -59,6 +74,7 @@ class Supervisor {
   void on_store_failure(const std::string& reason, TimePoint now);
   /// Why the state cannot be stored, one sentence; empty: the last attempt succeeded.
   const std::string& store_failure() const { return store_failure_; }
+  /// Runs one cycle: controls, goals, the running task, permission and storage; fills `out`.
   /// `stamp`: system clock, from which stored ages count.
   void step(TimePoint now, Stamp stamp, Outbox& out);
 
@@ -89,7 +105,7 @@ class Supervisor {
   AttentionAdvice advice_;
   TaskChange heeded_{TaskChange::none};
   bool suspended_{false};            ///< by attention
-  std::set<std::uint64_t> orphans_;  // told of
+  std::set<std::uint64_t> orphans_;  // already reported
   std::optional<TimePoint> orphan_since_;
   TimePoint go_sent_{}, status_sent_{};
   Go sent_go_;

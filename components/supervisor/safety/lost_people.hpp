@@ -1,4 +1,5 @@
-// People lost from sight: who must be remembered over a restart of SPARK, and for how long nobody has seen them. Pure.
+// People lost from sight: who must be remembered over a restart of SPARK, and for how long nobody
+// has seen them. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,13 @@
 
 namespace handsel::supervisor {
 
-/// A person counts as lost when nobody has seen them for longer than `after`. They stay until the SPARK that has shown them lost shows
-/// them seen or no longer (gone, or cleared by an operator); a SPARK that has just started, and does not know them yet, removes nobody.
+/// A person counts as lost when nobody has seen them for longer than `after`. They stay until the
+/// SPARK that has shown them lost shows them seen or no longer (gone, or cleared by an operator); a
+/// SPARK that has just started, and does not know them yet, removes nobody.
 class LostPeople {
  public:
-  /// `after`: age from which a person counts as lost [s]; `max_people`: those lost most recently are remembered; `restored`: people lost
-  /// before the start, `age` counts from `now`.
+  /// `after`: age from which a person counts as lost [s]; `max_people`: those lost most recently
+  /// are remembered; `restored`: people lost before the start, `age` counts from `now`.
   LostPeople(double after, std::size_t max_people, const std::vector<Person>& restored, TimePoint now);
 
   /// Takes what SPARK shows. `writer` tells one SPARK process from another.

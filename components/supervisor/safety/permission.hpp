@@ -1,4 +1,5 @@
-// Who may move and when: the Go epochs (architecture: mode machine). Pure.
+// When the robot may move: the motion-permission counter, "epoch", that each Go carries
+// (architecture: mode machine). Pure.
 #pragma once
 
 #include <cstdint>
@@ -23,32 +24,39 @@ struct PermissionState {
   std::string reason;           ///< why it does not permit motion
 };
 
-/// A new epoch is granted when nothing but the missing permission holds the robot back, no latch stands and the state is stored;
-/// permission is withdrawn at once while a latch stands or the task is suspended, and, once the running trajectory has ended, when a
-/// required component is gone.
+/// A new epoch is granted when nothing but the missing permission holds the robot back, no latch
+/// stands and the state is stored; permission is withdrawn at once while a latch stands or the task
+/// is suspended, and, once the running trajectory has ended, when a required component is gone.
 class Permission {
  public:
   explicit Permission(const config::SupervisorSettings& settings) : settings_(settings) {}
 
+  /// Notes that a required component is alive (ok, degraded) or gone (stopping).
   void on(const ComponentHealth& health, TimePoint arrival);
+  /// Takes the status of the controller; the epoch never falls behind the one reported there.
   void on(const ExecutionStatus& status, TimePoint arrival);
   /// Attention suspends the task: no permission until it resumes.
   void suspend(bool suspended) { suspended_ = suspended; }
-  /// A person has acknowledged the fault or stop that the controller reports now, if any: the next Go says so once its cause is gone.
+  /// A person has acknowledged the fault or stop that the controller reports now, if any: the next
+  /// Go says so once its cause is gone.
   void acknowledge();
-  /// Returns the epoch of the Go that acknowledged the last fault; reports of a fault from older epochs are old. Max while it has yet to
-  /// come.
+  /// Returns the motion-permission counter at which the last fault was acknowledged; reports of a
+  /// fault from older epochs are old. Returns the largest number while that Go has yet to come.
   std::uint64_t acknowledged() const;
 
-  /// Returns whether the controller waits for a person because of a stop that this process has missed: it has the Go in force, which
-  /// permits motion, or said so in its first report since a start whose state permitted motion.
+  /// Returns whether the controller waits for a person because of a stop that this process has
+  /// missed: it has the Go in force, which permits motion, or said so in its first report since a
+  /// start whose state permitted motion.
   bool missed_stop(bool permitted_at_start) const;
+  /// Decides about the permission and returns the Go in force. A new epoch is granted only after
+  /// the conditions have held for the configured resume delay.
   const Go& step(const PermissionState& state, TimePoint now);
   /// Required components that are not there; empty when all are.
   const std::vector<std::string>& missing() const { return missing_; }
 
  private:
-  enum class Acknowledgement { none, of_drives, of_fault };  ///< given by a person and not yet passed on by a Go
+  /// Given by a person and not yet passed on by a Go.
+  enum class Acknowledgement { none, of_drives, of_fault };
   Acknowledgement awaited() const;
   void find_missing(TimePoint now);
   void withdraw(const std::string& reason);

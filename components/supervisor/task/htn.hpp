@@ -1,4 +1,5 @@
-// Hierarchical task network planning: a task is decomposed by its methods down to actions; of all ways the cheapest. Pure.
+// Hierarchical task network planning: a task is decomposed by its methods down to actions; the
+// cheapest decomposition is the plan. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,52 +13,57 @@ namespace handsel::supervisor {
 
 /// An action with its arguments.
 struct PlannedAction {
-  ActionKind kind{};
-  std::string object, human, surface;
-  int action{-1};                 ///< index in the domain
-  std::vector<std::string> args;  ///< of the domain's action
-  double cost{};
-  std::string text() const;  ///< "give mug to anna"
+  ActionKind kind{};                   ///< of the ActionGoal
+  std::string object, human, surface;  ///< of the ActionGoal; empty: none
+  int action{-1};                      ///< index in the domain
+  std::vector<std::string> args;       ///< of the domain's action
+  double cost{};                       ///< with extra costs, in the state where the action is planned
+  std::string text() const;            ///< "give mug to anna"
   friend bool operator==(const PlannedAction& a, const PlannedAction& b) { return a.action == b.action && a.args == b.args; }
 };
 
 /// A line of the tree: a task, or one of the actions.
 struct PlanLine {
-  std::string text;
-  std::uint32_t depth{};
-  int action{-1};       ///< index into Plan::actions; -1: a task
-  bool skipped{false};  ///< nothing is planned for it, and why
-  std::string reason;
+  std::string text;       ///< phrase for people
+  std::uint32_t depth{};  ///< 0: the goal
+  int action{-1};         ///< index into Plan::actions; -1: a task
+  bool skipped{false};    ///< true: nothing is planned for the line, see `reason`
+  std::string reason;     ///< why the line is skipped, for people; else empty
 };
 
+/// Result of make_plan().
 struct Plan {
-  bool found{false};
-  std::vector<PlannedAction> actions;
-  std::vector<PlanLine> tree;  ///< depth first; the first line is the goal
-  double cost{};
-  bool proven{false};     ///< nothing cheaper exists; else the search was cut short
-  std::uint64_t nodes{};  ///< states looked at
-  std::string reason;     ///< why there is none, one sentence for people
+  bool found{false};                   ///< true: `actions` carry out the task
+  std::vector<PlannedAction> actions;  ///< in order; none: nothing has to be done
+  std::vector<PlanLine> tree;          ///< depth first; the first line is the goal
+  double cost{};                       ///< of methods, actions and what is skipped
+  bool proven{false};                  ///< nothing cheaper exists; else the search was cut short
+  std::uint64_t nodes{};               ///< states expanded
+  std::string reason;                  ///< why there is none, one sentence for people
 };
 
-/// What it leaves out, and why: "clear box away: box is out of the robot's reach; ..."; empty: nothing.
+/// What it leaves out, and why: "clear box away: box is out of the robot's reach; ..."; empty:
+/// nothing.
 std::string left_out(const Plan& plan);
 
+/// Limits of the search.
 struct PlanLimits {
-  std::uint64_t nodes{4000};
-  std::uint32_t depth{64};
+  std::uint64_t nodes{4000};  ///< largest number of states expanded
+  std::uint32_t depth{64};    ///< largest depth of decomposition
 };
 
 /// What an action must not be tried again for, by its text.
 using Forbidden = std::map<std::string, std::string>;
 
-/// Branch and bound: methods and bindings cheapest first, by their cost and a bound from below on what they lead to; a way that costs as
-/// much as the best one found is left. The same question has the same answer. `args`: of the task, "-" = left out.
+/// Branch and bound: methods and bindings cheapest first, by their cost and a lower bound of
+/// what they lead to; an alternative that costs as much as the best one found is left. The same
+/// question has the same answer. `args`: of the task, "-" = left out.
 Plan make_plan(const Domain& domain, const World& world, int task, const std::vector<std::string>& args, const Forbidden& forbidden,
                const PlanLimits& limits);
 
 /// Why an action cannot be done in this state; empty: it can.
 std::string why_not(const Domain& domain, World& world, const PlannedAction& action, const State& state);
+/// Changes the state by the effects of the action, whose conditions are not tested.
 void apply(const Domain& domain, World& world, const PlannedAction& action, State& state);
 /// Does all that it adds hold already?
 bool shows(const Domain& domain, World& world, const PlannedAction& action, const State& state);

@@ -12,24 +12,35 @@ namespace handsel::supervisor {
 
 /// What one TaskStatus has room for (idl/task.idl).
 inline constexpr std::size_t kMostSteps = 64, kMostLines = 128, kMostText = 128, kMostReason = 256, kMostPhase = 64;
+/// Returns the text if it has at most `most` bytes, else its beginning with "..." at that length.
+/// `most` >= 3.
 std::string cut(const std::string& text, std::size_t most);
 
 class Progress {
  public:
-  /// Goes on with another plan. What is left of the old one and not in the new one was dropped, `why` says for what reason.
+  /// Continues with another plan. What is left of the old one and not in the new one was dropped,
+  /// `why` says for what reason.
   void adopt(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
   /// The running action stays the first of the new plan.
   void adopt_after_running(Plan plan, const std::function<std::string(const PlannedAction&)>& why);
 
+  /// Action that is due or running; nullptr: all are over. Invalid after the plan is replaced.
   const PlannedAction* current() const { return next_ < plan_.actions.size() ? &plan_.actions[next_] : nullptr; }
   /// Actions from the current one on, or after it.
   std::vector<PlannedAction> left(bool after = false) const;
+  /// Plan adopted last, with its actions already done.
   const Plan& plan() const { return plan_; }
-  const std::vector<std::string>& dropped() const { return dropped_; }  ///< reasons, in order, each once
+  /// Reasons for which actions were dropped, in order, each once.
+  const std::vector<std::string>& dropped() const { return dropped_; }
 
+  /// Marks the current action as running.
   void begin() { mark(StepState::running, ""); }
+  /// Marks the current action as done and turns to the next one.
   void done();
+  /// Marks the current action as failed; it stays the current one.
   void failed(const std::string& reason) { mark(StepState::failed, reason); }
+  /// Marks the current action as dropped and adds the reason to dropped(); it stays the current
+  /// one.
   void drop(const std::string& reason);
   /// It will be tried again.
   void again(const std::string& reason) { mark(StepState::waiting, reason); }

@@ -11,16 +11,18 @@ namespace handsel::supervisor {
 
 /// A goal in terms of the domain.
 struct TaskQuery {
-  int task{-1};
-  std::vector<std::string> args;
-  std::string reason;        ///< why it is refused, and what would make it possible; empty: it is not
-  std::string unseen;        ///< a thing or a person that is named and not seen; empty: all are
-  bool needs_person{false};  ///< somebody is meant and nobody is there
+  int task{-1};                   ///< index in Domain::tasks; -1: the domain has none
+  std::vector<std::string> args;  ///< of the task; "-": left out
+  std::string reason;             ///< why the goal is refused, and a remedy; empty: accepted
+  std::string unseen;             ///< thing or person that is named and not seen; empty: none
+  bool needs_person{false};       ///< somebody is meant and nobody is there
 };
 
 /// "give mug to anna", "take what anna offers", ...
 std::string text_of(const TaskGoal& goal);
 
+/// Resolves the names of the goal against the objects, surfaces and people of the world. The result
+/// has a reason when a name is missing, unknown or of the wrong type.
 TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& world, const Scene& scene);
 
 /// Before anything is done: it is so already; empty: it is not.

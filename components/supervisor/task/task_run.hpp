@@ -16,8 +16,8 @@ namespace handsel::supervisor {
 
 /// What a task wants of its surroundings in one step.
 struct TaskWishes {
-  std::vector<ActionGoal> action_goals;
-  bool changed{false};  ///< the status is worth telling
+  std::vector<ActionGoal> action_goals;  ///< to be sent, in order; a cancellation is one of them
+  bool changed{false};                   ///< true: the status has to be reported
 };
 
 class TaskRun {
@@ -25,20 +25,29 @@ class TaskRun {
   TaskRun(const config::SupervisorSettings& settings, const Domain& domain, Situation& situation, const TaskGoal& goal, TimePoint now);
 
   enum class Start { begun, refused, unsure };
-  /// First look at the goal. `unsure`: what is named is not seen yet, or not as it would have to be; `status().reason` says what.
+  /// Evaluates the goal and makes the first plan. `unsure`: what is named is not seen yet, or not
+  /// as it would have to be; `status().reason` says what.
   Start start(TimePoint now);
 
-  /// `may_begin`: a new action may be sent; `next_id` makes ids of actions.
+  /// Runs one cycle: follows the running action, plans again, sends the next action. `missing`:
+  /// required components that are gone; `next_id`: id of the next action, counted up.
   void step(TimePoint now, const std::vector<std::string>& missing, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
+  /// Shows the task as paused or running; a task that is over keeps its state. No action is sent
+  /// while paused.
   void pause(bool paused);
+  /// Ends the task as cancelled at once and cancels its running action.
   void cancel(TaskWishes& wishes);
   /// Ends in order: what is in the hand is put back.
   void abort(const std::string& reason, TimePoint now, TaskWishes& wishes);
   /// What is in the hand goes to a person instead; false: nothing is, or that is being done.
   bool give_instead(const std::string& person, TimePoint now, TaskWishes& wishes);
 
+  /// Returns whether the task has succeeded, failed or was cancelled.
   bool over() const { return over_; }
+  /// Returns the status with plan and tree brought up to date and texts cut to the size of the
+  /// message.
   const TaskStatus& status();
+  /// Goal of the task, with the destination filled in where `surface` named it.
   const TaskGoal& goal() const { return goal_; }
 
  private:
