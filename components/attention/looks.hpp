@@ -1,4 +1,4 @@
-// What several behaviours look at.
+// Observations that several behaviours share.
 #pragma once
 
 #include <limits>
@@ -10,28 +10,35 @@ namespace handsel::attention {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Returns whether the positions of all axes of the robot are known.
 bool robot_known(const World& w, const Body& body);
+/// Returns whether an action of this kind is running.
 bool doing(const World& w, ActionKind kind);
-/// The person who matters: the partner of the action if seen, else the one whose torso is nearest to `p`; null: nobody.
+/// Returns the person of interest: the partner of the action if seen, else the one whose torso is
+/// nearest to `p`; null: nobody.
 const Person* person_of_interest(const World& w, const Vector3& p, double lost_after);
 /// Does a fact of this kind hold about the person? An empty id: about anybody.
 bool holds(const World& w, FactKind kind, const std::string& person);
 /// Does the person attend to the robot? Yes as long as no facts say otherwise.
 bool attentive(const World& w, const std::string& person);
 
+/// The hand of a person that is nearest to a point.
 struct NearHand {
-  double distance{kInfinity};
-  Vector3 position{Vector3::Zero()}, velocity{Vector3::Zero()};
+  double distance{kInfinity};                                    ///< from the point [m]
+  Vector3 position{Vector3::Zero()}, velocity{Vector3::Zero()};  ///< of the hand, world [m], [m/s]
 };
+/// Returns the hand of the person that is nearest to `p` (world [m]). The person needs all joints.
 NearHand nearest_hand(const Person& person, const Vector3& p);
 
 /// Is this the person whom the robot hands something to or takes something from?
 bool exchanges_with(const World& w, const std::string& person);
-/// The exchanging forearm and hand, while the exchange is engaged.
+/// Returns the person whose forearms and hands are exempt from separation while the handover is
+/// engaged; empty otherwise.
 Exception exchange_exception(const World& w);
-/// Distance, or the time to contact at reference speed 0.5 m/s when that is less: what urgency is judged by [m].
+/// Returns the stimulus for a distance [m] and a closing speed [m/s]: the distance, or the time to
+/// contact times the reference speed 0.5 m/s when that is less [m], >= 0.
 double urgency(double distance, double closing);
-/// 0 at `low`, 1 at `high`, straight between.
+/// Returns 0 up to `low`, 1 from `high`, linear in between.
 double ramp(double x, double low, double high);
 
 }  // namespace handsel::attention

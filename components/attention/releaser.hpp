@@ -9,28 +9,30 @@
 
 namespace handsel::attention {
 
-/// "action give", "holding", "fact in_interaction_zone" (of the person of interest's kind: about anybody), "behaviour track"; "not" before
-/// one turns it round.
+/// "action give", "holding", "fact in_interaction_zone" (of the person of interest's kind: about
+/// anybody), "behaviour track"; "not" before a condition negates it.
 struct Condition {
   enum class Kind { action, holding, fact, behaviour };
-  Kind kind{};
-  bool negated{};
-  ActionKind action{};
-  FactKind fact{};
+  Kind kind{};            ///< which of the fields below counts
+  bool negated{};         ///< true: the opposite must hold
+  ActionKind action{};    ///< that must be running
+  FactKind fact{};        ///< that must hold about anybody or anything
   std::string behaviour;  ///< that must be released
 };
 
-/// Throws ConfigError with what is wrong with the text.
+/// Reads one condition. Throws ConfigError with what is wrong with the text.
 Condition parse_condition(const std::string& text);
 /// `released`: of the behaviour the condition names, if it names one.
 bool met(const Condition& condition, const World& world, bool released);
 
+/// Conditions of one behaviour.
 struct Releaser {
-  std::string behaviour;  ///< whose it is
-  std::vector<Condition> conditions;
+  std::string behaviour;              ///< whose it is
+  std::vector<Condition> conditions;  ///< all must hold
 };
 
-/// An order in which each behaviour comes after those its conditions name. Throws ConfigError that tells a cycle, or who is unknown.
+/// An order in which each behaviour comes after those its conditions name. Throws ConfigError
+/// naming a cycle or an unknown behaviour.
 std::vector<std::size_t> releaser_order(const std::vector<Releaser>& releasers);
 
 }  // namespace handsel::attention

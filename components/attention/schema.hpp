@@ -1,5 +1,6 @@
-// A behaviour as a schema: perception on its own clock, a releaser, a motor part (speed, gaze). Chapter abstract and section 2.1; the
-// reconstruction is ours (formulas: section 4).
+// A behaviour as a schema: perception on its own clock, a releaser, a motor part (speed, gaze).
+// Chapter abstract and section 2.1. Own method: the chapter's section on attention is missing
+// (formulas: section 4).
 #pragma once
 
 #include <memory>
@@ -18,12 +19,12 @@ namespace handsel::attention {
 
 /// The latest samples; null = never seen.
 struct World {
-  const HumanState* people{};
-  const Facts* facts{};
-  const ActionStatus* action{};
-  const ActiveTrajectory* active{};
-  const TrajectoryForecast* forecast{};
-  const Scene* scene{};
+  const HumanState* people{};            ///< tracked people
+  const Facts* facts{};                  ///< symbolic facts of SPARK
+  const ActionStatus* action{};          ///< of the manipulation planner
+  const ActiveTrajectory* active{};      ///< axes of the robot and the running trajectory
+  const TrajectoryForecast* forecast{};  ///< of the collision checker, for the running trajectory
+  const Scene* scene{};                  ///< objects and boxes
 };
 
 /// The robot's body in the world, for the schemata.
@@ -31,10 +32,13 @@ class Body {
  public:
   /// `p_tool_grasp`: where the hand touches things, in the tool frame [m].
   Body(const RobotModel& robot, const Vector3& p_tool_grasp);
-  /// Nearest approach in posture q (all axes); distance +inf when nobody is there.
+  /// Returns the nearest approach of robot and people in configuration q (all axes); distance +inf
+  /// when nobody is there.
   Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const Exception& exception) const;
   Vector3 grasp_point(const Vector& q, const Pose& T_world_base) const;  ///< world [m]
+  /// Returns a point of the base frame [m] in the world [m].
   Vector3 base_point(const Pose& T_world_base, const Vector3& p_base) const { return T_world_base * p_base; }
+  /// Number of axes of the robot.
   int dof() const { return robot_.dof(); }
 
  private:
@@ -49,25 +53,25 @@ struct MotorSettings {
   double avoid_stop{0.06};           ///< nearest distance at which AVOID asks for 0 [m]
   double avoid_slow{0.60};           ///< distance from which AVOID asks for less than 1 [m]
   double avoid_contact_time{1.2};    ///< time to contact from which AVOID asks for less than 1 [s]
-  double partner_slow{0.40};         ///< both of whom the robot hands something to or takes something from: they expect it near [m] ...
-  double partner_contact_time{0.8};  ///< ... [s]
-  double avoid_recede{0.5};          ///< least factor while the running trajectory leads away from the person
+  double partner_slow{0.40};         ///< avoid_slow for the partner of a handover [m]
+  double partner_contact_time{0.8};  ///< avoid_contact_time for the partner of a handover [s]
+  double avoid_recede{0.5};          ///< smallest factor while the trajectory leads away
   double recoil_factor{-0.15};       ///< factor when nearer than avoid_stop and closing in
   double recoil_speed{0.10};         ///< closing speed that counts as closing in [m/s]
   double ease_distance{0.10};        ///< PICK and PLACE ease over this distance [m]
   double ease_factor{0.4};           ///< to this factor
-  double hand_near{0.30};            ///< GIVE and RECEIVE slow when the person's hand is nearer than this [m]
+  double hand_near{0.30};            ///< GIVE and RECEIVE slow when a hand is nearer [m]
   double hand_factor{0.25};          ///< to this factor
   double shift_limit{0.15};          ///< largest shift of the exchange point [m]
   double lost_after{1.0};            ///< a person not seen for longer is not tracked [s]
-  double reach_near{0.6};            ///< a hand that reaches for what the robot holds counts when it is nearer than this [m] ...
-  double reach_hold{0.2};            ///< ... for this long [s]
+  double reach_near{0.6};            ///< a hand reaching for the held object counts nearer [m] ..
+  double reach_hold{0.2};            ///< .. for this long [s]
 };
 
 /// What a behaviour that is described, not programmed, can watch.
 enum class Input {
-  human_distance,    ///< least distance between robot and a person, the exchanging hand left out [m]
-  hand_distance,     ///< between the robot's hand and the nearest hand of the person of interest [m]
+  human_distance,    ///< from the robot to a person, without the hand in the handover [m]
+  hand_distance,     ///< from the robot's hand to the nearest hand of the person of interest [m]
   object_distance,   ///< between the robot's hand and the object of the action [m]
   clearance,         ///< least distance foreseen on the running trajectory [m]
   forecast_contact,  ///< time until a contact that is foreseen on the running trajectory [s]
@@ -80,35 +84,45 @@ enum class GazeAt { nothing, head, hand, object };
 
 /// A behaviour of kind WATCH.
 struct WatchSettings {
-  Input input{};
-  double slow_from{};       ///< input below which it asks for less than full speed (unit of the input); 0: never
-  double slow_at{};         ///< input at which it asks for slow_factor, < slow_from
+  Input input{};            ///< quantity observed
+  double slow_from{};       ///< input below which less than full speed is asked for; 0: never
+  double slow_at{};         ///< input at which slow_factor is asked for, < slow_from
   double slow_factor{1.0};  ///< [0, 1]
-  GazeAt gaze{};
-  std::string reason;  ///< one phrase for people
+  GazeAt gaze{};            ///< target of the gaze, of the person of interest or the action
+  std::string reason;       ///< one phrase for people
 };
 
 /// That another task should take the place of the one that runs.
 struct TaskWish {
-  TaskChange change{};
-  std::string person;  ///< whom it is about
+  TaskChange change{};  ///< change of the running task that is asked for
+  std::string person;   ///< id of the person concerned
 };
 
-/// One behaviour. perceive() runs when its clock fires; released() and the motor part use what it saw last.
+/// One behaviour. perceive() runs when its clock fires; released() and the motor part use its last
+/// result.
 class Schema {
  public:
   virtual ~Schema() = default;
+  /// Kind of the behaviour, the same over its whole life.
   virtual Behaviour kind() const = 0;
-  /// Looks; returns the stimulus: >= 0, SI, smaller is more urgent.
+  /// Observes the world and returns the stimulus: >= 0, SI units, smaller is more urgent; +inf:
+  /// nothing is urgent.
   virtual double perceive(const World& world, TimePoint now) = 0;
+  /// Returns whether the behaviour may act now; conditions of the settings come on top.
   virtual bool released(const World& world) const = 0;
+  /// Speed factor asked for, in [-1, 1]; below 0: back along the path.
   virtual double speed_factor() const { return 1.0; }
-  virtual const char* reason() const { return ""; }                             ///< one phrase for a factor below 1
-  virtual std::optional<Vector3> gaze() const { return std::nullopt; }          ///< world [m]
-  virtual std::optional<Vector3> target_shift() const { return std::nullopt; }  ///< world [m]
-  virtual std::optional<TaskWish> wish() const { return std::nullopt; }         ///< only of the behaviour that owns the task
+  /// One phrase for a factor below 1.
+  virtual const char* reason() const { return ""; }
+  /// Point the head should look at, world [m]; nothing: none.
+  virtual std::optional<Vector3> gaze() const { return std::nullopt; }
+  /// Shift of the exchange point, world [m]; nothing: none.
+  virtual std::optional<Vector3> target_shift() const { return std::nullopt; }
+  /// Change of the running task that is asked for; only of the behaviour that owns the task.
+  virtual std::optional<TaskWish> wish() const { return std::nullopt; }
 };
 
+/// Returns a new behaviour; `body` must live as long. `watch`: used where the kind is watch.
 std::unique_ptr<Schema> make_schema(Behaviour kind, const Body& body, const MotorSettings& motor, const ZoneSettings& zones,
                                     const WatchSettings& watch = {});
 

@@ -1,4 +1,5 @@
-// Distance zones around the robot with hysteresis in space and time (formulas: section 4; ours).
+// Distance zones around the robot with hysteresis in space and time (formulas: section 4). Own
+// method: the chapter's section on attention is missing.
 #pragma once
 
 #include <array>
@@ -9,16 +10,20 @@ namespace handsel::attention {
 
 enum class Zone { contact, danger, interaction, social, far };
 
+/// Limits and hysteresis of the zones.
 struct ZoneSettings {
-  std::array<double, 4> limits{0.1, 0.45, 1.2, 3.6};  ///< outer limits of contact, danger, interaction, social [m]
-  double margin{0.05};                                ///< a zone is left only beyond its limit plus this [m]
-  double dwell{0.3};                                  ///< and only after this long [s]; coming nearer counts at once
+  /// Outer limits of contact, danger, interaction and social zone [m].
+  std::array<double, 4> limits{0.1, 0.45, 1.2, 3.6};
+  double margin{0.05};  ///< a zone is left only beyond its limit plus this [m] ...
+  double dwell{0.3};    ///< ... and after this long [s]; coming nearer counts at once
 };
 
 class ZoneTracker {
  public:
   explicit ZoneTracker(const ZoneSettings& settings) : settings_(settings) {}
+  /// Takes a distance [m] and returns the zone; +inf is far. A nearer zone counts at once.
   Zone update(double distance, TimePoint now);
+  /// Zone of the last update(); far before the first.
   Zone zone() const { return zone_; }
 
  private:

@@ -1,4 +1,5 @@
-// Where the running trajectory leads: contact, clearance and cost over the next moments, against the newest scene and people. Pure.
+// Where the running trajectory leads: contact, clearance and cost over the next moments, against
+// the newest scene and people. Pure.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +13,33 @@
 
 namespace handsel::collision_checker {
 
+/// Range and sampling of a forecast.
 struct ForecastSettings {
-  double horizon{1.5};       ///< looked ahead at present speed [s]
-  double least_speed{0.25};  ///< speed factor assumed for a slower or held trajectory, so that what holds it stays seen
+  double horizon{1.5};       ///< time ahead that is checked, at present speed [s]
+  double least_speed{0.25};  ///< speed factor assumed for a slower or held trajectory
   double spacing{0.05};      ///< of states, in time of the trajectory [s]
 };
 
-/// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower the clearance, the controller's guard
-/// answers for them. A hand counts where it is and where SPARK expects it when the robot gets there. What scene and robot themselves say
-/// about a state of a trajectory is remembered until one of them changes.
+/// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower
+/// the clearance, the controller's guard answers for them. A hand counts where it is and where
+/// SPARK expects it when the robot gets there. What scene and robot themselves say about a state of
+/// a trajectory is remembered until one of them changes.
 class Forecaster {
  public:
   Forecaster(const RobotModel& robot, ObjectLibrary library, CostSettings cost, ForecastSettings settings);
 
+  /// Replaces the scene; verdicts of the old one are dropped when its revision or the base differs.
   void set_scene(const Scene& scene);
+  /// Replaces the people and the predicted motion of their hands.
   void set_people(const HumanState& people);
+  /// Replaces the cost-map layers that the cost ahead is computed from.
   void set_layers(LayersNow layers);
 
-  /// At rest: no contact is reported, clearance and cost of where the robot stands. A trajectory that does not fit the robot is reported as
-  /// a collision now, with the reason.
+  /// At rest: no contact is reported, clearance and cost of where the robot stands. A trajectory
+  /// that does not fit the robot is reported as a collision now, with the reason.
   TrajectoryForecast forecast(const ActiveTrajectory& active);
 
+  /// Number of configurations checked for collisions so far.
   std::uint64_t checks() const { return world_.checks(); }
 
  private:
@@ -53,8 +60,8 @@ class Forecaster {
   std::uint64_t trajectory_{0};  // that memory_ is about
   Attachment attachment_;
   std::vector<std::string> allowed_;
-  Trajectory path_;             // whose times memory_ goes by; it grows while it runs when commands queue
-  Vector others_;               // positions of the axes the trajectory does not move, when memory_ began
+  Trajectory path_;             // gives the times of memory_; grows when commands queue
+  Vector others_;               // axes the trajectory does not move, when memory_ began
   std::vector<Memory> memory_;  // by state of the trajectory
   std::vector<CollisionVerdict> contacts_;
   MotionState3 sample_;
@@ -71,7 +78,7 @@ class Forecaster {
   bool rest_known_{false};
 };
 
-/// Judges the states of a query in order. `clearance` is over the free ones.
+/// Checks the states of a query in order. `clearance` is over the free ones.
 StateVerdict judge(const RobotModel& robot, CollisionWorld& world, const StateQuery& query);
 
 }  // namespace handsel::collision_checker

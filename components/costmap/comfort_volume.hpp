@@ -1,4 +1,5 @@
-// The reachable volume of one arm and its comfort, computed once for a body size and moved with the person (chapter section 4.1.2).
+// The reachable volume of one arm and its comfort, computed once for a body size and moved with the
+// person (chapter section 4.1.2).
 #pragma once
 
 #include <vector>
@@ -14,8 +15,8 @@ class ComfortVolume {
 
   /// Made for an arm whose lengths differ by less than `tolerance` [m] from these.
   bool suits(const ArmSize& arm, double tolerance) const;
-  /// Comfort cost at p from the shoulder along (forward, outward, up) of the torso [m], interpolated; 1 where most of the neighbouring
-  /// points of the volume are out of reach.
+  /// Comfort cost at p from the shoulder along (forward, outward, up) of the torso [m],
+  /// interpolated; 1 where most of the neighbouring points of the volume are out of reach.
   double cost(const Vector3& p_arm) const;
 
  private:

@@ -1,5 +1,5 @@
-// A row of the cost map's layers at once. Plain single precision, no Eigen: the same source for every register width, chosen when the
-// program runs. Nothing here allocates or throws.
+// A row of the cost map's layers at once. Plain single precision, no Eigen: the same source for
+// every register width, chosen when the program runs. Nothing here allocates or throws.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@ struct RowPerson {
   float w_safety, w_visibility, w_comfort;  ///< their sum is 1
 };
 
-/// Points (i * step, y, z), i < n <= kLongestRow. `comfort` is read (255 counts as cost 1), the others are written as cost * 254.
+/// Points (i * step, y, z), i < n <= kLongestRow. `comfort` is read (255 counts as cost 1), the
+/// others are written as cost * 254.
 using FillRow = void (*)(const RowPerson& person, float y, float z, float step, int n, const std::uint8_t* comfort, std::uint8_t* safety,
                          std::uint8_t* visibility, std::uint8_t* total) noexcept;
 

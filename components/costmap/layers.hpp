@@ -1,5 +1,5 @@
-// The cost map of one person: safety, visibility, the arm's comfort validated against the furniture, and their weighted sum over one grid
-// (chapter section 4.1.2). Pure.
+// The cost map of one person: safety, visibility, the arm's comfort validated against the
+// furniture, and their weighted sum over one grid (chapter section 4.1.2). Pure.
 #pragma once
 
 #include <array>
@@ -13,11 +13,12 @@
 
 namespace handsel::costmap {
 
+/// Grid and cost functions of a cost map.
 struct MapSettings {
   double resolution{0.025};  ///< edge of a cell [m]
   double reach{1.0};         ///< half edge of the grid around the middle of the shoulders [m]
   double clearance{0.04};    ///< points nearer than this to a box are no place to exchange [m]
-  CostSettings cost;
+  CostSettings cost;         ///< of the human-aware cost functions, with the weights of the layers
 };
 
 using Layers = std::array<Costmap, std::size(kOwnLayers)>;  ///< in the order of kOwnLayers
@@ -26,9 +27,10 @@ using Layers = std::array<Costmap, std::size(kOwnLayers)>;  ///< in the order of
 class MapMaker {
  public:
   explicit MapMaker(const MapSettings& settings) : settings_(settings) {}
-  /// Values as in Costmap. "arm_comfort" is 255 out of reach and where a ReachCheck says that furniture is in the way; "total" counts such
-  /// points as cost 1 of the arm; the other two are never 255. The grid is aligned with the world, its points lie on multiples of the
-  /// resolution. Valid until the next call.
+  /// Values as in Costmap. "arm_comfort" is 255 out of reach and where a ReachCheck says that
+  /// furniture is in the way; "total" counts such points as cost 1 of the arm; the other two are
+  /// never 255. The grid is aligned with the world, its points lie on multiples of the resolution.
+  /// Valid until the next call.
   const Layers& make(const Person& person, const std::vector<SceneBox>& boxes);
 
  private:
@@ -45,7 +47,8 @@ class MapMaker {
 class Watch {
  public:
   Watch(double moved, double turned) : moved_(moved), turned_(turned) {}
-  /// True when the person is another, moved, turned or looks elsewhere, or the scene's boxes changed since the last time it returned true.
+  /// True when the person is another, moved, turned or looks elsewhere, or the scene's boxes
+  /// changed since the last time it returned true.
   bool changed(const Person& person, const std::vector<SceneBox>& boxes);
 
  private:

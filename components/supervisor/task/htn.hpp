@@ -17,7 +17,7 @@ struct PlannedAction {
   std::string object, human, surface;  ///< of the ActionGoal; empty: none
   int action{-1};                      ///< index in the domain
   std::vector<std::string> args;       ///< of the domain's action
-  double cost{};                       ///< with extra costs, in the state where the action is planned
+  double cost{};                       ///< with extra costs in the state of the plan
   std::string text() const;            ///< "give mug to anna"
   friend bool operator==(const PlannedAction& a, const PlannedAction& b) { return a.action == b.action && a.args == b.args; }
 };
