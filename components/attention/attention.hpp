@@ -1,6 +1,6 @@
 // The attentional system: behaviours on their own clocks, the least speed factor wins, the most
-// active one leads the gaze. Chapter abstract, sections 1 and 2.1. Own method: the chapter gives no
-// formulas (formulas: section 4). Pure: no clock, no I/O.
+// active one leads the gaze. Chapter abstract, sections 1 and 2.1. Own method: the chapter's
+// section on attention is missing (formulas: section 4). Pure: no clock, no I/O.
 #pragma once
 
 #include <memory>

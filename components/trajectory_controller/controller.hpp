@@ -1,5 +1,6 @@
-// Executes soft trajectories, hand commands and gaze; slows, holds and stops by the guard. Every set-point obeys the guard limits.
-// Chapter section 2 (react at the right level), architecture section 6. Pure: no clock, no I/O; step() uses no heap and never throws.
+// Executes jerk-limited trajectories, hand commands and gaze; slows, holds and stops by the guard.
+// Every set-point obeys the guard limits. Chapter section 2 (react at the right level),
+// architecture section 6. Pure: no clock, no I/O; step() uses no heap and never throws.
 #pragma once
 
 #include <array>
@@ -29,88 +30,115 @@
 
 namespace handsel::trajectory_controller {
 
+/// Settings of the controller and of its parts.
 struct ControllerSettings {
   double period{0.001};               ///< control period [s]
   double attention_lost_factor{0.2};  ///< speed factor while attention is silent
-  double recoil_limit{0.2};           ///< fastest running back along the path, [0, 1]
+  double recoil_limit{0.2};           ///< largest speed factor back along the path, [0, 1]
   double max_command_age{0.5};        ///< older commands are refused [s]
-  double start_tolerance{0.05};       ///< a trajectory may start this far from the set-point; a short motion bridges it [rad]
-  double switch_reach{0.3};           ///< in motion, a trajectory is joined at most this far from where the one before is left [rad]
-  double yield_speed{0.2};            ///< fastest giving way to a push at rest [rad/s]
-  double yield_reach{0.3};            ///< farthest, each axis [rad]
-  double retreat_reach{0.15};         ///< likewise, drawing back from a person at rest, when attention asks for recoil; 0: never [rad]
-  bool dry_run{};                     ///< everything but the output: the robot does not follow, and need not
-  double hand_rejoin{0.25};  ///< a robot side that stands moves its fingers to set-points this near [rad; of a sliding one at its lever]
-  double tracking_tolerance{0.3};  ///< measured beyond this from the set-point (hand left out): Fault [rad]
+  /// A trajectory may start this far from the set-point; a short motion bridges the distance [rad].
+  double start_tolerance{0.05};
+  /// In motion, a trajectory is joined at most this far from the switch point [rad].
+  double switch_reach{0.3};
+  double yield_speed{0.2};  ///< largest speed of complying with a push at rest [rad/s]
+  double yield_reach{0.3};  ///< largest travel of each axis while complying [rad]
+  /// Largest travel of each axis in a retreat from a person at rest, when attention asks for
+  /// recoil; 0: never [rad].
+  double retreat_reach{0.15};
+  bool dry_run{};  ///< no set-point is sent; everything else runs
+  /// A robot side that stands moves its fingers to set-points this near [rad; of a sliding one at
+  /// its lever].
+  double hand_rejoin{0.25};
+  double tracking_tolerance{0.3};  ///< distance of the arm from its set-point: Fault [rad]
   double tracking_time{0.1};       ///< for this long [s]
   double forecast_hold{0.6};       ///< collision forecast within this time: Hold [s]
   double forecast_slow{2.0};       ///< within this time: slower in proportion [s]
-  double cost_from{0.5};           ///< the human-aware cost ahead from which the arm is slower, [0, 1)
+  double cost_from{0.5};           ///< human-aware cost ahead from which the arm is slower, [0, 1)
   double cost_factor{0.4};         ///< speed factor at a cost of 1, (0, 1]
   double head_dead_band{0.03};     ///< the head turns only for more than this [rad]
-  double look_ahead{0.15};         ///< the guard also judges the path this much later,
-  double look_far_ahead{0.45};     ///< and this much: about the time of a stop [s]
+  double look_ahead{0.15};         ///< the guard also checks the path this much later [s]
+  double look_far_ahead{0.45};     ///< and this much later: about the time of a stop [s]
   int late_limit{5};               ///< late cycles in a row: Hold
-  std::vector<Wall> walls;         ///< that moving links never pass: virtual walls and the sides of the workspace
-  TimeoutSettings timeouts;
-  GuardSettings guard;
-  StopProofSettings proof;
-  ViewSettings view;
-  HandSettings hand;
-  ContactSettings contact;
+  std::vector<Wall> walls;         ///< never passed: virtual walls and the sides of the workspace
+  TimeoutSettings timeouts;        ///< of the inputs
+  GuardSettings guard;             ///< speed and separation
+  StopProofSettings proof;         ///< proof of a harmless stop
+  ViewSettings view;               ///< observation of the space of a stop
+  HandSettings hand;               ///< of every hand
+  ContactSettings contact;         ///< detection of contact of the arm
 };
 
-/// What of the status must be told at once when it changes.
+/// The part of the status that must be reported at once when it changes.
 struct StatusKey {
-  Mode mode{};
-  std::uint64_t epoch{}, trajectory{}, hand_command{};
-  MotionState motion{};
-  std::uint64_t hands{};  ///< HandState of each hand, a byte each
+  Mode mode{};                                          ///< of the mode machine
+  std::uint64_t epoch{}, trajectory{}, hand_command{};  ///< of the Go; ids of the last commands
+  MotionState motion{};                                 ///< of the last trajectory command
+  std::uint64_t hands{};                                ///< HandState of each hand, a byte each
   bool operator==(const StatusKey&) const = default;
 };
 
 class Controller {
  public:
-  /// Throws ConfigError naming the field. Robot groups "hand" and "head" may be missing; all other axes are moved by trajectories.
+  /// Throws ConfigError naming the field. Robot groups "hand" and "head" may be missing; all other
+  /// axes are moved by trajectories.
   Controller(const ControllerSettings& settings, std::shared_ptr<const RobotModel> robot);
 
-  /// Empty when accepted, else why not, one sentence; then what runs goes on. While the arm moves the path is left for it at once, or, with
-  /// switch_at, when the command accepted before has run so far; commands wait in line. A command without axes stops the running trajectory
-  /// softly, and ends those that wait. `age`: of the command at arrival.
+  /// Empty when accepted, else why not, one sentence; then the running motion continues. While the
+  /// arm moves, the switch point is now or, with switch_at, that time of the command accepted
+  /// before; commands wait in line. A command without axes stops the running trajectory
+  /// jerk-limited, and ends those that wait. `age`: of the command at arrival.
   std::string accept(const TrajectoryCommand& command, Duration age, TimePoint now);
+  /// Empty when accepted or accepted before, else why not, one sentence. `age`: of the command at
+  /// arrival.
   std::string accept(const HandCommand& command, Duration age, TimePoint now);
 
   // Samples: `sampled` is the arrival minus the age at arrival.
-  /// `age`: of the sample when it arrived. `new_writer`: another process writes it than the one before; set-points begin at its posture.
+  /// `age`: of the sample when it arrived. `new_writer`: another process writes it than the one
+  /// before; set-points begin at the configuration reported by that process. Samples of another
+  /// robot or with invalid positions are ignored.
   void on(const RobotState& state, TimePoint sampled, Duration age = {}, bool new_writer = false);
+  /// Replaces people and views.
   void on(const HumanState& people, TimePoint sampled);
+  /// Takes a Go if GoGate lets it pass; an older epoch does not count as a sign of life.
   void on(const Go& go, TimePoint sampled);
+  /// Notes whether motion waits for a person, and why.
   void on(const SafetyState& safety);
+  /// Replaces the forecast, which counts only for the trajectory that runs.
   void on(const TrajectoryForecast& forecast, TimePoint sampled);
+  /// Replaces the advice; a new gaze target turns the head where that is free of collisions.
   void on(const AttentionAdvice& advice, TimePoint sampled);
+  /// Replaces the status of the action; an engaged handover exempts its partner from separation.
   void on(const ActionStatus& action, TimePoint sampled);
 
-  /// Advances by one period, whatever time has passed. `late`: the cycle began more than a period after it was due.
-  /// False until the robot's posture is known: nothing may be sent. So it is after a sleep of a tenth of a second: the robot side has
-  /// stopped by itself in the meantime, and what was sent last counts no longer.
+  /// Advances by one period, whatever time has passed. `late`: the cycle began more than a period
+  /// after it was due. False until the robot's configuration is known: nothing may be sent. So it
+  /// is after a sleep of a tenth of a second: the robot side has stopped by itself in the meantime,
+  /// and what was sent last counts no longer.
   bool step(TimePoint now, bool late) noexcept;
 
   const MotionState3& set_point() const { return set_point_; }  ///< all axes
-  const Vector& effort() const { return effort_; }              ///< likewise, what the motors give besides following it [Nm]
+  /// Efforts of the motors of all axes beside those of following the set-point [Nm].
+  const Vector& effort() const { return effort_; }
   /// Mass of what the first hand holds; 0: nothing or unknown [kg].
   double payload() const { return hands_.empty() ? 0.0 : hands_.front().payload; }
-  const Vector& other_payloads() const { return other_payloads_; }  ///< likewise of the others, in the order of hands_of()
+  /// Mass of what each other hand holds, in the order of hands_of() [kg].
+  const Vector& other_payloads() const { return other_payloads_; }
+  /// Mode after the last step.
   Mode mode() const { return verdict_.mode; }
+  /// Result of the guard: distances now, and the strictest limits of now and of the times ahead.
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
-  /// Set-points that had no checked stop behind them, and were replaced by the next one of the checked stop.
+  /// Set-points that had no checked stop behind them, and were replaced by the next one of the
+  /// checked stop.
   std::uint64_t unproven_set_points() const { return unproven_; }
+  /// Speed factor on the path, in [-1, 1]; 0 when no path runs.
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }
+  /// Returns the key of the current status.
   StatusKey status_key() const;
   ExecutionStatus status() const;   ///< stamp left to the publisher
   ActiveTrajectory active() const;  ///< stamp left to the publisher
 
  private:
-  static constexpr int kYieldEvery = 10;  // cycles between looks at how to give way
+  static constexpr int kYieldEvery = 10;  // cycles between choices of how to comply
   enum class Part : char { arm, hand, head };
   enum class Arm { standing, running, stopping };
   struct Seen {
@@ -226,11 +254,11 @@ class Controller {
   bool new_state_{};
   Crowd crowd_;
   std::vector<PersonPoints> points_;
-  std::string exchanging_;  // person whose forearms and hands are excepted, until clear
+  std::string exchanging_;  // person exempt from separation (forearms, hands), until clear
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
-  bool adopted_{};  // the measured posture, since the robot side last followed
+  bool adopted_{};  // the measured configuration, since the robot side last followed
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};
   MotionState3 set_point_, next_;
@@ -250,7 +278,7 @@ class Controller {
   std::vector<AxisMover> movers_;  // one a robot axis; those of the hand unused
   std::uint64_t accepted_trajectory_{}, refused_trajectory_{};
   MotionState motion_{MotionState::idle};  // of what was accepted last
-  bool refused_{};                         // is told instead
+  bool refused_{};                         // is reported instead
   int refused_for_{};                      // cycles still; 0: until something is accepted
 
   // Hands and head.
@@ -260,18 +288,18 @@ class Controller {
   std::vector<double> head_target_;
   bool head_wanted_{}, head_paused_{};
 
-  // Judging.
+  // Supervision.
   ContactWatch contact_;
   Contact touch_{Contact::none};
   bool yielding_{}, yield_waits_{}, retreating_{};
-  std::uint32_t rest_demands_{};  // of the last cycle, to be answered by rest before giving way
+  std::uint32_t rest_demands_{};  // of the last cycle, to be answered by rest before complying
   double retreat_share_{};        // of its speed that the guard allows
-  Vector yield_from_, away_;      // away_: motion of the axes away from the nearest person, largest 1
+  Vector yield_from_, away_;      // away_: motion away from the nearest person, largest 1
   RobotReference reference_;
   ModeMachine modes_;
   ModeVerdict verdict_;
   GuardVerdict guard_verdict_, verdict_now_, verdict_near_, verdict_far_, nearest_;
-  int turn_{};  // of judging these
+  int turn_{};  // of checking these
   MotionState3 path_;
   Vector full_velocity_, full_acceleration_, posture_;
   std::vector<Pose> links_;
@@ -280,9 +308,12 @@ class Controller {
   StopProof proof_;
   ReachLimit reach_limit_;
   FingerLimit finger_limit_;
-  Vector finger_speeds_;  // until a stop begins, all axes, >= 0; 0 of those that are no fingers [rad/s, m/s]
+  // Of the fingers until a stop begins, all axes, >= 0; 0 of those that are no fingers [rad/s,
+  // m/s].
+  Vector finger_speeds_;
   StopSpace stop_space_;
-  bool blind_{};              // where the arm can be within the stop of the last set-point no live source looks
+  // No live source observes where the arm can be within the stop of the last set-point.
+  bool blind_{};
   std::uint64_t unproven_{};  // set-points replaced by those of a checked stop so far
   int unproven_shown_{};      // cycles for which the cause is still shown
   int rejoins_in_vain_{};     // how often, lately, the path was left again for want of a proof

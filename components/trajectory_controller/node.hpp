@@ -37,8 +37,9 @@ class Node {
   JointCommand command_;
   StatusKey told_;
   TimePoint next_active_{}, next_status_{}, next_reason_{};
-  bool watched_{};  // a source of people has spoken: until then the process waits for one like for any other, and is ready
-  bool blind_{};    // the health of this process says so
+  // A source of people has published. Before that, its absence does not make the process degraded.
+  bool watched_{};
+  bool blind_{};  // the health of this process says so
 };
 
 }  // namespace handsel::trajectory_controller

@@ -1,4 +1,5 @@
-// One axis from wherever it is to a target in minimum time, changeable and stoppable at any moment. No heap, noexcept.
+// One axis from wherever it is to a target in minimum time, changeable and stoppable at any moment.
+// No heap, noexcept.
 #pragma once
 
 #include "common/trajectory/min_time.hpp"
@@ -11,15 +12,18 @@ class AxisMover {
   void reset(double position) noexcept;
   /// In motion at `state`; comes to rest as fast as it can.
   void take_over(const AxisState& state, const AxisLimits& limits) noexcept;
-  /// Minimum-time motion from the present state to rest at `target`. Where `limits` would let the present state go on to a velocity beyond
-  /// theirs, acceleration and jerk may be as large as `most`.
+  /// Minimum-time motion from the present state to rest at `target`. Where `limits` would let the
+  /// present state continue to a velocity beyond theirs, acceleration and jerk may be as large as
+  /// `most`.
   void go_to(double target, const AxisLimits& limits, const AxisLimits& most) noexcept;
   /// Minimum-time stop from the present state.
   void stop(const AxisLimits& limits) noexcept;
   const AxisState& step(double dt) noexcept;  ///< state dt later
 
+  /// State after the last step() or take-over.
   const AxisState& state() const noexcept { return state_; }
   double target() const noexcept { return target_; }  ///< where it comes to rest
+  /// Returns whether the motion has ended; false while it stands for a moment in between.
   bool at_rest() const noexcept { return segment_ >= profile_.count; }
 
  private:

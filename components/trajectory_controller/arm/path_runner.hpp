@@ -1,5 +1,5 @@
-// Runs along trajectories by the time law (common/trajectory/time_law), goes over from one to the next, and looks at every step before it
-// is taken. No heap in step() and look(), noexcept.
+// Runs along trajectories by time scaling (common/trajectory/time_law), switches from one to the
+// next, and checks every step before it is taken. No heap in step() and look(), noexcept.
 #pragma once
 
 #include <algorithm>
@@ -12,41 +12,55 @@ namespace handsel::trajectory_controller {
 /// What a path may use.
 struct PathLimits {
   KinematicLimits motion;        ///< of its axes: no set-point exceeds them
-  Eigen::VectorXd lower, upper;  ///< positions a connecting motion stays in; where lower >= upper there is no bound
+  Eigen::VectorXd lower, upper;  ///< bounds of connecting motions; none where lower >= upper
 };
 
 class PathRunner {
  public:
   explicit PathRunner(double period) : dt_(period) {}
 
-  /// From rest at its beginning, at once with factor 1. Empty, or why it cannot be run. May allocate.
+  /// From rest at its beginning, at once with factor 1. Empty, or why it cannot be run. May
+  /// allocate.
   std::string start(const Trajectory& trajectory, const PathLimits& limits);
   /// Another factor, in [0, 1], before the first step from rest; elsewhere nothing happens.
   void begin_with(double factor) noexcept { law_.begin_with(factor); }
-  /// Leaves the present path at `leave` on its time() [s] (at once when that is past) for `next`, over the fastest connecting motion that
-  /// joins it no farther than `reach` [rad] from there in any axis, at its beginning when the present path is run to its end; the factor is
-  /// kept. Empty, or why not; then nothing has changed. May allocate.
+  /// Switches to `next` at the switch point `leave` on time() [s] (at once when that is past), over
+  /// the fastest connecting motion that joins it no farther than `reach` [rad] from there in any
+  /// axis, at its beginning when the present path is run to its end; the factor is kept. Empty, or
+  /// why not; then nothing has changed. May allocate.
   std::string switch_at(double leave, const Trajectory& next, double reach);
   /// The same from any state of the axes, whatever ran before.
   std::string start_from(const MotionState3& state, const Trajectory& next, double reach);
-  /// From rest a little beside the path back onto it, a little further on. False: it cannot be joined again. No heap.
+  /// From rest a little beside the path back onto it, a little further on. False: it cannot be
+  /// joined again. No heap.
   bool rejoin(const MotionState3& state) noexcept;
   /// By how much rejoin() has moved the times of the path [s].
   double rejoin_shift() const noexcept { return shift_; }
-  /// One period later, the factor led toward `wanted` in [-1, 1]. False when the step would break a limit: the caller stops from state().
+  /// One period later, the factor led toward `wanted` in [-1, 1]. False when the step would break a
+  /// limit: the caller stops from state().
   bool step(double wanted) noexcept;
 
   /// Position, velocity and acceleration of the path at `time` [s] at full speed.
   void look(double time, MotionState3& out) noexcept { law_.path().evaluate(time, cursor_, out); }
+  /// Set-point after the last step: position, velocity and acceleration of the axes of the path.
   const MotionState3& state() const noexcept { return state_; }
-  const Trajectory& path() const;                                           ///< all of it, connecting motions included; may allocate
-  double time() const noexcept { return std::max(0.0, law_.time()); }       ///< along the path [s]
-  double offset() const noexcept { return law_.time() - law_.own_time(); }  ///< time() of the beginning of what was given last [s]
-  double left_at() const noexcept { return law_.left_at(); }                ///< time() at which the path before was or will be left [s]
-  double factor() const noexcept { return law_.alpha(); }                   ///< alpha
+  /// Whole path, connecting motions included. May allocate.
+  const Trajectory& path() const;
+  /// Time along the path at full speed [s], >= 0.
+  double time() const noexcept { return std::max(0.0, law_.time()); }
+  /// Value of time() at the beginning of the trajectory that was given last [s].
+  double offset() const noexcept { return law_.time() - law_.own_time(); }
+  /// Switch point from the trajectory before, as a value of time() [s].
+  double left_at() const noexcept { return law_.left_at(); }
+  /// Speed factor in force, alpha, in [-1, 1]; negative: back along the path.
+  double factor() const noexcept { return law_.alpha(); }
+  /// Duration of the whole path at full speed [s]; 0 before the first start.
   double duration() const noexcept { return axes() > 0 ? law_.duration() : 0.0; }
+  /// Number of axes of the path; 0 before the first start.
   int axes() const noexcept { return static_cast<int>(state_.position.size()); }
+  /// Returns whether the end of the path is reached; true before the first start.
   bool finished() const noexcept { return finished_; }
+  /// Returns whether the speed factor and its rate are 0, so that no axis moves.
   bool standing() const noexcept { return law_.standing(); }
 
  private:

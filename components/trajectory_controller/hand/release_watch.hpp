@@ -1,6 +1,7 @@
-// When the hand lets go at the exchange, from the force on it (ours). A confident pull loosens the grip, only so far that it still bears
-// the load; a pull that goes on, or a load that is gone because the person bears it, opens the hand; a load that comes back closes it
-// again. Noise, tremor, bumps and false starts do none of this. Pure.
+// When the hand releases its load at the handover, from the force on the hand. Own method: the
+// chapter gives none. A confident pull loosens the grip, only so far that it still bears the load;
+// a pull that continues, or a load that is gone because the person bears it, opens the hand; a load
+// that comes back closes it again. Noise, tremor, bumps and false starts do none of this. Pure.
 #pragma once
 
 #include <cstdint>
@@ -10,27 +11,28 @@
 
 namespace handsel::trajectory_controller {
 
+/// Thresholds and times of ReleaseWatch.
 struct PullSettings {
-  double baseline_time{0.25};    ///< the load's own force is averaged for this long after arming [s]
+  double baseline_time{0.25};    ///< averaging of the load's own force after arming [s]
   double filter_time{0.03};      ///< time constant of the force filter [s]
   double quick_time{0.005};      ///< of the filter that notices the end of a pull or bump [s]
-  double hold_time{0.10};        ///< beyond the threshold for at least this long: confident [s]
-  double impulse{0.4};           ///< and until force times time is this much: a weak pull must last longer [N s]
-  double direction_cosine{0.7};  ///< of the force with its mean direction since the threshold was passed
-  double away_cosine{-0.2};      ///< a force pointing away from the person by more does not count
+  double hold_time{0.10};        ///< a confident pull is beyond the threshold for this long [s]
+  double impulse{0.4};           ///< and has at least this force times time [N s]
+  double direction_cosine{0.7};  ///< of the force with its mean direction
+  double away_cosine{-0.2};      ///< a force pointing away from the person does not count
   double commit_time{0.5};       ///< a pull that has lasted for this long opens the hand [s]
-  double slack_share{0.35};      ///< the person bears the load when the hand feels less than this share of it
+  double slack_share{0.35};      ///< the person bears the load below this fraction of it
   double slack_time{0.15};       ///< and for this long: the hand opens [s]
   double lost_time{0.02};        ///< the load back on the hand for this long: close again [s]
-  double patience{1.0};          ///< loosened for this long with neither: close again [s]
+  double patience{1.0};          ///< timeout when loosened with neither: close again [s]
 };
 
-/// What the hand is to do. Ordered: further down is nearer to letting go.
+/// What the hand is to do. Ordered: later ones are nearer to a release.
 enum class Grip : std::uint8_t { hold, loosen, open };
 
 /// One sample of what is felt.
 struct Felt {
-  Vector3 force{Vector3::Zero()};   ///< on the hand and its load, gravity of the hand removed, world axes [N]
+  Vector3 force{Vector3::Zero()};   ///< on hand and load without the weight of the hand, world [N]
   Vector3 toward{Vector3::Zero()};  ///< unit vector to the person, zero if unknown
   bool person_near{};               ///< a person's hand is where it can carry the load
   bool pressing{};                  ///< the fingers press on the load
@@ -40,22 +42,29 @@ class ReleaseWatch {
  public:
   explicit ReleaseWatch(const PullSettings& settings) : settings_(settings) {}
 
-  /// Starts over: the load's own force is measured from the samples that follow. threshold: least pull that counts [N].
+  /// Starts over: the load's own force is measured from the samples that follow. threshold: least
+  /// pull that counts [N].
   void arm(double threshold) noexcept;
+  /// Ends the watch; grip() keeps its value until arm().
   void disarm() noexcept { armed_ = false; }
-  /// One sample of the load's own force while no person's hand is near, before arming. Somebody who has hold of the load already when the
-  /// watch is armed is told apart from the load by it.
+  /// One sample of the load's own force while no person's hand is near, before arming. With this
+  /// force, a person who holds the load already when the watch is armed is distinguished from the
+  /// load.
   void bear(const Vector3& force, TimePoint now) noexcept;
   /// The hand takes hold of something else.
   void forget_load() noexcept { load_known_ = false; }
+  /// Returns whether arm() was called last, not disarm().
   bool armed() const { return armed_; }
 
+  /// Takes one sample and returns what the hand is to do. Unarmed, or with a force that is not
+  /// finite, nothing changes.
   Grip update(const Felt& felt, TimePoint now) noexcept;
+  /// Result of the last update(); hold after arm().
   Grip grip() const { return grip_; }
 
   double pull() const { return pull_; }               ///< filtered force beyond the load's own [N]
-  double load_share() const { return share_; }        ///< of the load's own force that the hand still feels, 1: all
-  double threshold() const { return threshold_; }     ///< [N]
+  double load_share() const { return share_; }        ///< fraction of the load still felt, 1: all
+  double threshold() const { return threshold_; }     ///< smallest pull that counts [N]
   std::uint64_t regrips() const { return regrips_; }  ///< times the load came back
 
  private:

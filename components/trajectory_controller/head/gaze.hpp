@@ -9,25 +9,28 @@
 
 namespace handsel::trajectory_controller {
 
-/// Positions of the axes of `head` (inside their bounds) that bring the x axis of the robot's gaze link nearest to pointing at
-/// `p_root` (root frame [m]), the other axes as in `q`. Returns the present ones when the robot has no gaze link.
+/// Positions of the axes of `head` (inside their bounds) that bring the x axis of the robot's gaze
+/// link nearest to pointing at `p_root` (root frame [m]), the other axes as in `q`. Returns the
+/// present ones when the robot has no gaze link.
 std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q, const Vector3& p_root);
 
-/// Keeps a head that turns off the arms and hands, which are planned around a head that stands. By capsules, and only pairs of links that
-/// are tested against each other at all. Ours.
+/// Keeps a head that turns off the arms and hands, which are planned around a head that stands. By
+/// capsules, and only pairs of links that are tested against each other at all. Own method: the
+/// chapter does not treat the motion of the head.
 class HeadRoom {
  public:
   explicit HeadRoom(const RobotModel& robot);
   /// Least distance between the head and what the other axes move [m]; +inf without one of both.
   double clearance(const Vector& q);
-  /// On the way of its axes from q to `target`, does the head stay 2 cm off, or at least as far off as it is?
+  /// Returns whether the head keeps a distance of 2 cm, or the one it has if smaller, while its
+  /// axes move from q to `target`.
   bool lets_turn(const Vector& q, const std::vector<double>& target);
 
  private:
   const RobotModel& robot_;
   const Group* head_;
   std::vector<LinkCapsule> capsules_;
-  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of capsules_, one of the head and one of the rest
+  std::vector<std::pair<std::size_t, std::size_t>> pairs_;  // of capsules_: head, rest
   std::vector<Pose> T_root_link_;
 };
 

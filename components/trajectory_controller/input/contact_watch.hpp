@@ -1,5 +1,6 @@
-// Contact of the arm with something unforeseen, from the torques its model does not explain. A steady push never becomes usual: a clamp
-// stays a contact until it is freed. Own method. Pure, no heap after construction.
+// Contact of the arm with something unforeseen, from the torques its model does not explain. A
+// steady push never becomes usual: a clamp stays a contact until it is freed. Own method. Pure, no
+// heap after construction.
 #pragma once
 
 #include <vector>
@@ -10,13 +11,13 @@ namespace handsel::trajectory_controller {
 
 struct ContactSettings {
   double torque{25.0};           ///< beyond what is usual at the moment [Nm]
-  double exchange_torque{50.0};  ///< the same while an object is exchanged, where a person's pull is wanted [Nm]
+  double exchange_torque{50.0};  ///< the same during a handover, where a pull is expected [Nm]
   double time{0.02};             ///< for this long [s]
-  double usual_time{0.5};        ///< time constant of what is usual: load, friction, errors of the model [s]
+  double usual_time{0.5};        ///< time constant of the usual torque: load, friction, model [s]
   double follow_torque{5.0};     ///< what is usual follows only torques this near to it [Nm]
   double max_usual{15.0};        ///< and is never larger than this [Nm]
-  double yield_torque{15.0};     ///< at rest, an axis pushed by more than this beyond the usual gives way [Nm]
-  double yield_time{3.0};        ///< a push below `torque` that lasts longer is taken for a load [s]
+  double yield_torque{15.0};     ///< at rest, an axis pushed by more than this complies [Nm]
+  double yield_time{3.0};        ///< a longer push below `torque` is taken for a load [s]
   double clamp_time{1.0};        ///< a contact that lasts longer is a clamp [s]
 };
 
@@ -28,12 +29,14 @@ class ContactWatch {
   ContactWatch(const ContactSettings& settings, std::vector<int> axes);
   /// Starts over from the next sample, unless there is a contact: its cause would become usual.
   void reset() noexcept { seen_ = contact_ != Contact::none; }
-  /// Takes one sample of the external torques of all axes [Nm], `dt` [s] after the one before, and returns whether there is contact. A
-  /// robot that does not measure them (empty vector) has none. `resting`: the arm does not move by itself; `exchanging`: an object is
-  /// exchanged.
+  /// Takes one sample of the external torques of all axes [Nm], `dt` [s] after the one before, and
+  /// returns whether there is contact. A robot that does not measure them (empty vector) has none.
+  /// `resting`: the arm does not move by itself; `exchanging`: during a handover.
   Contact update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool exchanging) noexcept;
-  /// Returns the push on the i-th watched axis, for giving way: beyond the usual before it began, 0 within yield_torque [Nm].
+  /// Returns the push on the i-th watched axis, for complying: beyond the usual before it began, 0
+  /// within yield_torque [Nm].
   double push(std::size_t i) const noexcept { return pushes_[i]; }
+  /// Returns whether an axis was pushed by more than yield_torque in the last sample.
   bool pushed() const noexcept { return pushed_for_ > 0.0; }
   int axis() const noexcept { return axis_; }         ///< where it was felt most
   double torque() const noexcept { return torque_; }  ///< beyond the usual, there [Nm]

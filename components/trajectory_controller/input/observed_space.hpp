@@ -1,4 +1,5 @@
-// What live sources of people observe: the union of their boxes. Pure, no heap after construction, noexcept.
+// What live sources of people observe: the union of their boxes. Pure, no heap after construction,
+// noexcept.
 #pragma once
 
 #include <array>
@@ -10,10 +11,11 @@ namespace handsel::trajectory_controller {
 
 /// Axis-aligned, world [m].
 struct Box {
-  Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};
+  Vector3 low{Vector3::Zero()}, high{Vector3::Zero()};  ///< opposite corners, low <= high
 };
 
-/// Only the boxes count: what a robot, furniture or a body hides from a source inside its box counts as observed.
+/// Only the boxes count: what a robot, furniture or a body hides from a source inside its box
+/// counts as observed.
 class ObservedSpace {
  public:
   /// `max_age`: a view that is older does not count [s].
@@ -25,7 +27,8 @@ class ObservedSpace {
   bool any(double since) const noexcept;
   /// Whether one view contains the whole box.
   bool one_contains(const Box& box, double since) const noexcept;
-  /// Whether the views together contain the whole box; false as well when that is too much work to find out.
+  /// Whether the views together contain the whole box; false as well when that is too much work to
+  /// find out.
   bool contains(const Box& box, double since) const noexcept;
 
  private:

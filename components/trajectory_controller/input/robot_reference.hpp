@@ -8,8 +8,9 @@
 
 namespace handsel::trajectory_controller {
 
-/// Tells whether set-points move the robot: they do not while its reference rests elsewhere. A robot
-/// side can stop without reporting it, so the reference decides, not the mode alone. Own method.
+/// Tells whether set-points move the robot: they do not while its reference rests elsewhere. A
+/// robot side can stop without reporting it, so the reference decides, not the mode alone. Own
+/// method.
 class RobotReference {
  public:
   enum class State : std::uint8_t {
@@ -26,11 +27,12 @@ class RobotReference {
   void update(const RobotState& state, const Vector& set_point, bool follows) noexcept;
   /// Forgets what was seen: the newest state is too old.
   void forget() noexcept { state_ = State::unknown; }
+  /// Result of the last evaluation.
   State state() const noexcept { return state_; }
   /// Returns whether the reference is reported and the measured arm may rest there.
   bool reported(const RobotState& state) const noexcept;
 
-  static constexpr double kBent = 0.06;  ///< [rad] load and touch bend a robot at rest less than this
+  static constexpr double kBent = 0.06;  ///< [rad] largest bending by load and touch at rest
   static constexpr int kInterval = 20;   ///< [cycles]
 
  private:

@@ -1,5 +1,6 @@
-// The last look at a set-point before it leaves: finite, inside the guard limits, continuous with the one before, and still stoppable
-// inside the limits (ours). Pure, no heap.
+// The last check of a set-point before it is sent: finite, inside the guard limits, continuous with
+// the one before, and still stoppable inside the limits. Own method: the chapter gives none. Pure,
+// no heap.
 #pragma once
 
 #include "common/trajectory/trajectory.hpp"
@@ -11,12 +12,13 @@ inline constexpr double kLimitTolerance = 1e-6;
 
 /// Largest |v|/V, |a|/A, |j|/J sent so far.
 struct LimitShares {
-  double velocity{}, acceleration{}, jerk{};
+  double velocity{}, acceleration{}, jerk{};  ///< largest ratio over all axes; 1: at the limit
 };
 
 /// Whether axis `i` may go from `previous` to `next` within `dt` [s].
 bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::Index i, const KinematicLimits& guard, double dt) noexcept;
 
+/// Raises the ratios by those of the step from `previous` to `next`, which takes `dt` [s].
 void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt, LimitShares& shares) noexcept;
 
 }  // namespace handsel::trajectory_controller

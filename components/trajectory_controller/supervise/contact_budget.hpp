@@ -1,4 +1,5 @@
-// How fast a link may touch a body part: limits of force and energy at a contact (ISO 10218-2:2025, which has taken in ISO/TS 15066). Pure.
+// How fast a link may touch a body part: limits of force and energy at a contact (ISO 10218-2:2025,
+// which has taken in ISO/TS 15066). Pure.
 #pragma once
 
 #include <array>
@@ -25,11 +26,13 @@ struct ContactLimit {
   double energy() const noexcept { return force * force / (2.0 * stiffness); }
 };
 
-/// Returns the mass that stands for the collision of the region with a robot of effective mass `robot_mass` [kg].
+/// Returns the mass that stands for the collision of the region with a robot of effective mass
+/// `robot_mass` [kg].
 inline double reduced_mass(const ContactLimit& limit, double robot_mass) noexcept { return 1.0 / (1.0 / limit.mass + 1.0 / robot_mass); }
 
-/// Returns the largest speed at which a robot of effective mass `robot_mass` [kg] may touch the region without exceeding force and energy
-/// [m/s] (ISO/TS 15066:2016 equation A.4: E = F^2 / 2k = mu v^2 / 2 with the reduced mass mu).
+/// Returns the largest speed at which a robot of effective mass `robot_mass` [kg] may touch the
+/// region without exceeding force and energy [m/s] (ISO/TS 15066:2016 equation A.4: E = F^2 / 2k =
+/// mu v^2 / 2 with the reduced mass mu).
 double max_contact_speed(const ContactLimit& limit, double robot_mass) noexcept;
 
 using ContactLimits = std::array<ContactLimit, kBodyRegions>;

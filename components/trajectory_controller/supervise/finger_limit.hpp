@@ -1,5 +1,5 @@
-// How fast fingers may move where a person can reach the hand: the limit that keeps the stop proof from having to intervene. Pure, no heap
-// after construction, noexcept. Own method.
+// How fast fingers may move where a person can reach the hand: the limit that keeps the stop proof
+// from having to intervene. Pure, no heap after construction, noexcept. Own method.
 #pragma once
 
 #include <vector>
@@ -15,9 +15,10 @@ class FingerLimit {
   FingerLimit(const FingerLimit&) = delete;
   FingerLimit& operator=(const FingerLimit&) = delete;
 
-  /// Returns the largest fraction in (0, 1] of the fingers' comfort velocities at which the contact of a finger uses at most
-  /// StopProofSettings::finger_ratio of the contact speed of each part of a person that can reach the hand before the fingers have stopped.
-  /// `position`: all axes; `age`: of the human data [s]; `payload`: mass held [kg].
+  /// Returns the largest fraction in (0, 1] of the fingers' comfort velocities at which the contact
+  /// of a finger uses at most StopProofSettings::finger_ratio of the contact speed of each part of
+  /// a person that can reach the hand before the fingers have stopped. `position`: all axes; `age`:
+  /// of the human data [s]; `payload`: mass held [kg].
   double factor(const Vector& position, const Pose& T_world_base, double age, double payload, const Crowd& people) noexcept;
 
  private:

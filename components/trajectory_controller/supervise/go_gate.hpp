@@ -1,4 +1,5 @@
-// Which Go is heard: one issued from the durable safety state, not from an older one, and newer than this controller's start. Pure.
+// Which Go is accepted: one issued from the durable safety state, not from an older one, and newer
+// than this controller's start. Pure.
 #pragma once
 
 #include <cstdint>
@@ -13,8 +14,8 @@ namespace handsel::trajectory_controller {
 enum class GoRefusal : std::uint8_t {
   none,
   no_state,     ///< it was issued from no safety state (revision 0)
-  older_state,  ///< its supervisor knows an older safety state than one heard before
-  older_epoch,  ///< one with a newer epoch has been heard
+  older_state,  ///< its supervisor knows an older safety state than one received before
+  older_epoch,  ///< one with a newer epoch has been received
 };
 
 /// Returns one sentence; empty for none.
@@ -22,19 +23,24 @@ const char* text_of(GoRefusal refusal);
 
 class GoGate {
  public:
-  /// Takes a Go, or says why not; one from no state or an older one withdraws the permission. The first one heard moves nothing, however it
-  /// was meant: it may have been issued before this process started.
+  /// Takes a Go, or says why not; one from no state or an older one withdraws the permission. The
+  /// first one received permits no motion, whatever its content: it may have been issued before
+  /// this process started.
   GoRefusal hear(const Go& go) noexcept;
+  /// Notes whether the safety state is paused, at fault or waiting for a person.
   void hear(const SafetyState& state) noexcept;
-  /// Notes a protective, user or emergency stop: from then on only a Go from a newer state permits motion, as a person makes it.
+  /// Notes a protective, user or emergency stop: from then on only a Go from a newer state permits
+  /// motion, as a person makes it.
   void hear(DriveMode mode) noexcept;
 
   /// Returns whether the Go in force permits motion.
   bool allowed() const noexcept { return allowed_ && !waits_; }
   /// Returns whether motion waits for a person.
   bool awaits_person() const noexcept;
-  /// Returns the epoch that a Go must exceed because it was heard first; the largest number before any was heard.
+  /// Returns the epoch that a Go must exceed because it was received first; the largest number
+  /// before any was received.
   std::uint64_t first_epoch() const noexcept { return first_epoch_; }
+  /// Result of the last hear() of a Go; none before the first.
   GoRefusal last_refusal() const noexcept { return last_refusal_; }
 
  private:

@@ -1,6 +1,7 @@
-// The guard: decides last how fast the running trajectory may go on, from the robot's motion, the people around it and the walls it must
-// not pass. One pure function, no state. Speed and separation after ISO/TS 15066 with the jerk-limited minimum-time stop (ours where it
-// differs).
+// The guard: decides last how fast the running trajectory may continue, from the robot's motion,
+// the people around it and the walls it must not pass. One pure function, no state. Speed and
+// separation after ISO/TS 15066 with the jerk-limited minimum-time stop. Own method: the standard
+// assumes a constant deceleration.
 #pragma once
 
 #include <vector>
@@ -11,6 +12,7 @@
 
 namespace handsel::trajectory_controller {
 
+/// Parameters of speed and separation monitoring, named as in ISO/TS 15066.
 struct GuardSettings {
   double speed_floor{0.10};        ///< least v_h assumed of a tracked person [m/s]
   double speed_uncertainty{0.05};  ///< added to the measured directed speed [m/s]
@@ -22,7 +24,7 @@ struct GuardSettings {
   double uncertainty_human{0.03};  ///< Z_d [m]
   double uncertainty_robot{0.01};  ///< Z_r [m]
   double uncovered_factor{0.3};    ///< speed factor while "nobody" is not a fact
-  double exchange_speed{0.25};     ///< largest speed toward an excepted forearm or hand [m/s]
+  double exchange_speed{0.25};     ///< largest speed toward an exempt forearm or hand [m/s]
   double exchange_range{0.30};     ///< within this distance [m]
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
 };
@@ -33,26 +35,31 @@ struct Wall {
   double offset{};                   ///< [m]
 };
 
+/// Result of guard().
 struct GuardVerdict {
-  double forward{1.0};                                            ///< largest allowed time-law factor, [0, 1]
-  double backward{-1.0};                                          ///< least allowed (running back), [-1, 0]
-  double distance{1e9};                                           ///< to the nearest person, excepted parts left out [m]
-  double needed{};                                                ///< distance the rule asks for there at the present factor [m]
-  int link{-1};                                                   ///< of the robot, that is nearest; -1: nobody
-  Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< on the axes of the two nearest capsules, world [m]
-  double view{1.0};                                               ///< largest factor at which a stop stays where a live source looks
-  bool separation{};                                              ///< the separation rule made it less than 1
-  bool wall{};                                                    ///< a wall made it less than 1
-  bool uncovered{};                                               ///< nobody seen, but nobody is not a fact
-  bool too_near{};                                                ///< nearer than the stop needs at the present factor, still closing in
-  bool exchange_clear{true};                                      ///< no excepted part within exchange_range
+  double forward{1.0};    ///< largest speed factor allowed, [0, 1]
+  double backward{-1.0};  ///< smallest speed factor allowed (back along the path), [-1, 0]
+  double distance{1e9};   ///< to the nearest person, without exempt parts [m]
+  double needed{};        ///< protective separation distance there at the present factor [m]
+ int link{-1};            ///< of the robot, nearest to a person; -1: nobody is there
+  /// Points on the axes of the two nearest capsules, world [m].
+  Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};
+  double view{1.0};           ///< largest factor at which a stop stays inside the observed space
+  bool separation{};          ///< speed and separation monitoring made `forward` less than 1
+  bool wall{};                ///< a wall made `forward` less than 1
+  bool uncovered{};           ///< nobody is seen, but that nobody is there is not certain
+  bool too_near{};            ///< nearer than `needed`, and still closing in
+  bool exchange_clear{true};  ///< no exempt part within exchange_range
 };
 
-/// `stop`: of `motion`. `factor`: time-law factor in force. `age`: of the human data [s]. Allocates nothing.
+/// Returns the limits of speed and separation monitoring (SSM, ISO 10218-2:2025) and of the walls.
+/// `stop`: of `motion`. `factor`: speed factor in force. `age`: of the human data [s]. Allocates
+/// nothing.
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
                    const StopTable& stop, const Crowd& crowd, const std::vector<Wall>& walls, double age, double factor) noexcept;
 
-/// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not the rule used [m/s].
+/// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not
+/// the rule used [m/s].
 double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept;
 
 }  // namespace handsel::trajectory_controller

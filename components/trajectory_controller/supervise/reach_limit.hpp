@@ -1,5 +1,5 @@
-// How fast a path may be run so that the stop proof will hold on it: the limit that keeps the proof from having to intervene. Pure, no heap
-// after construction, noexcept. Own method.
+// How fast a path may be run so that the stop proof will hold on it: the limit that keeps the proof
+// from having to intervene. Pure, no heap after construction, noexcept. Own method.
 #pragma once
 
 #include <vector>
@@ -11,15 +11,17 @@ namespace handsel::trajectory_controller {
 
 /// Motion at full speed along a path, from one of its points.
 struct ReachQuery {
-  const Vector& position;       ///< all axes [rad, m]
-  const Vector& velocity;       ///< all axes, with the time-law factor 1 [rad/s, m/s]
-  const Vector& acceleration;   ///< of the set-point now, all axes [rad/s^2, m/s^2]
-  const Vector& finger_speeds;  ///< of the fingers until a stop begins, all axes, >= 0; 0 of those that are no fingers [rad/s, m/s]
-  const StopTable& stop;        ///< of the motion at full speed
-  Pose T_world_base{Pose::Identity()};
-  double ease{};     ///< time in which the arm's present acceleration can be taken away [s]
-  double age{};      ///< of the human data [s]
-  double payload{};  ///< mass held [kg]
+  const Vector& position;      ///< all axes [rad, m]
+  const Vector& velocity;      ///< all axes, at speed factor 1 [rad/s, m/s]
+  const Vector& acceleration;  ///< of the set-point now, all axes [rad/s^2, m/s^2]
+  /// Of the fingers until a stop begins, all axes, >= 0; 0 of those that are no fingers [rad/s,
+  /// m/s].
+  const Vector& finger_speeds;
+  const StopTable& stop;                ///< of the motion at full speed
+  Pose T_world_base{Pose::Identity()};  ///< base of the robot in the world
+  double ease{};                        ///< time to remove the arm's acceleration [s]
+  double age{};                         ///< of the human data [s]
+  double payload{};                     ///< mass held [kg]
 };
 
 class ReachLimit {
@@ -29,14 +31,16 @@ class ReachLimit {
   ReachLimit(const ReachLimit&) = delete;
   ReachLimit& operator=(const ReachLimit&) = delete;
 
-  /// Returns the largest time-law factor in [0, 1] at which each link is slow enough for a contact with each part of a person before that
-  /// part can be there, moving as StopProofSettings::people allow. `backward`: the path is run back.
+  /// Returns the largest speed factor in [0, 1] at which each link is slow enough for a contact
+  /// with each part of a person before that part can be there, moving as StopProofSettings::people
+  /// allow. `backward`: the path is run back.
   double factor(const ReachQuery& query, const Crowd& people, bool backward) noexcept;
 
  private:
   const StopProof& proof_;
   std::vector<char> all_frames_;
-  std::vector<FrameMotion> motions_, changes_;  // of the frames: at full speed; velocities gained until a stop begins
+  // Of the frames: at full speed; velocities gained until a stop begins.
+  std::vector<FrameMotion> motions_, changes_;
   Vector gain_;
   std::vector<double> finger_speeds_;  // by axis
 };

@@ -1,4 +1,5 @@
-// Where parts of people can be by a given time: their measured state as start, speed and acceleration bounded. Pure.
+// Where parts of people can be by a given time: their measured state as start, speed and
+// acceleration bounded. Pure.
 #pragma once
 
 #include <array>
@@ -15,18 +16,19 @@ struct RegionMotion {
 };
 using RegionMotions = std::array<RegionMotion, kBodyRegions>;
 
-/// Returns how far a point that moves with `speed` [m/s] in an unknown direction can be from its place after `time` [s], when the bounds
-/// hold [m]. A speed above the bound stays as measured.
+/// Returns how far a point that moves with `speed` [m/s] in an unknown direction can be from its
+/// place after `time` [s], when the bounds hold [m]. A speed above the bound stays as measured.
 double reach_after(double time, double speed, const RegionMotion& bounds) noexcept;
 
-/// Returns the speed from which a part starts: as measured with `uncertainty` [m/s] added, or the largest of its region when it was not
-/// measured just now [m/s].
+/// Returns the speed from which a part starts: as measured with `uncertainty` [m/s] added, or the
+/// largest of its region when it was not measured just now [m/s].
 double start_speed(const CrowdCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept;
 
-/// How far each part of everybody can be from where it was measured. HumanState carries at most 16 people.
+/// How far each part of everybody can be from where it was measured. HumanState carries at most 16
+/// people.
 struct PartReaches {
   std::array<double, 16 * kBodyCapsules> distance;  ///< [m], the first `count`
-  std::size_t count{};
+  std::size_t count{};                              ///< number of capsules in Crowd
 };
 
 /// Computes the reaches `time` [s] after now. Allocates nothing.

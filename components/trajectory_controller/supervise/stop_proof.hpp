@@ -1,11 +1,12 @@
-// Proof that a set-point can be followed by a stop that harms nobody: every link is at rest, or slow enough for a contact, wherever a
-// person can be by then. Two stops are checked: the controller's own, at once, and the robot side's, after set-points have failed; in each
-// of them every axis stops by itself as fast as it can. Pure, no heap after construction, noexcept. Own method, after the idea of the SARA
-// shield.
+// Proof that a set-point can be followed by a stop that harms nobody: every link is at rest, or
+// slow enough for a contact, wherever a person can be by then. Two stops are checked: the
+// controller's own, at once, and the robot side's, after set-points have failed; in each of them
+// every axis stops by itself as fast as it can. Pure, no heap after construction, noexcept. Own
+// method, after the idea of the SARA shield.
 //
-// Induction: the stop behind the set-point sent last has been checked. If the one behind the next set-point cannot be, the next set-point
-// of the checked stop is sent instead. The assumptions are those of StopProofSettings, and that people are where HumanState says within
-// `tracker_error`.
+// Induction: the stop behind the set-point sent last has been checked. If the one behind the next
+// set-point cannot be, the next set-point of the checked stop is sent instead. The assumptions are
+// those of StopProofSettings, and that people are where HumanState says within `tracker_error`.
 #pragma once
 
 #include <array>
@@ -21,24 +22,33 @@
 
 namespace handsel::trajectory_controller {
 
+/// Assumptions about robot and people, and limits of contact.
 struct StopProofSettings {
-  bool enabled{true};
+  bool enabled{true};              ///< false: every set-point passes the check
   double latency{0.01};            ///< from a set-point to the motion of the robot [s]
-  double robot_side_delay{0.021};  ///< set-points are silent for so long before the robot side stops by itself [s]
+  double robot_side_delay{0.021};  ///< silence after which the robot side stops by itself [s]
   double tracker_error{0.03};      ///< a part of a person is this near where it was measured [m]
   double speed_error{0.05};        ///< its measured speed is this exact [m/s]
-  double robot_error{0.01};        ///< a link is this near where its set-point is, beyond the latency [m]
-  double limit_ratio{0.9};         ///< reach_limit aims at this fraction of a contact speed, so that the proof seldom has to intervene
-  double limit_margin{0.02};       ///< and at this much more distance [m]
-  double finger_ratio{0.7};        ///< fingers alone use this fraction of a contact speed where people can reach them; the arm has the rest
-  int max_rejoins{4};          ///< of a path, one soon after the other, that end in a set-point without a checked stop; then it is given up
-  double shown_time{0.5};      ///< the cause is shown for so long after a set-point without a checked stop [s]
-  double min_robot_mass{2.0};  ///< effective mass of a link at a contact, at least [kg]
+  double robot_error{0.01};        ///< a link is this near its set-point, beyond latency [m]
+  /// ReachLimit aims at this fraction of a contact speed, so that the proof seldom has to intervene
+  /// ...
+  double limit_ratio{0.9};
+  double limit_margin{0.02};  ///< ... and at this much more distance [m]
+  /// Fingers alone use this fraction of a contact speed where people can reach them; the arm has
+  /// the rest.
+  double finger_ratio{0.7};
+  /// Attempts, one soon after the other, to rejoin a path that end in a set-point without a checked
+  /// stop; then the path is given up.
+  int max_rejoins{4};
+  /// The cause is shown for so long after a set-point without a checked stop [s].
+  double shown_time{0.5};
+  double min_robot_mass{2.0};   ///< effective mass of a link at a contact, at least [kg]
   double min_finger_mass{0.1};  ///< of a finger that moves in the hand, at least [kg]
-  /// Largest speed and acceleration of people, by region: 2 m/s and 50 m/s^2 for arms and hands, ISO 13855's walking speed for the rest.
+  /// Largest speed and acceleration of people, by region: 2 m/s and 50 m/s^2 for arms and hands,
+  /// ISO 13855's walking speed for the rest.
   RegionMotions people{{{1.6, 10.0}, {1.6, 10.0}, {2.0, 50.0}, {2.0, 50.0}, {2.0, 50.0}, {1.6, 20.0}, {1.6, 20.0}}};
-  /// Transient limits of ISO/TS 15066:2016 table A.2 and A.3, the lowest of each region; for the head, where no transient contact is
-  /// allowed, the quasi-static limit of the face.
+  /// Transient limits of ISO/TS 15066:2016 table A.2 and A.3, the lowest of each region; for the
+  /// head, where no transient contact is allowed, the quasi-static limit of the face.
   ContactLimits contact{{{65.0, 75e3, 4.4},
                          {280.0, 25e3, 40.0},
                          {300.0, 30e3, 3.0},
@@ -48,7 +58,8 @@ struct StopProofSettings {
                          {260.0, 60e3, 75.0}}};
 };
 
-/// Where and when a stop would not be harmless; without a link when an axis would leave its bounds, or too many people are near.
+/// Where and when a stop would not be harmless; without a link when an axis would leave its bounds,
+/// or too many people are near.
 struct StopRefutation {
   int link{-1};        ///< of the robot; -1: there is none
   double time{};       ///< after the set-point [s]
@@ -62,25 +73,32 @@ class StopProof {
  public:
   StopProof(const StopProofSettings& settings, const RobotModel& robot, const std::vector<LinkCapsule>& capsules);
 
-  /// Returns whether both stops from `state` (all axes) are harmless to `people`, whose data are `age` old [s]. `payload`: mass held [kg].
+  /// Returns whether both stops from `state` (all axes) are harmless to `people`, whose data are
+  /// `age` old [s]. `payload`: mass held [kg].
   bool check(const MotionState3& state, const Crowd& people, const Pose& T_world_base, double age, double payload) noexcept;
-  const StopRefutation& refutation() const noexcept { return refutation_; }  ///< of the last check that failed
+  /// Reason of the last check that failed.
+  const StopRefutation& refutation() const noexcept { return refutation_; }
+  /// Kinematics that the proof uses, for the indices of capsules.
   const MovingChain& chain() const noexcept { return chain_; }
 
   // Of the set-point checked last.
   /// Whether any axis moves; if not, there is no stop.
   bool moving() const noexcept { return at_once_.count > 0; }
-  /// Bounds for a capsule of chain(): how far it travels [m] and how fast it is [m/s] in either stop.
+  /// Bound of the travel of a capsule of chain() in either stop [m]; 0 when no axis moves.
   double max_travel(std::size_t capsule) const noexcept { return moving() ? max_travel_[capsule] : 0.0; }
+  /// Bound of the speed of a capsule of chain() in either stop, fingers included [m/s].
   double max_speed(std::size_t capsule) const noexcept { return moving() ? max_carried_[capsule] + max_inner_[capsule] : 0.0; }
   /// How long the stop takes, the robot side's or the controller's own [s].
   double duration(bool robot_side) const noexcept { return (robot_side ? robot_side_ : at_once_).duration; }
-  /// Where the axes are `time` after the set-point [s]; of axes that stand, `position` keeps what it has.
+  /// Where the axes are `time` after the set-point [s]; of axes that stand, `position` keeps what
+  /// it has.
   void position_at(bool robot_side, double time, Vector& position) const noexcept;
   /// Returns the largest contact speed of a region for the robot holding `payload` [m/s].
   double max_speed_at(BodyRegion region, double payload) const noexcept;
-  /// Returns the speed of the arm whose contact with the region has the energy of a finger's at 1 m/s [-].
+  /// Returns the speed of the arm whose contact with the region has the energy of a finger's at 1
+  /// m/s [-].
   double finger_ratio_at(BodyRegion region, double payload) const noexcept;
+  /// Assumptions and limits of the proof, as given to the constructor.
   const StopProofSettings& settings() const noexcept { return settings_; }
 
  private:
@@ -114,8 +132,8 @@ class StopProof {
   /// A link's capsule at one instant of the stop.
   struct Sample {
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
-    double carried{};                                ///< largest speed of a point on its surface, fingers at rest [m/s]
-    double inner{};                                  ///< largest speed of a finger in the hand [m/s]
+    double carried{};                                ///< largest surface speed, fingers at rest [m/s]
+    double inner{};                                  ///< largest finger speed in the hand [m/s]
   };
 
   void plan(const MotionState3& state, double delay, Stop& stop) const noexcept;
@@ -142,17 +160,22 @@ class StopProof {
 
   Stop at_once_, robot_side_;
   std::vector<Pair> pairs_;
-  std::vector<char> paired_;                                 // capsules that are in a pair
-  std::vector<char> all_frames_, needed_frames_;             // marks for the chain: all; those that carry a paired capsule
+  std::vector<char> paired_;  // capsules that are in a pair
+  // Marks for the chain: all frames; those that carry a paired capsule.
+  std::vector<char> all_frames_, needed_frames_;
   std::array<std::vector<Sample>, kIntervals + 1> samples_;  // of every capsule
-  std::array<std::vector<double>, kIntervals> speeds_;       // largest of each axis between a sample and the next
+  // Largest of each axis between a sample and the next.
+  std::array<std::vector<double>, kIntervals> speeds_;
   std::array<bool, kIntervals> speeds_known_{};
   Vector position_, velocity_;
   std::vector<FrameMotion> motions_;  // of each frame
-  // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the sample; until when it moves.
+  // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the
+  // sample; until when it moves.
   std::vector<double> travel_, other_travel_, speed_, turning_, jerk_, moved_, now_, time_;
-  std::vector<double> max_travel_, max_carried_, max_inner_;  // of each capsule during both stops [m, m/s]
-  std::array<double, kBodyRegions> finger_ratio_{};           // of a contact of the fingers to one of the arm, see finger_ratio_at()
+  // Of each capsule during both stops [m, m/s].
+  std::vector<double> max_travel_, max_carried_, max_inner_;
+  // Of a contact of the fingers to one of the arm, see finger_ratio_at().
+  std::array<double, kBodyRegions> finger_ratio_{};
   double min_contact_speed_{}, max_person_speed_{};
   // Rooms: how far each capsule could move at a moment before anybody could reach it [m].
   std::vector<double> room_;

@@ -1,5 +1,5 @@
-// Where the arm can be within its stop, and whether a live source of people observes that: no arm moves blind. Pure, no heap after
-// construction, noexcept. Own method.
+// Where the arm can be within its stop, and whether a live source of people observes that: no arm
+// moves blind. Pure, no heap after construction, noexcept. Own method.
 #pragma once
 
 #include <string>
@@ -10,13 +10,19 @@
 
 namespace handsel::trajectory_controller {
 
+/// Requirements on the observation of the space of a stop.
 struct ViewSettings {
-  bool require_view{true};    ///< where the arm can be within its stop a live source must look; false: in a cell without tracking of people
+  /// True: a live source must observe where the arm can be within its stop; false: in a cell
+  /// without tracking of people.
+  bool require_view{true};
   double max_view_age{0.25};  ///< a view counts for so long after its capture [s]
-  double margin{0.05};        ///< about the links: what the hand holds, and how exactly the arm follows [m]
-  double ahead_margin{0.05};  ///< and more about those on the path ahead, so that the arm seldom has to leave the path to stop [m]
-  double edge_factor{0.3};    ///< speed factor where a stop from full speed would lead out of what is observed, (0, 1]
-  double floor{0.0};          ///< nobody is below this height, it need not be observed [m]
+  double margin{0.05};        ///< about the links, for held objects and tracking errors [m]
+  /// Added about the links on the path ahead, so that an emergency deviation from the path stays
+  /// rare [m].
+  double ahead_margin{0.05};
+  /// Speed factor where a stop from full speed would lead out of the observed space, (0, 1].
+  double edge_factor{0.3};
+  double floor{0.0};  ///< nobody is below this height, it need not be observed [m]
 };
 
 class StopSpace {
@@ -25,12 +31,14 @@ class StopSpace {
   StopSpace(const StopSpace&) = delete;
   StopSpace& operator=(const StopSpace&) = delete;
 
+  /// Replaces the views by those of the newest HumanState.
   void set(const HumanState& people) noexcept { space_.set(people.views); }
-  /// Returns whether all links are inside what is observed during both stops of the set-point that the proof has checked last. `position`:
-  /// of it, all axes. `since`: the age of the views' message [s].
+  /// Returns whether all links are inside what is observed during both stops of the set-point that
+  /// the proof has checked last. `position`: of it, all axes. `since`: the age of the views'
+  /// message [s].
   bool observes_stops(const Vector& position, const Pose& T_world_base, double since) noexcept;
-  /// Returns the largest of the speed factors 1, edge_factor and 0 at which a stop on the path, from a point where it has this velocity at
-  /// full speed, stays inside what is observed.
+  /// Returns the largest of the speed factors 1, edge_factor and 0 at which a stop on the path,
+  /// from a point where it has this velocity at full speed, stays inside what is observed.
   double factor(const Vector& position, const Vector& velocity, const Pose& T_world_base, double since) noexcept;
   /// Link that was found outside of what is observed; -1: none yet.
   int link() const noexcept { return link_; }
@@ -38,7 +46,7 @@ class StopSpace {
   bool any(double since) const noexcept { return space_.any(since); }
 
  private:
-  static constexpr int kIntervals = 6;  // of a stop that is looked at closely
+  static constexpr int kIntervals = 6;  // of a stop that is sampled
 
   bool inside(const Vector& position, double margin, const Pose& T_world_base, double since) noexcept;
   bool inside_during(bool robot_side, const Pose& T_world_base, double since) noexcept;
@@ -58,7 +66,8 @@ class StopSpace {
   int link_{-1};
 };
 
-/// Returns why nothing, or not enough, is observed, by the views of the newest HumanState; `link`: name of the one outside. One sentence.
+/// Returns why nothing, or not enough, is observed, by the views of the newest HumanState; `link`:
+/// name of the one outside. One sentence.
 std::string why_blind(const HumanState& people, const std::string& link);
 
 }  // namespace handsel::trajectory_controller
