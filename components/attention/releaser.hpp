@@ -9,8 +9,8 @@
 
 namespace handsel::attention {
 
-/// "action give", "holding", "fact in_interaction_zone" (of the person of interest's kind: about
-/// anybody), "behaviour track"; "not" before a condition negates it.
+/// "action give", "holding", "fact in_interaction_zone" (about anybody), "behaviour track"; "not"
+/// before a condition negates it.
 struct Condition {
   enum class Kind { action, holding, fact, behaviour };
   Kind kind{};            ///< which of the fields below counts

@@ -1,5 +1,5 @@
-// A behaviour that is described, not programmed: one input, a factor that falls with it, something
-// to look at.
+// A behaviour that is described, not programmed: one input, a factor that falls with it, a target
+// of the gaze.
 #pragma once
 
 #include "components/attention/schema.hpp"

@@ -18,8 +18,8 @@ struct RowPerson {
   float w_safety, w_visibility, w_comfort;  ///< their sum is 1
 };
 
-/// Points (i * step, y, z), i < n <= kLongestRow. `comfort` is read (255 counts as cost 1), the
-/// others are written as cost * 254.
+/// Fills the points (i * step, y, z) with i < n, n at most 128. `comfort` is read (255 counts as
+/// cost 1), the others are written as cost * 254.
 using FillRow = void (*)(const RowPerson& person, float y, float z, float step, int n, const std::uint8_t* comfort, std::uint8_t* safety,
                          std::uint8_t* visibility, std::uint8_t* total) noexcept;
 

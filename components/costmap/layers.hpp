@@ -17,7 +17,7 @@ namespace handsel::costmap {
 struct MapSettings {
   double resolution{0.025};  ///< edge of a cell [m]
   double reach{1.0};         ///< half edge of the grid around the middle of the shoulders [m]
-  double clearance{0.04};    ///< points nearer than this to a box are no place to exchange [m]
+  double clearance{0.04};    ///< points nearer than this to a box are no place for a handover [m]
   CostSettings cost;         ///< of the human-aware cost functions, with the weights of the layers
 };
 
@@ -28,7 +28,7 @@ class MapMaker {
  public:
   explicit MapMaker(const MapSettings& settings) : settings_(settings) {}
   /// Values as in Costmap. "arm_comfort" is 255 out of reach and where a ReachCheck says that
-  /// furniture is in the way; "total" counts such points as cost 1 of the arm; the other two are
+  /// furniture blocks the arm; "total" counts such points as cost 1 of the arm; the other two are
   /// never 255. The grid is aligned with the world, its points lie on multiples of the resolution.
   /// Valid until the next call.
   const Layers& make(const Person& person, const std::vector<SceneBox>& boxes);
@@ -47,7 +47,7 @@ class MapMaker {
 class Watch {
  public:
   Watch(double moved, double turned) : moved_(moved), turned_(turned) {}
-  /// True when the person is another, moved, turned or looks elsewhere, or the scene's boxes
+  /// True when the person is another, moved, turned or turned the gaze, or the scene's boxes
   /// changed since the last time it returned true.
   bool changed(const Person& person, const std::vector<SceneBox>& boxes);
 

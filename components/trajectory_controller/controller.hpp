@@ -49,7 +49,7 @@ struct ControllerSettings {
   /// A robot side that stands moves its fingers to set-points this near [rad; of a sliding one at
   /// its lever].
   double hand_rejoin{0.25};
-  double tracking_tolerance{0.3};  ///< distance of the arm from its set-point: Fault [rad]
+  double tracking_tolerance{0.3};  ///< Fault: the arm is farther from its set-point [rad]
   double tracking_time{0.1};       ///< for this long [s]
   double forecast_hold{0.6};       ///< collision forecast within this time: Hold [s]
   double forecast_slow{2.0};       ///< within this time: slower in proportion [s]
@@ -111,9 +111,9 @@ class Controller {
   void on(const ActionStatus& action, TimePoint sampled);
 
   /// Advances by one period, whatever time has passed. `late`: the cycle began more than a period
-  /// after it was due. False until the robot's configuration is known: nothing may be sent. So it
-  /// is after a sleep of a tenth of a second: the robot side has stopped by itself in the meantime,
-  /// and what was sent last counts no longer.
+  /// after it was due. Returns false until the robot's configuration is known: nothing may be sent.
+  /// So it is after a sleep of a tenth of a second: the robot side has stopped by itself in the
+  /// meantime, and what was sent last counts no longer.
   bool step(TimePoint now, bool late) noexcept;
 
   const MotionState3& set_point() const { return set_point_; }  ///< all axes
@@ -127,8 +127,8 @@ class Controller {
   Mode mode() const { return verdict_.mode; }
   /// Result of the guard: distances now, and the strictest limits of now and of the times ahead.
   const GuardVerdict& guard_verdict() const { return guard_verdict_; }
-  /// Set-points that had no checked stop behind them, and were replaced by the next one of the
-  /// checked stop.
+  /// Number of set-points that had no checked stop behind them, and were replaced by the next one
+  /// of the checked stop.
   std::uint64_t unproven_set_points() const { return unproven_; }
   /// Speed factor on the path, in [-1, 1]; 0 when no path runs.
   double speed_factor() const { return arm_ == Arm::running ? runner_.factor() : 0.0; }

@@ -1,4 +1,4 @@
-// People lost from sight: who must be remembered over a restart of SPARK, and for how long nobody
+// People lost from sight: which must be remembered over a restart of SPARK, and for how long nobody
 // has seen them. Pure.
 #pragma once
 

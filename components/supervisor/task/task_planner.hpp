@@ -15,7 +15,7 @@ struct TaskQuery {
   std::vector<std::string> args;  ///< of the task; "-": left out
   std::string reason;             ///< why the goal is refused, and a remedy; empty: accepted
   std::string unseen;             ///< thing or person that is named and not seen; empty: none
-  bool needs_person{false};       ///< somebody is meant and nobody is there
+  bool needs_person{false};       ///< a person is needed and none is seen
 };
 
 /// "give mug to anna", "take what anna offers", ...

@@ -1,5 +1,5 @@
 // What the hand does: move, grasp until contact holds, release, release as a person takes the load.
-// Own method: the chapter gives none. Pure; no heap in step().
+// Own method. Pure; no heap in step().
 #pragma once
 
 #include <cstdint>

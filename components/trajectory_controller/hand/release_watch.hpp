@@ -1,7 +1,7 @@
-// When the hand releases its load at the handover, from the force on the hand. Own method: the
-// chapter gives none. A confident pull loosens the grip, only so far that it still bears the load;
-// a pull that continues, or a load that is gone because the person bears it, opens the hand; a load
-// that comes back closes it again. Noise, tremor, bumps and false starts do none of this. Pure.
+// When the hand releases its load at the handover, from the force on the hand. Own method. A
+// confident pull loosens the grip, only so far that it still bears the load; a pull that continues,
+// or a load that is gone because the person bears it, opens the hand; a load that comes back closes
+// it again. Noise, tremor, bumps and false starts do none of this. Pure.
 #pragma once
 
 #include <cstdint>

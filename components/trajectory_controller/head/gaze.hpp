@@ -15,8 +15,7 @@ namespace handsel::trajectory_controller {
 std::vector<double> aim(const RobotModel& robot, const Group& head, const Vector& q, const Vector3& p_root);
 
 /// Keeps a head that turns off the arms and hands, which are planned around a head that stands. By
-/// capsules, and only pairs of links that are tested against each other at all. Own method: the
-/// chapter does not treat the motion of the head.
+/// capsules, and only pairs of links that are tested against each other at all. Own method.
 class HeadRoom {
  public:
   explicit HeadRoom(const RobotModel& robot);

@@ -8,7 +8,7 @@
 
 namespace handsel::trajectory_controller {
 
-/// Tells whether set-points move the robot: they do not while its reference rests elsewhere. A
+/// Decides whether set-points move the robot: they do not while its reference rests elsewhere. A
 /// robot side can stop without reporting it, so the reference decides, not the mode alone. Own
 /// method.
 class RobotReference {

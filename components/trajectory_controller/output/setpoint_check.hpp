@@ -1,6 +1,5 @@
 // The last check of a set-point before it is sent: finite, inside the guard limits, continuous with
-// the one before, and still stoppable inside the limits. Own method: the chapter gives none. Pure,
-// no heap.
+// the one before, and still stoppable inside the limits. Own method. Pure, no heap.
 #pragma once
 
 #include "common/trajectory/trajectory.hpp"

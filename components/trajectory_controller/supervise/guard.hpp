@@ -1,7 +1,7 @@
 // The guard: decides last how fast the running trajectory may continue, from the robot's motion,
 // the people around it and the walls it must not pass. One pure function, no state. Speed and
-// separation after ISO/TS 15066 with the jerk-limited minimum-time stop. Own method: the standard
-// assumes a constant deceleration.
+// separation after ISO/TS 15066 with the jerk-limited minimum-time stop. Own method: the
+// textbook form, reference_speed(), assumes a constant deceleration.
 #pragma once
 
 #include <vector>
@@ -41,14 +41,14 @@ struct GuardVerdict {
   double backward{-1.0};  ///< smallest speed factor allowed (back along the path), [-1, 0]
   double distance{1e9};   ///< to the nearest person, without exempt parts [m]
   double needed{};        ///< protective separation distance there at the present factor [m]
- int link{-1};            ///< of the robot, nearest to a person; -1: nobody is there
+  int link{-1};           ///< of the robot, nearest to a person; -1: nobody is there
   /// Points on the axes of the two nearest capsules, world [m].
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};
   double view{1.0};           ///< largest factor at which a stop stays inside the observed space
-  bool separation{};          ///< speed and separation monitoring made `forward` less than 1
-  bool wall{};                ///< a wall made `forward` less than 1
+  bool separation{};          ///< speed and separation monitoring limits a factor
+  bool wall{};                ///< a wall limits a factor
   bool uncovered{};           ///< nobody is seen, but that nobody is there is not certain
-  bool too_near{};            ///< nearer than `needed`, and still closing in
+  bool too_near{};            ///< nearer than a stop at the present factor needs, still closing in
   bool exchange_clear{true};  ///< no exempt part within exchange_range
 };
 

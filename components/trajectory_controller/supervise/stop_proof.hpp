@@ -30,8 +30,7 @@ struct StopProofSettings {
   double tracker_error{0.03};      ///< a part of a person is this near where it was measured [m]
   double speed_error{0.05};        ///< its measured speed is this exact [m/s]
   double robot_error{0.01};        ///< a link is this near its set-point, beyond latency [m]
-  /// ReachLimit aims at this fraction of a contact speed, so that the proof seldom has to intervene
-  /// ...
+  /// ReachLimit aims at this fraction of a contact speed, so that the proof seldom intervenes ...
   double limit_ratio{0.9};
   double limit_margin{0.02};  ///< ... and at this much more distance [m]
   /// Fingers alone use this fraction of a contact speed where people can reach them; the arm has
@@ -129,11 +128,11 @@ class StopProof {
   struct Pair {
     std::uint16_t capsule{}, part{};
   };
-  /// A link's capsule at one instant of the stop.
+  /// A link's capsule at one instant of the stop, with its largest speeds.
   struct Sample {
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
-    double carried{};                                ///< largest surface speed, fingers at rest [m/s]
-    double inner{};                                  ///< largest finger speed in the hand [m/s]
+    double carried{};                                ///< surface speed, fingers at rest [m/s]
+    double inner{};                                  ///< finger speed in the hand [m/s]
   };
 
   void plan(const MotionState3& state, double delay, Stop& stop) const noexcept;

@@ -17,8 +17,8 @@ struct ViewSettings {
   bool require_view{true};
   double max_view_age{0.25};  ///< a view counts for so long after its capture [s]
   double margin{0.05};        ///< about the links, for held objects and tracking errors [m]
-  /// Added about the links on the path ahead, so that an emergency deviation from the path stays
-  /// rare [m].
+  /// Added about the links on the path ahead, so that the arm seldom stops off its
+  /// path [m].
   double ahead_margin{0.05};
   /// Speed factor where a stop from full speed would lead out of the observed space, (0, 1].
   double edge_factor{0.3};
