@@ -10,10 +10,15 @@
 
 namespace handsel::sim {
 
+/// Returns the vector as Bullet's type; units and axes are the same.
 inline btVector3 to_bt(const Vector3& v) { return {v.x(), v.y(), v.z()}; }
+/// Returns Bullet's vector as Vector3; units and axes are the same.
 inline Vector3 from_bt(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
+/// Returns the quaternion as Bullet's type, which stores w last.
 inline btQuaternion to_bt(const Eigen::Quaterniond& q) { return {q.x(), q.y(), q.z(), q.w()}; }
+/// Returns the pose as Bullet's type.
 inline btTransform to_bt(const Pose& T) { return btTransform(to_bt(Eigen::Quaterniond(T.linear())), to_bt(Vector3(T.translation()))); }
+/// Returns Bullet's transform as a pose, its rotation normalized.
 inline Pose from_bt(const btTransform& T) {
   const btQuaternion q = T.getRotation();
   return make_pose(from_bt(T.getOrigin()), Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()));
@@ -22,7 +27,8 @@ inline Pose from_bt(const btTransform& T) {
 /// Collision shapes with their owner: Bullet keeps plain pointers.
 class ShapeStore {
  public:
-  /// A convex Bullet shape for ours; a mesh becomes its convex hull, reduced to at most 42 vertices.
+  /// Makes a convex Bullet shape of the given one; a mesh becomes its convex hull, reduced to at
+  /// most 42 vertices.
   btConvexShape* convex(const Shape&);
   /// One shape for all of `parts`, placed by T_body_parent; nullptr if there are none.
   btCollisionShape* combine(const std::vector<PlacedShape>& parts, const Pose& T_body_parent);

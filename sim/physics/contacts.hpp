@@ -13,6 +13,8 @@ enum class Owner : int { robot = 1, object = 2, fixed = 3, floor = 4, person = 5
 /// Collision groups of Bullet's filter.
 enum CollisionGroup : int { kRobot = 64, kObject = 128, kFixed = 256, kPerson = 512 };
 
+/// Marks a collision object with its owner and its number among the owner's bodies, as gather()
+/// reads them.
 inline void own(btCollisionObject& object, Owner owner, int index) {
   object.setUserIndex(static_cast<int>(owner));
   object.setUserIndex2(index);
@@ -20,8 +22,8 @@ inline void own(btCollisionObject& object, Owner owner, int index) {
 
 /// One contact point. `a` is the robot if it takes part, else the object.
 struct Touch {
-  Owner a{}, b{};
-  int index_a{}, index_b{};
+  Owner a{}, b{};                       ///< the two parties
+  int index_a{}, index_b{};             ///< numbers given to own()
   Vector3 point{Vector3::Zero()};       ///< world [m]
   Vector3 normal{Vector3::UnitZ()};     ///< from b to a
   double distance{};                    ///< negative: they overlap [m]

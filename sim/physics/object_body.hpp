@@ -11,18 +11,21 @@ namespace handsel::sim {
 
 class ObjectBody {
  public:
-  /// Throws ConfigError when the model has no parts to collide with. `index` tells it apart in contacts.
+  /// Throws ConfigError when the model has no parts to collide with. `index` tells it apart in
+  /// contacts.
   ObjectBody(const StartObject& start, int index, ShapeStore&, btDynamicsWorld&);
   ~ObjectBody();
   ObjectBody(const ObjectBody&) = delete;
   ObjectBody& operator=(const ObjectBody&) = delete;
 
-  const StartObject& start() const { return start_; }
-  const ObjectModel& model() const { return *start_.model; }
-  double least_inertia() const { return least_inertia_; }  ///< least principal moment [kg m^2]
+  const StartObject& start() const { return start_; }         ///< as the scenario places it
+  const ObjectModel& model() const { return *start_.model; }  ///< of the object library
+  double least_inertia() const { return least_inertia_; }     ///< least principal moment [kg m^2]
+  /// Returns the pose of the object frame as of the last read().
   const Pose& T_world_object() const { return T_world_object_; }
   const BodyState& state() const { return state_; }  ///< of the centre of mass
 
+  /// Moves the object there at once; its velocities stay as they are.
   void put(const Pose& T_world_com);
   /// Wrench about the centre of mass, for the coming step.
   void push(const Wrench&);

@@ -1,4 +1,5 @@
-// From a scenario file to what the world starts with: poses, people, sensors; the seed decides what is jittered.
+// From a scenario file to what the world starts with: poses, people, sensors; the seed decides what
+// is jittered.
 #pragma once
 
 #include <filesystem>
@@ -13,43 +14,46 @@
 
 namespace handsel::sim {
 
+/// Returns the pose of xyz [m] and roll, pitch, yaw [rad] about fixed axes: R = Rz(yaw) Ry(pitch)
+/// Rx(roll).
 Pose pose_of(const config::PoseRpy&);
 
 struct StartObject {
-  std::string id, model_name;
-  const ObjectModel* model{};
-  Pose T_world_object{Pose::Identity()};
+  std::string id, model_name;             ///< unique in the scenario; name in the object library
+  const ObjectModel* model{};             ///< in the object library; not null
+  Pose T_world_object{Pose::Identity()};  ///< at the start, jitter included
 };
 
 struct StartBox {
-  std::string id;
-  Pose T_world_box{Pose::Identity()};
-  Vector3 size{Vector3::Zero()};
-  bool supports{};
+  std::string id;                      ///< unique in the scenario
+  Pose T_world_box{Pose::Identity()};  ///< of its centre
+  Vector3 size{Vector3::Zero()};       ///< full extents [m]
+  bool supports{};                     ///< objects may stand on it
 };
 
 struct StartPerson {
-  PersonSettings settings;
-  std::string holds;    ///< object id, for a giver
-  std::string fetches;  ///< object id, for who fetches something
+  PersonSettings settings;  ///< variation drawn from the seed included
+  std::string holds;        ///< object id, for a giver
+  std::string fetches;      ///< object id, for a fetcher
 };
 
 struct TimedControl {
-  double at{};  ///< [s]
-  SimControl control;
+  double at{};         ///< [s]
+  SimControl control;  ///< the disturbance that happens then
 };
 
 struct SceneSetup {
-  Pose T_world_base{Pose::Identity()};
-  Vector start;  ///< all axes
-  std::vector<StartBox> boxes;
-  std::vector<StartObject> objects;
+  Pose T_world_base{Pose::Identity()};  ///< root link of the robot
+  Vector start;                         ///< all axes [rad] ([m])
+  std::vector<StartBox> boxes;          ///< in the order of the scenario
+  std::vector<StartObject> objects;     ///< in the order of the scenario
+  /// In the order of the scenario, without those absent this time.
   std::vector<StartPerson> people;
-  std::vector<SensorSettings> human_sensors, object_sensors;
-  std::vector<TimedControl> disturbances;  ///< in time order
-  std::string watched;                     ///< object of the first task, else the first object; may be empty
-  bool never_releases{};
-  bool no_weld{};
+  std::vector<SensorSettings> human_sensors, object_sensors;  ///< in the order of the scenario
+  std::vector<TimedControl> disturbances;                     ///< in time order
+  std::string watched;    ///< object of the first task, else the first object; may be empty
+  bool never_releases{};  ///< injected fault: the hand does not open again (StuckHand)
+  bool no_weld{};         ///< contacts alone hold objects, without a grasp constraint
 };
 
 /// Throws ConfigError or MissingError naming what in the scenario is wrong and what there is.
