@@ -1,4 +1,5 @@
-// Binds the emulated world to a bus. It speaks the hardware's messages: no component knows that it is simulated.
+// Binds the emulated world to a bus. It speaks the hardware's messages: no component knows that it
+// is simulated.
 #pragma once
 
 #include <deque>
@@ -47,8 +48,9 @@ class Node {
     JointCommand message;
     std::uint64_t writer{};
   };
-  std::map<std::uint64_t, bool> visible_;  // processes that answered: does the kernel show them here?
-  std::deque<SetPoint> set_points_;        // not taken by a step yet
+  // Processes that answered: does the kernel show them here?
+  std::map<std::uint64_t, bool> visible_;
+  std::deque<SetPoint> set_points_;  // not taken by a step yet
   SimClock clock_;
   TimePoint announced_{};
   RobotState state_;
@@ -59,7 +61,8 @@ class Node {
   bool paused_{false}, started_{false};
   TimePoint start_{}, measured_from_{};
   double measured_sim_{0}, factor_{1};
-  /// A picture's stamp is the system clock of its capture; the same picture, published again, keeps it.
+  /// A picture's stamp is the system clock of its capture; the same picture, published again, keeps
+  /// it.
   struct Stamped {
     double seen{};  ///< [s of simulated time]
     Stamp stamp{};

@@ -1,4 +1,5 @@
-// Who carries the object, and whether a handover has happened (ours).
+// Which party carries the object, and whether a handover has happened. Own method: no standard
+// defines when a handover is complete.
 #pragma once
 
 #include "common/messages/system.hpp"
@@ -8,19 +9,26 @@ namespace handsel::sim {
 /// The watched object at one physics step.
 struct ObjectSituation {
   double height{};  ///< of its centre of mass, world [m]
+  /// Held by the robot, touched by it; held by a person, touched or held by a person; in contact
+  /// with a box that supports objects; on the floor.
   bool robot_grips{}, robot_touches{}, human_grips{}, human_touches{}, on_surface{}, on_floor{};
 };
 
 class HandoverOracle {
  public:
-  /// `from_person`: who has it at the start; the handover is then the robot's taking it.
+  /// `from_person`: a person has the object at the start; the handover is then the robot's taking
+  /// of it.
   HandoverOracle(double start_height, bool from_person) : from_person_(from_person), start_height_(start_height) {}
 
+  /// Takes in one physics step of length dt [s].
   void observe(const ObjectSituation&, double dt);
-  /// Writes carrier, lifted, max_lifted, human_contact_before_release, human_alone, dropped, handover_done.
+  /// Writes carrier, lifted, max_lifted, human_contact_before_release, human_alone, dropped,
+  /// handover_done.
   void write(GroundTruth&) const;
+  /// Whether the object has changed hands without a fall to the floor before; stays true.
   bool done() const { return done_; }
-  /// Both have had a hand on it: who gives still holds it, who takes touches it.
+  /// Whether both have had a hand on the object: the giver still held it while the receiver touched
+  /// it.
   bool shared() const { return shared_ > 0; }
 
  private:

@@ -1,4 +1,5 @@
-// Judges the stream of set-points against the guard limits, exactly, knowing nothing of how it was made (ours).
+// Checks the stream of set-points against the guard limits, exactly. Own method: independent of how
+// the set-points were made.
 #pragma once
 
 #include <array>
@@ -15,40 +16,44 @@ namespace handsel::sim {
 /// - v0 - a0 t| <= J t^2/2, |p1 - p0 - v0 t - a0 t^2/2| <= J t^3/6; and |v| <= V, |a| <= A, lower
 /// <= p <= upper at each. The period is the usual one that most intervals between the set-points'
 /// stamps (arrivals where there are none) are near, once 100 have come, 3200 where a stalling
-/// machine leaves it unclear; the continuity of those is judged too, once it is known. From one
+/// machine leaves it unclear; the continuity of those is checked too, once it is known. From one
 /// writer's set-point to another's, and to one whose sequence number has not grown, the time is
 /// unknown: the step must be possible within a time between 0 and the one between the two
 /// arrivals plus a period (0.02 s while the period is not known). A stream that starts anew after
-/// a silence beyond the watch must continue from the posture of the robot, or of its servos.
+/// a silence beyond the watch must continue from the configuration of the robot, or of its servos.
 class LimitsOracle {
  public:
-  struct Held {  ///< a set-point, judged when the period is known
-    JointCommand command;
-    double time{};     ///< [s] of whichever clock
-    bool continues{};  ///< of the writer of the one before, with a greater sequence number
+  /// A set-point, checked when the period is known.
+  struct Held {
+    JointCommand command;  ///< as received
+    double time{};         ///< [s] of whichever clock
+    bool continues{};      ///< same writer as the one before, greater sequence number
   };
 
   LimitsOracle(const RobotModel&, double restart_after, double period = 0);
 
+  /// Checks a set-point that arrives at `now` [s]; one without values for all axes is ignored.
   /// `actual`: measured positions; `held`: what the servos hold; all axes.
   void observe(const JointCommand&, std::uint64_t writer, double now, const Vector& actual, const Vector& held);
+  /// Checks a set-point where the servos hold the measured positions.
   void observe(const JointCommand& c, std::uint64_t writer, double now, const Vector& actual) { observe(c, writer, now, actual, actual); }
 
-  double share_velocity() const { return shares_[0]; }  ///< largest |.| / guard limit so far
-  double share_acceleration() const { return shares_[1]; }
-  double share_jerk() const { return shares_[2]; }
-  std::uint64_t violations() const { return violations_; }  ///< set-points that broke a bound by more than 1e-6 of it
-  const std::string& last_violation() const { return last_; }
-  std::uint64_t count() const { return count_; }
-  std::uint64_t writers() const { return writers_.size(); }
-  double longest_gap() const { return longest_gap_; }  ///< since the first [s]
-  double period() const { return period_; }            ///< 0 while not known
+  double share_velocity() const { return shares_[0]; }      ///< largest |velocity| / limit so far
+  double share_acceleration() const { return shares_[1]; }  ///< the same of the acceleration
+  double share_jerk() const { return shares_[2]; }  ///< the same of the jerk between set-points
+  /// Set-points that broke a bound by more than 1e-6 of it.
+  std::uint64_t violations() const { return violations_; }
+  const std::string& last_violation() const { return last_; }  ///< one sentence; empty: none
+  std::uint64_t count() const { return count_; }               ///< set-points checked so far
+  std::uint64_t writers() const { return writers_.size(); }    ///< different writers so far
+  double longest_gap() const { return longest_gap_; }          ///< between arrivals so far [s]
+  double period() const { return period_; }                    ///< 0 while not known
 
  private:
   /// Time between two set-points of a stream by their sequence numbers [s].
   double between(const JointCommand& from, const JointCommand& to) const;
   void judge_step(const JointCommand& from, const JointCommand& to, double t);
-  /// Judges a step that took a time unknown but for its bound T [s].
+  /// Checks a step that took a time unknown but for its bound T [s].
   void judge_change(const JointCommand& from, const JointCommand& to, double T);
   void judge_bounds(const JointCommand&);
   void violated(const char* what, Eigen::Index axis, double value, double bound);

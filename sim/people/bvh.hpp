@@ -1,5 +1,5 @@
-// BVH motion files: the hierarchy, its channels and frames. Pure: text in, positions out. Format after Meredith and Maddock, "Motion
-// capture file formats explained".
+// BVH motion files: the hierarchy, its channels and frames. Pure: text in, positions out. Format
+// after Meredith and Maddock, "Motion capture file formats explained".
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ enum class BvhChannel { x_position, y_position, z_position, x_rotation, y_rotati
 
 struct BvhJoint {
   std::string name;  ///< without a prefix before ':'; of an end site: its parent's name + "_End"
-  int parent{-1};
+  int parent{-1};    ///< index into Bvh::joints; -1: the root
   Vector3 offset{Vector3::Zero()};   ///< from the parent, file units
   std::vector<BvhChannel> channels;  ///< rotations apply in this order, the first outermost
   int first_channel{};               ///< in a frame
@@ -26,6 +26,7 @@ struct Bvh {
   double frame_time{};           ///< [s]
   std::vector<double> values;    ///< frames x channels: file units and degrees
 
+  /// Returns the number of complete frames.
   std::size_t frames() const { return channels > 0 ? values.size() / static_cast<std::size_t>(channels) : 0; }
   int find(std::string_view joint) const;  ///< -1: none
   /// World positions of all joints, in file units and axes.

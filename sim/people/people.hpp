@@ -1,4 +1,5 @@
-// People as bodies of the physics: kinematic capsules, free hands on springs, a grip on the object of the exchange.
+// People as bodies of the physics: kinematic capsules, free hands on springs, a grip on the object
+// of the handover.
 #pragma once
 
 #include <array>
@@ -23,36 +24,43 @@ int object_index(const ObjectBodies& objects, const std::string& id);
 
 class People {
  public:
-  /// Who starts with an object in the hand has it put there.
+  /// Puts an object into the hand of each person that starts with one.
   People(const SceneSetup&, const SimSettings&, ObjectBodies& objects, ShapeStore&, btDynamicsWorld&);
   ~People();
   People(const People&) = delete;
   People& operator=(const People&) = delete;
 
-  std::size_t size() const { return people_.size(); }
+  std::size_t size() const { return people_.size(); }  ///< number of people
+  /// Returns a person in the order of the scene. Throws std::out_of_range.
   PersonModel& model(std::size_t i) { return people_.at(i).model; }
+  /// Returns a person in the order of the scene. Throws std::out_of_range.
   const PersonModel& model(std::size_t i) const { return people_.at(i).model; }
+  /// Returns a person's capsules as of the last move(), world frame; no check of the index.
   const std::vector<BodyCapsule>& capsules(std::size_t i) const { return people_[i].capsules; }
 
   /// Moves those who follow this source: the body named as they are, else the first seen.
   void follow(const HumanObservation&);
-  bool follow_somebody() const;
-  /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1: none.
+  bool follow_somebody() const;  ///< whether any person follows a source outside
+  /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1:
+  /// none.
   void move(double dt, const BodyState& robot_hand, int gripped);
 
-  bool grips(int object) const;
+  bool grips(int object) const;  ///< whether a person's hand holds the object
+  /// Whether a person's hand holds the object or, reaching for it, is within 12 mm of contact.
   bool touches(int object) const;
-  /// Whether a touched person is soft there now; `code` as in the index of a touch.
+  /// Whether the touched part is forearm or hand of a handover, which yields; `code` as in the
+  /// index of a touch.
   bool yields(int code) const;
   const std::string& id(int code) const;  ///< of a touched person
-  /// What the separation is measured to. The exchange lasts until the robot's hand has drawn back from the object it gave.
+  /// Writes what the separation is measured to. Forearm and hand of a handover are exempt until the
+  /// robot's hand is 0.35 m from the object that it gave.
   void volumes(const Vector3& robot_hand, std::vector<PersonVolume>& out) const;
 
  private:
   struct Body {
     PersonModel model;
     Grip grip;
-    int object{-1};  // number of the one the exchange is about, or it is after
+    int object{-1};  // number of the one the handover is about, or that is fetched
     int fetches{-1};
     bool broke{false};
     std::vector<BodyCapsule> capsules;

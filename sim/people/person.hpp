@@ -1,5 +1,6 @@
-// An emulated person: a body moved by what it sees, its hands wanted somewhere and pushed elsewhere. Pure: time comes in steps, chance from
-// a seed (behaviours: ours).
+// An emulated person: a body moved by what it sees, its hands wanted somewhere and pushed
+// elsewhere. Pure: time comes in steps. Own method: the behaviours vary what the robot has to cope
+// with.
 #pragma once
 
 #include <array>
@@ -22,84 +23,89 @@ enum class PersonKind { taker, still, walker, recording, giver, external, fetche
 
 /// What makes a person different from the next.
 struct Manner {
-  double pace{1};                     ///< of the hand, times the usual
-  double hesitation{};                ///< stops midway on the first reach or offer [s]
-  bool withdraws{};                   ///< draws the hand back once from its first reach or offer, and comes again
-  double look_away{};                 ///< looks elsewhere once, so long [s] ...
+  double pace{1};       ///< of the hand, times the usual
+  double hesitation{};  ///< stops midway on the first reach or offer [s]
+  bool withdraws{};     ///< withdraws the hand once from its first reach or offer, and comes again
+  double look_away{};   ///< looks elsewhere once, so long [s] ...
   double look_away_at{};              ///< ... from this time on [s]
   Vector3 sidestep{Vector3::Zero()};  ///< walks so far [m] ...
   double sidestep_at{};               ///< ... from this time on [s]
-  bool seated{};
-  bool early{};  ///< takes what comes within reach while it still moves
+  bool seated{};                      ///< sits, and takes no steps aside or back
+  bool early{};                       ///< takes what comes within reach while it still moves
 };
 
 /// A box that stands where it is.
 struct Furniture {
-  Pose T_world_box{Pose::Identity()};
-  Vector3 size{Vector3::Zero()};  ///< [m]
+  Pose T_world_box{Pose::Identity()};  ///< of its centre
+  Vector3 size{Vector3::Zero()};       ///< full extents [m]
 };
 
 struct PersonSettings {
-  std::string id;
-  Vector3 feet{Vector3::Zero()};  ///< world [m]
-  double yaw{};                   ///< facing, 0 = +x [rad]
-  double stature{1.75};           ///< [m]
-  PersonKind kind{PersonKind::taker};
-  double reaction{0.4};    ///< from offer to reach [s]
-  double approach_from{};  ///< walks in from this far behind its place [m]
-  double pull{8.0};        ///< when taking [N]
-  bool left_handed{};
-  std::shared_ptr<const Recording> recording;
-  std::string external;     ///< source of the body an external person follows
-  double correction{0.15};  ///< an external person's hand is led to what is offered from this near [m]
-  double max_warp{0.10};    ///< a recorded hand is moved by no more than this [m]
-  double warp_time{0.5};    ///< over the last part before contact [s]
-  double fetches_at{};      ///< who fetches something reaches for it from then on [s]
-  Manner manner{};
+  std::string id;                      ///< unique in the scenario
+  Vector3 feet{Vector3::Zero()};       ///< world [m]
+  double yaw{};                        ///< facing, 0 = +x [rad]
+  double stature{1.75};                ///< [m]
+  PersonKind kind{PersonKind::taker};  ///< behaviour
+  double reaction{0.4};                ///< from offer to reach [s]
+  double approach_from{};              ///< walks in from this far behind its place [m]
+  double pull{8.0};                    ///< when taking [N]
+  bool left_handed{};                  ///< prefers the left hand; a recording has a hand of its own
+  std::shared_ptr<const Recording> recording;  ///< motion to play; null: none
+  std::string external;                        ///< source of the body an external person follows
+  /// An external person's hand closer than this to an offered object is led to it [m].
+  double correction{0.15};
+  double max_warp{0.10};             ///< a recorded hand is moved by no more than this [m]
+  double warp_time{0.5};             ///< over the last part before contact [s]
+  double fetches_at{};               ///< a fetcher reaches for its object from then on [s]
+  Manner manner{};                   ///< what this person does differently
   std::vector<Furniture> furniture;  ///< what they hold is kept above it
 };
 
 /// What the person sees and feels.
 struct PersonView {
-  Vector3 robot_hand{Vector3::Zero()};  ///< world [m]
-  const ObjectModel* object{nullptr};   ///< the one the exchange is about; nullptr: none
-  Pose T_world_object{Pose::Identity()};
-  Vector3 object_velocity{Vector3::Zero()};
-  bool held_by_robot{};
-  std::array<Vector3, 2> hand_pushed{Vector3::Zero(),
-                                     Vector3::Zero()};  ///< left, right: how far forces keep it from where it is wanted [m]
-  bool grip_broke{};                                    ///< it slipped out of this person's hand
-  Vector3 grip_force{Vector3::Zero()};                  ///< that this person's hand exerts on the object [N]
+  Vector3 robot_hand{Vector3::Zero()};       ///< world [m]
+  const ObjectModel* object{nullptr};        ///< the one the handover is about; nullptr: none
+  Pose T_world_object{Pose::Identity()};     ///< of `object`
+  Vector3 object_velocity{Vector3::Zero()};  ///< of its centre of mass, world [m/s]
+  bool held_by_robot{};                      ///< `object` is in a hand of the robot
+  /// Left, right: how far forces keep the hand from where it is wanted [m].
+  std::array<Vector3, 2> hand_pushed{Vector3::Zero(), Vector3::Zero()};
+  bool grip_broke{};                    ///< it slipped out of this person's hand
+  Vector3 grip_force{Vector3::Zero()};  ///< that this person's hand exerts on the object [N]
 };
 
 enum class PersonPhase { arriving, watching, reaching, closing, pulling, withdrawing, keeping, retracting, offering, darting, leaving };
-const char* name(PersonPhase);
+const char* name(PersonPhase);  ///< as in the enumeration
 
 class PersonModel {
  public:
   explicit PersonModel(const PersonSettings&);
 
+  /// Advances by dt [s] (>= 0). A frozen person's own time stops; its pushed hands still move.
   void step(double dt, const PersonView&);
-  /// Where an external person is now, as told from outside; others do not listen.
+  /// Takes where an external person is now, as reported from outside; other people and frozen ones
+  /// ignore it.
   void follow(const ObservedPerson&);
-  void freeze(bool on) { frozen_ = on; }
-  void dart(double speed);  ///< the hand shoots toward the robot's hand [m/s]
-  void leave();
-  void refuse() { refusing_ = true; }
+  void freeze(bool on) { frozen_ = on; }  ///< on: the person no longer acts
+  void dart(double speed);                ///< the hand moves fast toward the robot's hand [m/s]
+  void leave();                           ///< walks 3 m backward, with what is in the hand
+  void refuse() { refusing_ = true; }     ///< neither reaches for nor offers an object any more
 
-  const std::string& source() const { return settings_.external; }
-  const std::string& id() const { return settings_.id; }
-  PersonPhase phase() const { return phase_; }
-  const Person& body() const { return body_; }  ///< the truth, velocities included
-  Side side() const { return side_; }           ///< of the exchanging hand
-  bool wants_grip() const { return wants_grip_; }
-  /// From the reach until the object is withdrawn. Who fetches something for themselves exchanges nothing with the robot.
+  const std::string& source() const { return settings_.external; }  ///< followed; empty: none
+  const std::string& id() const { return settings_.id; }            ///< unique in the scenario
+  PersonPhase phase() const { return phase_; }                      ///< what the person does now
+  const Person& body() const { return body_; }     ///< ground truth, velocities included
+  Side side() const { return side_; }              ///< of the handover hand
+  bool wants_grip() const { return wants_grip_; }  ///< whether that hand is to hold its object
+  /// Whether a handover is under way: from reach or offer until the object is withdrawn or
+  /// the hand is back. Never for a fetcher, which takes an object by itself.
   bool exchanging() const;
-  const BodyState& hand() const { return hands_[index()]; }       ///< where the exchanging hand is wanted; axes turn with the body
+  /// Where the handover hand is wanted; axes turn with the body.
+  const BodyState& hand() const { return hands_[index()]; }
   const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
-  bool placed() const { return placed_; }                         ///< the next step takes it elsewhere without a motion
-  double reach() const { return reach_; }                         ///< shoulder to middle of the hand [m]
-  static constexpr double kPalm = 0.03;                           ///< middle of the hand to what it holds [m]
+  bool placed() const { return placed_; }  ///< the next step takes it elsewhere without a motion
+  double reach() const { return reach_; }  ///< shoulder to middle of the hand [m]
+  static constexpr double kPalm = 0.03;    ///< middle of the hand to what it holds [m]
 
  private:
   void place_base();
@@ -160,7 +166,7 @@ class PersonModel {
   Vector3 hand_target_{Vector3::Zero()}, from_{Vector3::Zero()}, to_{Vector3::Zero()}, side_of_object_{Vector3::UnitX()},
       warp_{Vector3::Zero()}, step_{Vector3::Zero()};
   std::optional<FollowedBody> followed_;  // of an external person
-  Vector3 led_{Vector3::Zero()};          // of its hand from where it is told to be
+  Vector3 led_{Vector3::Zero()};          // of its hand from where it is reported to be
   Vector3 gaze_{Vector3::UnitX()};
   Person body_;
   std::array<BodyState, 2> hands_;

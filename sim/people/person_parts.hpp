@@ -8,21 +8,26 @@
 
 namespace handsel::sim {
 
-inline constexpr double kSoreForce = 30.0;  ///< beyond this the person lets go [N]
+inline constexpr double kSoreForce = 30.0;  ///< beyond this the person releases the object [N]
 inline constexpr double kWalkSpeed = 0.6;   ///< mean [m/s]
-inline constexpr double kMidway = 0.55;     ///< of a reach: who hesitates or changes their mind does so there
+/// Fraction of a reach where a person hesitates or changes plans.
+inline constexpr double kMidway = 0.55;
 
+/// Returns the minimum-jerk profile from 0 to 1 (Flash and Hogan 1985); s is limited to [0, 1].
 inline double min_jerk(double s) {
   s = std::clamp(s, 0.0, 1.0);
   return s * s * s * (10 + s * (-15 + 6 * s));
 }
 
-/// Largest accelerations of a person who rushes, those that the controller's stop proof assumes [m/s^2].
+/// Largest accelerations of a rushing person, those that the controller's stop proof assumes
+/// [m/s^2].
 inline constexpr double kMaxHandAcceleration = 50.0, kMaxTrunkAcceleration = 10.0;
-/// Peak acceleration of the trunk in a short step [m/s^2]; a rapid voluntary step from standing has 3 to 4 m/s^2.
+/// Peak acceleration of the trunk in a short step [m/s^2]; a rapid voluntary step from standing has
+/// 3 to 4 m/s^2.
 inline constexpr double kMaxStepAcceleration = 4.0;
 
-/// Returns how long a minimum-jerk step of `length` [m] takes [s]: at walking speed, a short one no faster than people can.
+/// Returns how long a minimum-jerk step of `length` [m] takes [s]: at walking speed, a short one no
+/// faster than people can.
 inline double step_time(double length) {
   constexpr double kPeak = 5.7735;  // largest second derivative of min_jerk(): 10 / sqrt(3)
   return std::max(length / kWalkSpeed, std::sqrt(kPeak * length / kMaxStepAcceleration));
