@@ -11,7 +11,7 @@ namespace handsel {
 
 struct SightCapsule {
   Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis, world [m]
-  double radius{};
+  double radius{};                                 ///< [m]
 };
 
 struct SightBox {
@@ -19,17 +19,21 @@ struct SightBox {
   Vector3 size{Vector3::Zero()};       ///< full extents [m]
 };
 
+/// Whether the point (world) is inside the capsule or on its surface.
 inline bool contains(const SightCapsule& capsule, const Vector3& point) {
   Vector3 on_point, on_axis;
   return nearest_points(point, point, capsule.a, capsule.b, on_point, on_axis) <= capsule.radius * capsule.radius;
 }
 
-/// Whether the straight line from `eye` to `point` passes through the capsule. What the eye itself is in hides nothing.
+/// Whether the straight line from `eye` to `point` passes through the capsule. What the eye itself
+/// is in hides nothing.
 inline bool hides(const SightCapsule& capsule, const Vector3& eye, const Vector3& point) {
   Vector3 on_line, on_axis;
   return nearest_points(eye, point, capsule.a, capsule.b, on_line, on_axis) < capsule.radius * capsule.radius && !contains(capsule, eye);
 }
 
+/// Whether the straight line from `eye` to `point` passes through the box. A box that the eye is in
+/// hides nothing.
 inline bool hides(const SightBox& box, const Vector3& eye, const Vector3& point) {
   const Vector3 from = box.T_world_box.inverse() * eye, to = box.T_world_box.inverse() * point, along = to - from;
   double enter = 0, leave = 1;

@@ -13,12 +13,14 @@ namespace handsel::mesh {
 
 inline constexpr std::uintmax_t kMaxBytes = 64u << 20;
 inline constexpr std::size_t kMaxTriangles = 500'000;
-inline constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;  ///< each triangle has three of its own at most
-inline constexpr std::size_t kMaxCorners = 1000;                ///< of one face: splitting it costs their square
-inline constexpr std::size_t kMaxLine = 1u << 16;               ///< [bytes]
-inline constexpr double kLargestCoordinate = 1e9;               ///< in the unit of the file
+/// Each triangle has three of its own at most.
+inline constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;
+inline constexpr std::size_t kMaxCorners = 1000;   ///< of one face: splitting it costs their square
+inline constexpr std::size_t kMaxLine = 1u << 16;  ///< [bytes]
+inline constexpr double kLargestCoordinate = 1e9;  ///< in the unit of the file
 
-/// Returns the number that `word` is, nothing where it is none, not finite or beyond kLargestCoordinate.
+/// Returns the number that `word` is, nothing where it is none, not finite or beyond
+/// kLargestCoordinate.
 std::optional<double> coordinate_of(std::string_view word);
 /// Returns the whole number that `word` is.
 std::optional<long long> whole_of(std::string_view word);
@@ -38,7 +40,8 @@ class Lines {
   bool goes_on() const;
   /// The text behind the line.
   std::string_view rest() const { return rest_; }
-  std::size_t number() const { return number_; }
+  std::size_t number() const { return number_; }  ///< of the line, from 1; 0 before the first
+  /// Throws ConfigError "file:line: what".
   [[noreturn]] void fail(const std::string& what) const;
 
  private:

@@ -1,4 +1,5 @@
-// Rigid transforms. T_a_b maps coordinates in frame b to frame a. SI units, right-handed, z up (REP-103).
+// Rigid transforms. T_a_b maps coordinates in frame b to frame a. SI units, right-handed, z up
+// (REP-103).
 #pragma once
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@ using Vector3 = Eigen::Vector3d;
 using Pose = Eigen::Isometry3d;
 using Vector = Eigen::VectorXd;
 
+/// Returns the pose with origin p [m] and rotation q, which is normalized first.
 inline Pose make_pose(const Vector3& p, const Eigen::Quaterniond& q = Eigen::Quaterniond::Identity()) {
   Pose T = Pose::Identity();
   T.translation() = p;

@@ -1,4 +1,5 @@
-// The chain of joints that moves one group's tip, prepared for inverse kinematics: everything that does not turn is folded in.
+// The chain of joints that moves one group's tip, prepared for inverse kinematics: everything that
+// does not turn is folded in.
 #pragma once
 
 #include <algorithm>
@@ -24,12 +25,13 @@ inline Vector6 error_of(const Pose& target, const Pose& now) {
   return e;
 }
 
+/// A moving joint of the chain.
 struct Element {
-  Pose T_before;
-  Vector3 axis;
-  bool prismatic;
-  int column;
-  double factor, offset;
+  Pose T_before;          ///< joint frame in the frame of the element before (first: the root)
+  Vector3 axis;           ///< joint frame, unit
+  bool prismatic;         ///< slides instead of turning
+  int column;             ///< index of its axis in the group
+  double factor, offset;  ///< joint value = factor * q[column] + offset
 };
 
 class Chain {
@@ -69,14 +71,18 @@ class Chain {
     reach_ += T.translation().norm();
   }
 
-  int size() const { return size_; }
-  bool empty() const { return elements_.empty(); }
-  const Axes& lower() const { return lower_; }
-  const Axes& upper() const { return upper_; }
-  const Axes& rest() const { return rest_; }
-  const std::vector<Element>& elements() const { return elements_; }
+  int size() const { return size_; }                ///< axes of the group
+  bool empty() const { return elements_.empty(); }  ///< no axis of the group moves the tip
+  const Axes& lower() const { return lower_; }      ///< position limits [rad] ([m])
+  const Axes& upper() const { return upper_; }      ///< position limits [rad] ([m])
+  const Axes& rest() const { return rest_; }        ///< rest configuration of the group
+  const std::vector<Element>& elements() const { return elements_; }  ///< from root to tip
+  /// Returns false for points (root frame [m]) that the tip cannot reach; true is no promise. The
+  /// chain must not be empty.
   bool within_reach(const Vector3& p) const { return (p - elements_.front().T_before.translation()).norm() <= reach_ + 1e-6; }
 
+  /// Returns the tip's pose in the root frame and writes its Jacobian (linear, then angular; root
+  /// axes) unless J is null.
   Pose forward(const Axes& q, Jacobian* J) const {
     Pose T = Pose::Identity();
     Vector3 origins[std::size_t{2} * kMaxAxes], axes[2 * kMaxAxes];
@@ -105,6 +111,8 @@ class Chain {
     }
     return T;
   }
+  /// Whether the group has few enough axes and joints for the fixed-size arrays; else forward()
+  /// must not be called.
   bool fits() const { return size_ <= kMaxAxes && elements_.size() <= 2 * kMaxAxes; }
 
  private:

@@ -1,4 +1,5 @@
-// An object that can be handed over: mesh for planning, simple convex parts for physics, mass (common/config/object.proto).
+// An object that can be handed over: mesh for planning, simple convex parts for physics, mass
+// (common/config/object.proto).
 #pragma once
 
 #include <filesystem>
@@ -10,13 +11,13 @@
 namespace handsel {
 
 struct ObjectModel {
-  std::string name;
+  std::string name;                ///< by which scenarios and observations name the model
   TriangleMesh mesh;               ///< object frame, z up when standing [m]
   std::vector<PlacedShape> parts;  ///< convex parts (collision, physics), object frame
   double mass{};                   ///< [kg]
   Vector3 com{Vector3::Zero()};    ///< object frame [m]
-  double friction{0.6};
-  double height_above_support{};  ///< of the object frame's origin when standing [m]
+  double friction{0.6};            ///< Coulomb coefficient
+  double height_above_support{};   ///< of the object frame's origin when standing [m]
 
   /// Throws ConfigError / MissingError naming the file and what is wrong.
   static ObjectModel load(const std::filesystem::path& description);

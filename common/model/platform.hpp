@@ -1,4 +1,5 @@
-// A robot that drives: place and heading of its platform as axes, for planning. The robot that is controlled has none.
+// A robot that drives: place and heading of its platform as axes, for planning. The robot that is
+// controlled has none.
 #pragma once
 
 #include <array>
@@ -10,11 +11,14 @@
 namespace handsel {
 
 inline constexpr const char* kPlatformGroup = "platform";  ///< x, y, heading
-inline constexpr const char* kWholeRobotGroup = "robot";   ///< those, then the axes of the group "arm"; its tip is the arm's
-inline constexpr double kPlatformExtent = 20.0;            ///< x and y in the world are within this either way [m]
+/// Axes of the platform, then those of the group "arm"; its tip is the arm's.
+inline constexpr const char* kWholeRobotGroup = "robot";
+/// Largest |x| and |y| of the platform in the world [m].
+inline constexpr double kPlatformExtent = 20.0;
 
-/// The robot with three more axes after its own: x, y [m] and heading [rad] of its root link in the world, which is the root of this model;
-/// with the groups above. nullopt where the description tells of no platform. Throws ConfigError.
+/// The robot with three more axes after its own: x, y [m] and heading [rad] of its root link in the
+/// world, which is the root of this model; with the groups above. nullopt where the description
+/// has no platform. Throws ConfigError.
 std::optional<RobotModel> on_platform(const RobotModel& robot, const std::filesystem::path& description);
 
 /// All axes of the robot, then where its platform is.

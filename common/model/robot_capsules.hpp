@@ -1,4 +1,5 @@
-// The robot as a few capsules (one a shape, more for flat boxes), covering its collision shapes: the fast form for separation and costs.
+// The robot as a few capsules (one a shape, more for flat boxes), covering its collision shapes:
+// the fast form for separation and costs.
 #pragma once
 
 #include <vector>
@@ -10,31 +11,33 @@
 namespace handsel {
 
 struct LinkCapsule {
-  int link{};
-  Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< link frame [m]
-  double radius{};
+  int link{};                                      ///< index into RobotModel::links()
+  Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis, link frame [m]
+  double radius{};                                 ///< [m]
 };
 
-/// Fitted so that every vertex of the link's collision shapes is inside.
+/// Returns the capsules of all links, fitted so that every vertex of the link's collision shapes is
+/// inside.
 std::vector<LinkCapsule> robot_capsules(const RobotModel&);
 
 /// Nearest approach of robot and person.
 struct Separation {
-  double distance{};  ///< [m], may be negative when overlapping; +inf if nobody
-  int link{-1};
-  BodyPart part{};
-  std::string person;
-  Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< world
+  double distance{};   ///< [m], may be negative when overlapping; +inf if nobody
+  int link{-1};        ///< of the robot; -1 if nobody
+  BodyPart part{};     ///< of that person
+  std::string person;  ///< id; empty if nobody
+  Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< world [m]
 };
 
-/// Exchanging forearm and hand excepted from separation (formulas: section 4).
+/// Forearm and hand of the handover, exempt from separation (formulas: section 4).
 struct Exception {
-  std::string person;  ///< empty: none
-  Side side{Side::right};
-  bool both_sides{true};  ///< when the taking hand is not known yet
+  std::string person;      ///< empty: none
+  Side side{Side::right};  ///< of the taking hand, unless both_sides
+  bool both_sides{true};   ///< when the taking hand is not known yet
 };
 
-/// T_root_link from RobotModel::forward. Allocates nothing (person ids up to 15 characters, complete bodies).
+/// Returns the nearest approach; T_root_link from RobotModel::forward. Allocates nothing (person
+/// ids up to 15 characters, complete bodies).
 Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link, const Pose& T_world_base,
                       const HumanState& people, const Exception& exception = {});
 

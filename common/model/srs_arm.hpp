@@ -1,4 +1,6 @@
-// Closed-form inverse kinematics of seven-joint arms with a spherical shoulder, an elbow and a spherical wrist (KUKA LWR and iiwa). Ours.
+// Closed-form inverse kinematics of seven-joint arms with a spherical shoulder, an elbow and a
+// spherical wrist (KUKA LWR and iiwa). Own method: searches the whole circle of elbow positions
+// inside the limits.
 #pragma once
 
 #include <array>
@@ -11,29 +13,35 @@ namespace handsel::ik {
 
 class SrsArm {
  public:
-  /// The arm, if the chain is one: axes 1 to 3 meet in the shoulder, 5 to 7 in the wrist, neighbours are perpendicular and the elbow is
-  /// on axes 3 and 5, which are parallel when all joints are 0.
+  /// The arm, if the chain is one: axes 1 to 3 meet in the shoulder, 5 to 7 in the wrist,
+  /// neighbours are perpendicular and the elbow is on axes 3 and 5, which are parallel when all
+  /// joints are 0.
   static std::optional<SrsArm> recognise(const Chain& chain);
-  /// What to tell people when the axes of a group are none: how many there are, and what is needed.
+  /// Returns why the axes of a group are no such arm: how many there are, and what is needed.
   static std::string why_none(const Group& group);
 
-  /// The solution inside the limits nearest `seed`, found over the whole circle of elbow positions; a little weight goes to the rest
-  /// posture and to staying off the limits. When there is none: the one least outside, put on the limits, with `outside` > 0; nullopt when
-  /// the wrist is out of reach.
+  /// A solution of solve().
   struct Solution {
-    Axes q;
+    Axes q;          ///< within the limits [rad]
     double outside;  ///< largest violation of a limit before it was put on it [rad]
   };
+  /// Returns the solution inside the limits nearest `seed`, found over the whole circle of elbow
+  /// positions; a little weight goes to the rest configuration and to the distance from the limits.
+  /// When there is none: the one least outside, put on the limits, with `outside` > 0; nullopt when
+  /// the wrist is out of reach.
   std::optional<Solution> solve(const Pose& T_root_tip, const Axes& seed) const;
 
-  /// Every way to reach the pose with the elbow at this angle on its circle about the line from shoulder to wrist; 0 is where it is
-  /// farthest along axis 1 from the shoulder. Elbow bent either way, times two of the shoulder, times two of the wrist; limits are not
-  /// looked at, angles are in (-2 pi, 2 pi]. Empty when the wrist is out of reach. Where three axes of shoulder or wrist are in line their
-  /// two ways are one, given twice.
+  /// Returns every solution for the pose with the elbow at this angle on its circle about the line
+  /// from shoulder to wrist; 0 is where it is farthest along axis 1 from the shoulder. Elbow bent
+  /// to either side, times two of the shoulder, times two of the wrist; limits are not checked,
+  /// angles are in (-2 pi, 2 pi]. Empty when the wrist is out of reach. Where three axes of
+  /// shoulder or wrist are in line their two solutions are one, given twice.
   std::vector<Axes> branches(const Pose& T_root_tip, double elbow_angle) const;
-  /// Of those inside the limits the one nearest `near` in its farthest joint; nullopt when there is none.
+  /// Of those inside the limits the one nearest `near` in its farthest joint; nullopt when there is
+  /// none.
   std::optional<Axes> nearest(const Pose& T_root_tip, double elbow_angle, const Axes& near) const;
-  /// Joints moved by whole turns next to `near` and inside the limits [rad]; nullopt when they cannot be.
+  /// Joints moved by whole turns next to `near` and inside the limits [rad]; nullopt when they
+  /// cannot be.
   std::optional<Axes> turned_inside(const Axes& q, const Axes& near) const;
   /// Where the elbow is on its circle [rad], in (-pi, pi]; 0 for a straight arm.
   double elbow_angle(const Axes& q) const;
@@ -63,9 +71,10 @@ class SrsArm {
   const Chain* chain_;
   std::array<Vector3, 7> axis_;  // at zero, root frame
   Vector3 shoulder_, to_elbow_, to_wrist_, p_tip_wrist_;
-  Eigen::Matrix3d R_zero_;                // of the tip
-  std::array<Eigen::Matrix3d, 2> basis_;  // of shoulder and wrist: columns axis2 x axis1, axis2, axis1
-  std::array<double, 2> last_sign_;       // third axis of each along (+1) or against (-1) its first
+  Eigen::Matrix3d R_zero_;  // of the tip
+  // Of shoulder and wrist: columns axis2 x axis1, axis2, axis1.
+  std::array<Eigen::Matrix3d, 2> basis_;
+  std::array<double, 2> last_sign_;  // third axis of each along (+1) or against (-1) its first
 };
 
 }  // namespace handsel::ik

@@ -6,6 +6,7 @@
 
 namespace handsel {
 
+/// Returns the three numbers as they are, in whatever unit they are written.
 inline Vector3 to_vector(const config::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 /// Roll, pitch, yaw about fixed axes: R = Rz(yaw) Ry(pitch) Rx(roll).

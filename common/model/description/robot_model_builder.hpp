@@ -1,4 +1,5 @@
-// How a RobotModel is put together: URDF tree, SRDF, axes and limits. Used by the loaders of this folder only.
+// How a RobotModel is put together: URDF tree, SRDF, axes and limits. Used by the loaders of this
+// folder only.
 #pragma once
 
 #include <filesystem>
@@ -24,21 +25,33 @@ class RobotModelBuilder {
   /// Reads links and joints; no axes yet. Throws ConfigError / MissingError with file and line.
   RobotModelBuilder(const std::filesystem::path& urdf, Meshes meshes, const UrdfOptions& options = {});
 
-  /// Joins another tree to a link, rigidly; before the axes are set. Throws ConfigError when a name is in both.
+  /// Joins another tree to a link, rigidly; before the axes are set. Throws ConfigError when a name
+  /// is in both.
   void mount(RobotModelBuilder other, const config::HandMount& at, const std::filesystem::path& source);
 
   /// Actuated joints in document order.
   std::vector<std::string> actuated() const;
-  /// Makes these joints the axes. The other actuated joints are held at `held` (0 if not named). `source` is the file the names stand in.
+  /// Makes these joints the axes. The other actuated joints are held at `held` (0 if not named).
+  /// `source` is the file the names stand in.
   void set_axes(const std::vector<std::string>& joints, const std::map<std::string, double>& held, const std::filesystem::path& source);
+  /// Adds a group of axes; `joints` must be axes, an empty `tip` is none. Throws ConfigError when
+  /// the name is taken or the tip is no link.
   void add_group(const std::string& name, const std::vector<std::string>& joints, const std::string& tip,
                  const std::filesystem::path& source);
-  /// Groups (when wanted) and disabled pairs. Unknown names are errors when strict, else passed over.
+  /// Groups (when wanted) and disabled pairs. Unknown names are errors when strict, else passed
+  /// over.
   void read_srdf(const std::filesystem::path& srdf, bool groups, bool strict);
+  /// Takes name, axes, groups, SRDF, roles and limits from the description, which stands in `file`.
+  /// Throws ConfigError naming file and field, also when comfort exceeds guard / 1.1 or stop
+  /// exceeds guard.
   void apply(const config::RobotDescription& description, const std::filesystem::path& file);
+  /// Sets guard and stop from the URDF: velocity v (1 where none is given), acceleration 2 v, jerk
+  /// 6 v; comfort = guard / 1.1.
   void default_limits();
   /// Every body that moves needs a mass. Throws ConfigError.
   void require_masses() const;
+  /// Disables the pairs of links that are adjacent or rigidly joined, and gives the model away: to
+  /// be called last.
   RobotModel finish();
 
   /// on_platform of common/model/platform.hpp.

@@ -1,4 +1,5 @@
-// The joints of a body by number, in the order of kBodyJoints. For the implementation of human_body.hpp only.
+// The joints of a body by number, in the order of kBodyJoints. For the implementation of
+// human_body.hpp only.
 #pragma once
 
 #include <array>

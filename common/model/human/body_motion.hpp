@@ -1,4 +1,5 @@
-// How fast a part of a fitted body moves in a given direction: the measured v_h of the separation rule (formulas: section 2).
+// How fast a part of a fitted body moves in a given direction: the measured v_h of speed and
+// separation monitoring (SSM, ISO 10218-2:2025; formulas: section 2).
 #pragma once
 
 #include <algorithm>
@@ -37,8 +38,9 @@ inline std::initializer_list<int> joints_of(BodyPart part) {
   return torso;
 }
 
-/// Largest speed [m/s] of the part's joints along `direction` (unit, world); may be negative. `person` must be a complete body in the
-/// order of kBodyJoints; otherwise the largest over whatever joints there are. 0 without joints.
+/// Largest speed [m/s] of the part's joints along `direction` (unit, world); may be negative.
+/// `person` must be a complete body in the order of kBodyJoints; otherwise the largest over
+/// whatever joints there are. 0 without joints.
 inline double directed_speed(const Person& person, BodyPart part, const Vector3& direction) {
   if (person.joints.empty()) return 0.0;
   double fastest = -1e9;
