@@ -1,6 +1,6 @@
-// Collision and distance on the 3D models: robot against itself, scene, people. Exact (FCL); where it is told which axes move, spheres
-// around the links clear most states many at a time first, and FCL judges the rest: the verdicts are the same. Not thread safe; one per
-// thread.
+// Collision and distance on the 3D models: robot against itself, scene, people. Exact (FCL); after
+// set_moving_axes(), spheres around the links clear most states first, many at a time (SIMD check),
+// and FCL checks the rest: the verdicts are the same. Not thread safe; one per thread.
 #pragma once
 
 #include <cstdint>
@@ -18,25 +18,27 @@
 
 namespace handsel {
 
-/// Gives the model of an object by its name, or nullptr.
+/// Returns the model of an object by its name, or nullptr.
 using ObjectLibrary = std::function<const ObjectModel*(const std::string&)>;
 
 struct CollisionVerdict {
-  bool free{true};
-  std::string first, second;  ///< what touches what, when not free: "link forearm", "object mug", "box table", "person anna"
-  std::string id;             ///< of the object, box or person touched; empty when the robot touches itself
+  bool free{true};  ///< nothing touches
+  /// What touches what, when not free: "link forearm", "object mug", "box table", "person anna".
+  std::string first, second;
+  std::string id;  ///< of the object, box or person touched; empty when the robot touches itself
 };
 
 /// A fixed obstacle of any shape (problem files, tests); T_parent_shape is in the world.
 struct Obstacle {
-  std::string id;
-  PlacedShape placed;
+  std::string id;      ///< for the verdict
+  PlacedShape placed;  ///< pose in the world
 };
 
 /// Which parts of people are obstacles.
 enum class PeopleParts { all, without_forearms_and_hands };
 
-/// How deep a held object may be inside a box that supports objects: it stood there, and measurements are not exact (ours) [m].
+/// How deep a held object may be inside a box that supports objects: it stood there, and
+/// measurements are not exact [m]. Own method: else a lift would begin in collision.
 inline constexpr double kSupportSlack = 0.005;
 
 /// Links that no axis moves are not tested against scene and people: planning cannot change that.
@@ -46,63 +48,73 @@ class CollisionWorld {
   ~CollisionWorld();
   CollisionWorld(CollisionWorld&&) noexcept;
 
-  void set_base(const Pose& T_world_base);
-  void set_scene(const Scene&);  ///< boxes, and objects the robot does not hold; takes T_world_base when robot_known
+  void set_base(const Pose& T_world_base);  ///< pose of the robot's root link
+  /// Boxes, and objects the robot does not hold; takes T_world_base when robot_known.
+  void set_scene(const Scene&);
   void set_people(const HumanState&, PeopleParts parts = PeopleParts::all);  ///< capsules, inflated
-  void set_obstacles(const std::vector<Obstacle>&);  ///< further fixed obstacles, besides the scene; named "box <id>"
-  /// The object moves with the palm of the hand that holds it. Links of that hand may touch it, each other around it, and the `allowed`
-  /// scene objects and boxes; so may the object. Where it is among the allowed itself, so may every other hand. A person named among the
-  /// allowed keeps head, torso, upper arms and legs as obstacles; forearms and hands are none (the exchange is engaged). The object may be
-  /// up to kSupportSlack inside the top of boxes that support objects.
+  /// Further fixed obstacles, besides the scene; named "box <id>".
+  void set_obstacles(const std::vector<Obstacle>&);
+  /// The object moves with the palm of the hand that holds it. Links of that hand may touch it,
+  /// each other around it, and the `allowed` scene objects and boxes; so may the object. Where it
+  /// is among the allowed itself, so may every other hand. A person named among the allowed keeps
+  /// head, torso, upper arms and legs as obstacles; forearms and hands are none (the exchange is
+  /// engaged). The object may be up to kSupportSlack inside the top of boxes that support objects.
   void set_attachment(const Attachment&, const std::vector<std::string>& allowed_contacts);
 
-  /// From now on is_free and check_motion ask the wide check first. Only these axes should differ between the states asked; when another
-  /// one does, the robot is folded anew. Empty: exact only, as at the beginning. The first check makes the spheres of the links.
+  /// From now on is_free and check_motion use the SIMD check first. Only these axes should differ
+  /// between the states checked; when another one does, the robot is folded anew. Empty: exact
+  /// only, as at the beginning. The first check makes the spheres of the links.
   void set_moving_axes(const std::vector<int>& axes);
 
-  /// Links turned by other axes than the moving ones (the head, while the arm moves) are larger by this on every side for what the moving
-  /// axes move: they may turn on their own meanwhile [m]. Of meshes it is the box around them that is larger. Without moving axes nothing
-  /// is.
+  /// Links turned by other axes than the moving ones (the head, while the arm moves) are larger by
+  /// this on every side for what the moving axes move: they may turn on their own meanwhile [m]. Of
+  /// meshes it is the box around them that is larger. Without moving axes nothing is.
   void set_turning_margin(double margin);
 
   CollisionVerdict check(const Vector& q);  ///< all axes
   bool is_free(const Vector& q);            ///< the same without the names
-  /// Contact with people and what they hold, as set_people and the allowed contacts make them obstacles; cheap when they are far.
+  /// Contact with people and what they hold, as set_people and the allowed contacts make them
+  /// obstacles; cheap when they are far.
   CollisionVerdict check_people(const Vector& q);
   /// Contact with scene, obstacles and itself only.
   CollisionVerdict check_scene(const Vector& q);
-  /// Checks the straight line every `step` [rad, max norm], both ends included, ends and middle first.
+  /// Checks the straight line every `step` [rad, max norm], both ends included, ends and middle
+  /// first.
   CollisionVerdict check_motion(const Vector& from, const Vector& to, double step = 0.02);
-  /// Least distance robot (with what it holds) to people [m]; closed forms against capsules around the robot's links; +inf if nobody.
-  /// Negative when they overlap. All body parts count, whatever set_people and the allowed contacts say.
-  /// Writes the points nearest each other on robot and person, in the world, when given.
+  /// Least distance robot (with what it holds) to people [m]; closed forms against capsules around
+  /// the robot's links; +inf if nobody. Negative when they overlap. All body parts count, whatever
+  /// set_people and the allowed contacts say. Writes the points nearest each other on robot and
+  /// person, in the world, when given.
   double distance_to_people(const Vector& q, Vector3* on_robot = nullptr, Vector3* on_person = nullptr);
-  /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked: distances beyond `cap` return `cap`.
-  /// Writes the points nearest each other on robot and scene, in the world, when given, the distance is below `cap` and nothing touches.
+  /// Least clearance to scene boxes, objects and obstacles [m] (>= 0), not below what is asked:
+  /// distances beyond `cap` return `cap`. Writes the points nearest each other on robot and scene,
+  /// in the world, when given, the distance is below `cap` and nothing touches.
   double distance_to_scene(const Vector& q, double cap = std::numeric_limits<double>::infinity(), Vector3* on_robot = nullptr,
                            Vector3* on_scene = nullptr);
 
-  /// The wide check alone for the states check_motion would judge: true is sure of them, false is unknown; false without moving axes.
+  /// Uses the SIMD check alone for the states of check_motion: true is sure of them, false is
+  /// unknown; false without moving axes.
   bool surely_free_at_steps(const Vector& from, const Vector& to, double step = 0.02);
 
-  /// Whether the straight line is free of contact everywhere, not at steps only, as the wide check can show: true is sure, false is
-  /// unknown.
+  /// Whether the straight line is free of contact everywhere, not at steps only, as the SIMD check
+  /// can show: true is sure, false is unknown.
   bool surely_free(const Vector& from, const Vector& to);
 
-  static constexpr int kMostBoxes = 16;
-  /// Of up to kMostBoxes boxes of configurations (all axes; equal on those that do not move) the bits of those that the wide check cannot
-  /// show to be free of contact everywhere; all bits without moving axes.
+  static constexpr int kMostBoxes = 16;  ///< upper limit of `count` in unclear_boxes()
+  /// Returns, of up to 16 boxes of configurations (all axes; equal on those that do not move), the
+  /// bits of those that the SIMD check cannot show to be free of contact everywhere; all bits
+  /// without moving axes.
   std::uint32_t unclear_boxes(const Vector* low, const Vector* high, int count);
 
-  std::uint64_t checks() const;        ///< states judged so far, by whatever function
-  std::uint64_t exact_checks() const;  ///< those of them that FCL had to judge
+  std::uint64_t checks() const;        ///< states checked so far, by any function
+  std::uint64_t exact_checks() const;  ///< those of them that FCL had to check
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
 
-/// How many states check_motion judges on a line of this length at this step.
+/// Returns how many states check_motion checks on a line of this length at this step.
 int motion_states(const Vector& from, const Vector& to, double step);
 
 /// Distance of two segments [m]; closest points written when given.
@@ -111,9 +123,10 @@ double segment_distance(const Vector3& a0, const Vector3& a1, const Vector3& b0,
 
 /// Contact and distance of two placed shapes (`handsel distance`): distance 0 when they touch.
 struct ShapeDistance {
-  bool collide{};
-  double distance{};
+  bool collide{};     ///< the shapes touch
+  double distance{};  ///< [m]
 };
+/// Returns the exact contact and distance of two shapes with their poses in one frame.
 ShapeDistance shape_distance(const Shape&, const Pose&, const Shape&, const Pose&);
 
 }  // namespace handsel

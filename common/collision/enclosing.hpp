@@ -8,10 +8,11 @@
 
 namespace handsel {
 
-/// Larger by `margin` [m] on every side; of a mesh the box around it, T becomes its pose.
+/// Returns the shape larger by `margin` [m] on every side; of a mesh the box around it, T becomes
+/// its pose.
 CollisionShapePtr widened(const CollisionShapePtr& shape, double margin, Pose& T);
 
-/// A capsule around points, along their longest extent; its link is left open.
+/// Returns a capsule around points, along their longest extent; its link is left open.
 LinkCapsule enclosing_capsule(const std::vector<Vector3>& points);
 
 }  // namespace handsel

@@ -1,4 +1,5 @@
-// How far an arm in motion keeps off what it passes: it is not exactly where it is told to be, and the head turns meanwhile. Ours.
+// Clearance of an arm in motion to what it passes: it is not exactly where it is commanded to be,
+// and the head turns meanwhile. Own method: narrow places get smaller margins instead of no motion.
 #pragma once
 
 #include <vector>
@@ -12,9 +13,9 @@ struct Margins {
   double turning{};  ///< and links that axes beside the moving ones turn [m]
 };
 
-/// Puts the scene into the world with the margins, or with the largest share of them at which `ends` (all axes) are free: from where
-/// something stands near it must be possible to go away. The scene itself, moving axes, people and attachment are set
-/// before.
+/// Puts the scene into the world with the margins, or with the largest fraction of them (1, 0.3 or
+/// 0) at which `ends` (all axes) are free: a motion that begins near an obstacle must stay
+/// possible. The scene itself, moving axes, people and attachment are set before.
 void set_scene_with_margins(CollisionWorld& world, const Scene& scene, const Margins& margins, const std::vector<Vector>& ends);
 
 }  // namespace handsel

@@ -1,4 +1,4 @@
-// Capsules side by side for the wide distance kernel.
+// Capsules side by side for the SIMD distance kernel.
 #pragma once
 
 #include "common/collision/wide_kernel.hpp"
@@ -6,6 +6,8 @@
 
 namespace handsel {
 
+/// Returns the capsule with axis a to b and this radius [m], with what the kernel needs of it
+/// worked out.
 inline detail::WideCapsule wide_capsule(const Vector3& a, const Vector3& b, double radius) {
   const Vector3 d = b - a, middle = 0.5 * (a + b);
   const auto f = [](double x) { return static_cast<float>(x); };
@@ -19,13 +21,14 @@ inline detail::WideCapsule wide_capsule(const Vector3& a, const Vector3& b, doub
           f(middle.z())};
 }
 
-/// Sixteen that are nowhere.
+/// Returns sixteen capsules that are a thousand kilometres away.
 inline detail::WideCapsules no_capsules() {
   detail::WideCapsules out{};
   for (int i = 0; i < 16; ++i) out.mx[i] = out.ax[i] = 1e6f;
   return out;
 }
 
+/// Writes a capsule to one of the sixteen places, 0 to 15.
 inline void put_capsule(const detail::WideCapsule& c, int lane, detail::WideCapsules& out) {
   out.ax[lane] = c.ax, out.ay[lane] = c.ay, out.az[lane] = c.az;
   out.dx[lane] = c.dx, out.dy[lane] = c.dy, out.dz[lane] = c.dz;

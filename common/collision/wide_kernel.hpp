@@ -1,6 +1,8 @@
-// Sixteen states of a robot side by side: forward kinematics, then the spheres around its links against solids and against each other.
-// Plain data in the frame of the robot's root, single precision; who fills it adds the rounding to the radii. Written once for any register
-// width, chosen when the program runs; free of Eigen, whose alignment depends on the width. Nothing here allocates, locks or throws.
+// Sixteen states of a robot side by side: forward kinematics, then the spheres around its links
+// against solids and against each other. Plain data in the frame of the robot's root, single
+// precision; who fills it adds the rounding to the radii. Written once for any register width,
+// chosen when the program runs; free of Eigen, whose alignment depends on the width. Nothing here
+// allocates, locks or throws.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +11,8 @@ namespace handsel::detail {
 
 constexpr int kWideStates = 16;
 
-/// A joint that moves a body: body number = joint number + 1, body 0 is the root. T_parent_joint by rows; z is the axis.
+/// A joint that moves a body: body number = joint number + 1, body 0 is the root. T_parent_joint by
+/// rows; z is the axis.
 struct WideJoint {
   float T[12];
   std::int32_t parent;  // body
@@ -24,24 +27,26 @@ struct WideNode {
   std::int32_t first_child, children, body, reserved;
 };
 
-/// A box (or segment, or point) with rounded edges, or a cylinder when `cylinder` > 0: axes of the shape by rows, then their products with
-/// its centre.
+/// A box (or segment, or point) with rounded edges, or a cylinder when `cylinder` > 0: axes of the
+/// shape by rows, then their products with its centre.
 struct WideSolid {
   float axes[9], at[3], half[3], radius, cylinder;
 };
 
-/// Sixteen solids side by side, cylinders as the boxes around them; those that are not there are far away.
+/// Sixteen solids side by side, cylinders as the boxes around them; those that are not there are
+/// far away.
 struct WideSolids {
   alignas(64) float axes[9][kWideStates], at[3][kWideStates], half[3][kWideStates], radius[kWideStates];
 };
 
-/// Spheres that must stay clear of solids: below `root`, in the trees of `nodes` (all when there are none). `first_row`: the same solids in
-/// rows of sixteen; -1: not there.
+/// Spheres that must stay clear of solids: below `root`, in the trees of `nodes` (all when there
+/// are none). `first_row`: the same solids in rows of sixteen; -1: not there.
 struct WideSearch {
   std::int32_t root, first_node, nodes, first_solid, solids, first_row;
 };
 
-/// Trees that must stay clear of each other: below the roots a and b, the pairs of nodes. `reach`: row of pair_reach.
+/// Trees that must stay clear of each other: below the roots a and b, the pairs of nodes. `reach`:
+/// row of pair_reach.
 struct WidePair {
   std::int32_t a, b, first, pairs;
 };
@@ -58,13 +63,15 @@ struct WideTables {
   const WideSearch* searches;
   const WidePair* pairs;
   const WideNodePair* node_pairs;
-  const float* reach;       // [body][joint]: no sphere centre of the body is farther from the joint's axis; a row has `joint_count`
+  // [body][joint]: no sphere centre of the body is farther from the joint's axis; a row has
+  // `joint_count`.
+  const float* reach;
   const float* pair_reach;  // [pair][joint]: the same for the motion of one against the other
   std::int32_t joint_count, node_count, search_count, pair_count;
 };
 
-/// Memory for one check at a time; on 64 bytes. Sizes in floats: pose 12 x bodies x kWideStates, margin bodies x kWideStates,
-/// position 3 x nodes x kWideStates. stamp: one a node.
+/// Memory for one check at a time; on 64 bytes. Sizes in floats: pose 12 x bodies x kWideStates,
+/// margin bodies x kWideStates, position 3 x nodes x kWideStates. stamp: one a node.
 struct WideMemory {
   float *pose, *margin, *position;
   std::uint32_t* stamp;
@@ -74,7 +81,8 @@ struct WideMemory {
 };
 constexpr int kWideDepth = 12;
 
-/// Capsules of one body of bones: 16 side by side; those that are not there are a thousand kilometres away.
+/// Capsules of one body of bones: 16 side by side; those that are not there are a thousand
+/// kilometres away.
 struct WideCapsules {
   alignas(64) float ax[16], ay[16], az[16], dx[16], dy[16], dz[16], dd[16], over_dd[16], radius[16], reach[16], mx[16], my[16], mz[16];
 };
@@ -85,13 +93,13 @@ struct WideCapsule {
 struct WideKernels {
   const char* name;
   int width;  ///< states in a register
-  /// q: positions, [row][kWideStates], radians between about -50 and 50. `half`: how far each joint row moves to either side of the state,
-  /// or nullptr. Returns the bits of those `lanes` in which some sphere is not clear; `any`: of the first ones found, nothing else is
-  /// looked at then.
+  /// q: positions, [row][kWideStates], radians between about -50 and 50. `half`: how far each joint
+  /// row moves to either side of the state, or nullptr. Returns the bits of those of the given
+  /// states in which some sphere is not clear; `any`: of the first ones found, where the search ends.
   std::uint32_t (*check)(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
                          bool any) noexcept;
-  /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count]; those surely beyond the nearest by
-  /// `slack` may be lower bounds. Returns the least.
+  /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count];
+  /// those surely beyond the nearest by `slack` may be lower bounds. Returns the least.
   float (*distances)(const WideCapsule* robot, int count, const WideCapsules& people, float slack, float* distance) noexcept;
 };
 
@@ -100,7 +108,7 @@ extern const WideKernels kWideKernelsBase;
 extern const WideKernels kWideKernelsAvx2;
 extern const WideKernels kWideKernelsAvx512;
 #endif
-/// The widest this processor has.
+/// Returns the kernels of the widest registers that this processor has.
 const WideKernels& wide_kernels() noexcept;
 
 }  // namespace handsel::detail

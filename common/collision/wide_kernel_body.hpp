@@ -1,4 +1,4 @@
-// The one source of the wide kernels, compiled once per register width.
+// The one source of the SIMD kernels, compiled once per register width.
 #pragma once
 
 #include <algorithm>
@@ -96,7 +96,8 @@ struct Pass {
     return found;
   }
 
-  /// Solids that can be met by the root in any state: its sphere around all states against sixteen solids at once.
+  /// Solids that can be met by the root in any state: its sphere around all states against sixteen
+  /// solids at once.
   int near(const WideSearch& s, const M& todo, std::int32_t* kept) const noexcept {
     const WideNode& node = tables.nodes[s.root];
     const float* at = place(s.root);

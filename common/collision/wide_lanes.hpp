@@ -1,5 +1,6 @@
-// Registers of states side by side, as wide as the unit that includes this is compiled for. Everything is local to that unit: a function of
-// a wide unit must never be the one the linker keeps for the others.
+// Registers of states side by side, as wide as the unit that includes this is compiled for.
+// Everything is local to that unit: a function of a unit for wide registers must never be the one
+// the linker keeps for the others.
 #pragma once
 
 #include <bitset>
@@ -22,9 +23,11 @@ static_assert(kWideStates % kWidth == 0);
 [[gnu::always_inline]] inline V unit(const V& x) noexcept { return min(max(x, V(0.0f)), V(1.0f)); }
 [[gnu::always_inline]] inline std::uint32_t bits(const M& m) noexcept { return static_cast<std::uint32_t>(m.__to_bitset().to_ulong()); }
 
-/// Sine and cosine within 2e-7 for |x| < 50: quarter turns taken off in three parts, then polynomials.
+/// Sine and cosine within 2e-7 for |x| < 50: quarter turns taken off in three parts, then
+/// polynomials.
 [[gnu::always_inline]] inline void sine_cosine(const V& x, V& sine, V& cosine) noexcept {
-  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it rounds to an integer in the last bits
+  // 1.5 * 2^23: adding it rounds to an integer in the last bits.
+  constexpr float kRound = 12582912.0f;
   const V shifted = x * 0.636619772f + kRound;
   const V turns = shifted - kRound;
   const V y = ((x - turns * 1.5703125f) - turns * 4.83751296997e-4f) - turns * 7.54978995489e-8f;
@@ -46,8 +49,8 @@ static_assert(kWideStates % kWidth == 0);
   cosine = out_c;
 }
 
-/// Poses of the bodies behind `count` joints, 12 rows of kWidth each, kWideStates x 12 floats apart; body 0 is at `root`. q: positions,
-/// rows of kWideStates.
+/// Poses of the bodies behind `count` joints, 12 rows of kWidth each, kWideStates x 12 floats
+/// apart; body 0 is at `root`. q: positions, rows of kWideStates.
 [[maybe_unused]] inline void forward(const WideJoint* joints, int count, const float root[12], const float* q, float* pose) noexcept {
   for (int i = 0; i < 12; ++i) store(V(root[i]), pose + i * kWidth);
   for (int j = 0; j < count; ++j) {

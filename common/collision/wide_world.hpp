@@ -1,5 +1,7 @@
-// Many states of a robot judged at once by spheres around its links: "clear" is true of the exact shapes, "unclear" is for the exact check
-// to decide. States lie side by side in the registers. Ours; the idea of several states of one motion at once is VAMP's (Thomason et al.).
+// Many states of a robot checked at once by spheres around its links: "clear" is true of the exact
+// shapes, "unclear" is for the exact check to decide. States lie side by side in the registers. Own
+// method: covers make "clear" certain; the idea of several states of one motion at once is VAMP's
+// (Thomason et al.).
 #pragma once
 
 #include <array>
@@ -19,47 +21,56 @@ enum WideClass : std::uint8_t { kWideArm = 1, kWideHand = 2, kWideHeld = 4 };
 
 class WideWorld {
  public:
-  static constexpr int kStates = detail::kWideStates;
+  static constexpr int kStates = detail::kWideStates;  ///< states of one block
 
   /// A shape that moves with a link (or, held, with the tool link).
   struct Body {
-    int link{};
-    std::shared_ptr<const SphereCover> cover;  ///< frame of the shape; may be null for a box, cylinder, capsule or sphere no axis moves
-    Shape shape;
-    Pose T_link_shape{Pose::Identity()};
-    std::uint8_t what{kWideArm};
-  };
-  /// A shape that stands still in the world; a mesh needs a cover.
-  struct Solid {
-    Shape shape;
+    int link{};  ///< index into RobotModel::links()
+    /// Frame of the shape; may be null for a box, cylinder, capsule or sphere no axis moves.
     std::shared_ptr<const SphereCover> cover;
-    Pose T_world_shape{Pose::Identity()};
+    Shape shape;                          ///< for links that no axis moves
+    Pose T_link_shape{Pose::Identity()};  ///< frame of the shape in the link's
+    std::uint8_t what{kWideArm};          ///< one bit of WideClass
+  };
+  /// A shape at rest in the world; a mesh needs a cover.
+  struct Solid {
+    Shape shape;                               ///< in its own frame
+    std::shared_ptr<const SphereCover> cover;  ///< frame of the shape; null: none
+    Pose T_world_shape{Pose::Identity()};      ///< frame of the shape
+    /// Bits of WideClass it is tested with.
     std::uint8_t against{kWideArm | kWideHand | kWideHeld};
   };
 
   explicit WideWorld(const RobotModel& robot);
 
-  /// The robot for states in which only `axes` differ from q: what the others join is one rigid body. `pairs`: bodies tested against each
-  /// other; those whose relative pose no axis changes are left out, their verdict is the caller's.
+  /// The robot for states in which only `axes` differ from q: what the others join is one rigid
+  /// body. `pairs`: bodies tested against each other; those whose relative pose no axis changes are
+  /// left out, their verdict is the caller's.
   void set_robot(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs, const std::vector<int>& axes,
                  const Vector& q);
-  /// After set_robot.
+  /// Replaces the solids; to be called after set_robot.
   void set_solids(const std::vector<Solid>& solids, const Pose& T_world_base);
 
-  /// Bits of those of the first `count` (<= kStates) states that are unclear. All axes; those not moving are not looked at.
+  /// Returns the bits of those of the first `count` (<= kStates) states that are unclear. All axes;
+  /// those that do not move are ignored.
   std::uint32_t unclear(const Vector* states, int count);
-  /// The same for states from + at (to - from). `any`: one unclear state is enough to know, the bits of others may be missing.
+  /// The same for states from + at (to - from). `any`: one unclear state is enough to know, the
+  /// bits of others may be missing.
   std::uint32_t unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any = false);
-  /// The same for boxes of states, `low` to `high` on every moving axis: what is clear is so everywhere in its box.
+  /// The same for boxes of states, `low` to `high` on every moving axis: what is clear is so
+  /// everywhere in its box.
   std::uint32_t unclear_boxes(const Vector* low, const Vector* high, int count);
-  /// Stretches [first, second] of the line, in parts of it, that could not be shown clear; all states between them are, without steps.
-  /// Looks at stretches down to `finest` parts of the line; gives up after `most_blocks` blocks of kStates stretches.
+  /// Returns the stretches [first, second] of the line, in parts of the line, that could not be
+  /// shown clear; all states between them are, without steps. Checks stretches down to `finest`
+  /// parts of the line, and no more than the given number of blocks of kStates stretches: what is
+  /// left then is unclear.
   const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int most_blocks);
 
-  /// Poses of the links as the registers have them, for the state in a lane of the last call; for tests.
+  /// Poses of the links as the registers have them, for one state among those that the
+  /// kernel checked last; for tests.
   Pose link_pose(int link, int lane) const;
-  int spheres() const { return static_cast<int>(nodes_.size()); }
-  std::uint64_t blocks() const { return blocks_; }
+  int spheres() const { return static_cast<int>(nodes_.size()); }  ///< of robot and solids
+  std::uint64_t blocks() const { return blocks_; }                 ///< calls of the kernel so far
   /// Added to every radius for single precision [m].
   double rounding() const { return rounding_; }
   /// Another width than the widest, for tests and measurements.
