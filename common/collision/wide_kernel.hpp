@@ -1,6 +1,6 @@
 // Sixteen states of a robot side by side: forward kinematics, then the spheres around its links
 // against solids and against each other. Plain data in the frame of the robot's root, single
-// precision; who fills it adds the rounding to the radii. Written once for any register width,
+// precision; the rounding must be added to the radii. Written once for any register width,
 // chosen when the program runs; free of Eigen, whose alignment depends on the width. Nothing here
 // allocates, locks or throws.
 #pragma once
@@ -95,7 +95,8 @@ struct WideKernels {
   int width;  ///< states in a register
   /// q: positions, [row][kWideStates], radians between about -50 and 50. `half`: how far each joint
   /// row moves to either side of the state, or nullptr. Returns the bits of those of the given
-  /// states in which some sphere is not clear; `any`: of the first ones found, where the search ends.
+  /// states in which some sphere is not clear; `any`: of the first ones found, where the search
+  /// ends.
   std::uint32_t (*check)(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
                          bool any) noexcept;
   /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count];

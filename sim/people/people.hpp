@@ -38,7 +38,8 @@ class People {
   /// Returns a person's capsules as of the last move(), world frame; no check of the index.
   const std::vector<BodyCapsule>& capsules(std::size_t i) const { return people_[i].capsules; }
 
-  /// Moves those who follow this source: the body named as they are, else the first seen.
+  /// Moves the people that follow this source: each to the body with its id, else to the first
+  /// seen.
   void follow(const HumanObservation&);
   bool follow_somebody() const;  ///< whether any person follows a source outside
   /// Decides, moves and holds for the coming step. `gripped`: the object in the robot's hand, -1:

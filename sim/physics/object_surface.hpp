@@ -5,7 +5,8 @@
 
 namespace handsel::sim {
 
-/// [m], negative inside; the point is in the object frame. A mesh part counts as its bounding box. +inf without parts.
+/// Returns the distance [m], negative inside; the point is in the object frame. A mesh part counts
+/// as its bounding box. +inf without parts.
 double surface_distance(const ObjectModel&, const Vector3& p_object);
 
 }  // namespace handsel::sim
