@@ -1,4 +1,5 @@
-// Protobuf text whose values are judged after it was read: where each of them stands.
+// Protobuf text whose values are checked after it was read, with the position of each value in the
+// file.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +20,8 @@ class TextPlace {
       : file_(std::move(file)), tree_(tree), type_(type) {}
   /// The index-th message of a field of this one.
   TextPlace inside(const std::string& field, int index = 0) const;
-  /// "file:line:field", of the index-th value of a repeated one; "file:field" where the line is not known.
+  /// "file:line:field", of the index-th value of a repeated one; "file:field" where the line is not
+  /// known.
   std::string of(const std::string& field, int index = 0) const;
 
  private:
@@ -31,6 +33,8 @@ class TextPlace {
 /// Strict, as load_text_proto(); `name` stands for the file in errors.
 void parse_text_proto(const std::string& text, const std::string& name, google::protobuf::Message& out,
                       google::protobuf::TextFormat::ParseInfoTree& places);
+/// Loads a file as load_text_proto() of resources.hpp does and writes the position of every value
+/// to `places`. Throws MissingError, ConfigError.
 void load_text_proto(const std::filesystem::path& file, google::protobuf::Message& out,
                      google::protobuf::TextFormat::ParseInfoTree& places);
 

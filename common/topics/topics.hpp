@@ -1,4 +1,5 @@
-// Every topic of the system, in one table: code, documentation, permissions, bridge channels and tests are made from it.
+// Every topic of the system, in one table: code, documentation, permissions, bridge channels and
+// tests are made from it.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +11,11 @@ namespace handsel {
 
 /// Names of the QoS profiles; what each means is written in common/bus/qos.
 enum class Profile : std::uint8_t {
-  sensor,    ///< best effort, keep last 1
-  state,     ///< reliable, transient local, keep last 1
-  command,   ///< reliable, keep last 8
-  latch,     ///< a command whose last sample a late joiner must know: reliable, transient local, keep last 1
+  sensor,   ///< best effort, keep last 1
+  state,    ///< reliable, transient local, keep last 1
+  command,  ///< reliable, keep last 8
+  /// A command whose last sample a late joiner must know: reliable, transient local, keep last 1
+  latch,
   goal,      ///< reliable, keep last 8, many writers
   advice,    ///< reliable, keep last 1
   setpoint,  ///< best effort, keep last 32: with simulated time several come at once
@@ -21,18 +23,20 @@ enum class Profile : std::uint8_t {
   reply,     ///< reliable, bounded keep all
   health,    ///< reliable, keep last 1, liveliness lease
 };
+/// Returns the enumerator as text, as the bridge shows it and documentation names it: "sensor".
 const char* name(Profile);
 
 /// One row of the table.
 struct TopicRow {
-  const char* type;   ///< message struct in common/messages, and IDL struct in module handsel
-  const char* topic;  ///< name on the wire
-  Profile profile;
+  const char* type;     ///< message struct in common/messages, and IDL struct in module handsel
+  const char* topic;    ///< name on the wire
+  Profile profile;      ///< QoS of all its writers and readers
   double rate;          ///< nominal [Hz]; 0 = on change or on demand
   double deadline;      ///< longest time between samples [s]; 0 = none
   std::size_t largest;  ///< bound of the serialised sample [bytes]
   const char* writers;  ///< components, separated by spaces
-  const char* readers;  ///< components, separated by spaces; the bridge reads everything and is not named
+  /// Components, separated by spaces; the bridge reads everything and is not named
+  const char* readers;
 };
 
 // type, topic, profile, rate [Hz], deadline [s], largest [bytes], writers, readers
@@ -94,6 +98,7 @@ struct TopicRow {
 // clang-format on
 
 #define HANDSEL_ROW(type, topic, ...) struct type;
+/// Declares the message struct of every row.
 HANDSEL_TOPICS(HANDSEL_ROW)
 #undef HANDSEL_ROW
 
@@ -120,10 +125,13 @@ struct TopicOf;
 HANDSEL_TOPICS(HANDSEL_ROW)
 #undef HANDSEL_ROW
 
+/// Returns all rows, in the order of TopicIndex.
 inline std::span<const TopicRow> topics() { return kTopics; }
-/// By type ("RobotState") or topic ("handsel/robot_state", "robot_state"); nullptr if there is none.
+/// By type ("RobotState") or topic ("handsel/robot_state", "robot_state"); nullptr if there is
+/// none.
 const TopicRow* find_topic(std::string_view type_or_topic);
-/// Has this topic one writer, pinned by identity, whose samples alone are accepted (docs/architecture.md)?
+/// Has this topic one writer, pinned by identity, whose samples alone are accepted
+/// (docs/architecture.md)?
 bool has_one_writer(const TopicRow& row);
 /// Is `component` one of the names in `list`?
 bool named_in(const char* list, std::string_view component);

@@ -1,10 +1,13 @@
-// One axis from any state to any state (chapter sections 4.3.1 to 4.3.3). Nothing here allocates, locks or throws.
+// One axis from any state to any state (chapter sections 4.3.1 to 4.3.3). Nothing here allocates,
+// locks or throws.
 //
-// Derivation (ours). For a fixed duration T the motions inside the limits form a convex set, so the displacements they reach are an
-// interval [least(T), largest(T)]. The motion of largest displacement is +J 0 -J 0 -J 0 +J, one parameter, T in closed form. largest(T) is
-// concave, then convex until the velocity limit is met, so its first root is found without search. A motion of imposed duration is the mean
-// of the least and the largest, weighted to meet the displacement: inside all limits because they are convex. Durations at which the wanted
-// displacement is outside the interval are blocked.
+// Own derivation: it gives closed forms instead of a search. For a fixed duration T the motions
+// inside the limits form a convex set, so the displacements they reach are an interval [least(T),
+// largest(T)]. The motion of largest displacement is +J 0 -J 0 -J 0 +J, one parameter, T in closed
+// form. largest(T) is concave, then convex until the velocity limit is met, so its first root is
+// found without search. A motion of imposed duration is the mean of the least and the largest,
+// weighted to meet the displacement: inside all limits because they are convex. Durations at which
+// the wanted displacement is outside the interval are blocked.
 #pragma once
 
 #include <array>
@@ -16,15 +19,17 @@ namespace handsel {
 struct AxisLimits {
   double velocity{}, acceleration{}, jerk{};  ///< [rad/s, rad/s^2, rad/s^3], > 0
 };
+/// Returns the limits of one axis; `axis` is not checked.
 inline AxisLimits limits_of(const KinematicLimits& limits, Eigen::Index axis) {
   return {limits.velocity[axis], limits.acceleration[axis], limits.jerk[axis]};
 }
 
 /// Segments of one axis, without allocation.
 struct AxisProfile {
-  static constexpr int kCapacity = 20;
-  int count{};
-  std::array<Segment, kCapacity> segments;  // the first `count`
+  static constexpr int kCapacity = 20;  ///< largest number of segments; push() drops what is beyond
+  int count{};                          ///< number of segments in use
+  /// In order of time; only the first `count` are initialised
+  std::array<Segment, kCapacity> segments;
 
   AxisProfile() = default;
   AxisProfile(const AxisProfile& other) noexcept { *this = other; }
@@ -33,6 +38,7 @@ struct AxisProfile {
     for (int k = 0; k < count; ++k) segments[k] = other.segments[k];
     return *this;
   }
+  /// Removes all segments.
   void clear() noexcept { count = 0; }
   /// Drops empty segments, joins equal neighbours.
   void push(double duration, double jerk) noexcept {
@@ -43,6 +49,7 @@ struct AxisProfile {
       segments[count++] = {duration, jerk};
     }
   }
+  /// Returns the sum of the durations of all segments [s].
   double duration() const noexcept {
     double sum = 0;
     for (int k = 0; k < count; ++k) sum += segments[k].duration;
@@ -57,8 +64,10 @@ enum class AxisOutcome {
   end_beyond_limits,  ///< the end state, or what must precede it, breaks a limit
   too_short,          ///< the imposed duration is below the minimum
   wrong_size,         ///< a state or the limits have another number of axes
-  blocked,            ///< no motion inside the limits has the imposed duration, though shorter ones exist
+  /// No motion inside the limits has the imposed duration, though shorter ones exist
+  blocked,
 };
+/// Returns the cause of a failure as part of a sentence, "" for ok.
 const char* reason(AxisOutcome) noexcept;
 
 /// State after `duration` of constant jerk.
@@ -68,8 +77,9 @@ inline AxisState advanced(const AxisState& s, double t, double jerk) noexcept {
 }
 
 namespace detail {
-/// The motions of largest displacement between two velocity-acceleration pairs, by one parameter s; durations grow with s.
-/// Canonical: mirrored (x -> -x) on request, time-reversed so that C >= 0. Peak acceleration min(sqrt(s^2 + C), A), valley -min(s, A).
+/// The motions of largest displacement between two velocity-acceleration pairs, by one parameter s;
+/// durations grow with s. Canonical: mirrored (x -> -x) on request, time-reversed so that C >= 0.
+/// Peak acceleration min(sqrt(s^2 + C), A), valley -min(s, A).
 class MotionFamily {
  public:
   MotionFamily() = default;
@@ -83,9 +93,11 @@ class MotionFamily {
   /// Displacement at a duration of the main component.
   double displacement_at(double T) const noexcept;
   double parameter_in_island(double T) const noexcept;
-  /// The first root of displacement(s) = D in [from, to] with displacement(from) <= D; false if there is none.
+  /// The first root of displacement(s) = D in [from, to] with displacement(from) <= D; false if
+  /// there is none.
   bool first_root(double D, double from, double to, double* s) const noexcept;
-  /// The same on the main component, where there always is one: s, and the cruise that may be needed.
+  /// The same on the main component, where a root always exists: s, and the cruise that may be
+  /// needed.
   double root(double D, double from, double* cruise) const noexcept;
   /// Change of displacement per change of duration.
   double gain(double s) const noexcept;
@@ -98,7 +110,8 @@ class MotionFamily {
 
   bool island{};                    ///< short durations form a component of their own
   double island_lo{}, island_hi{};  ///< parameter range of that component
-  double s_lo{}, s_hi{};            ///< range of the main component; at s_hi the velocity limit is met
+  /// Range of the main component; at s_hi the velocity limit is met
+  double s_lo{}, s_hi{};
 
  private:
   double least_gain() const noexcept;
@@ -113,15 +126,20 @@ class MotionFamily {
 /// A prepared problem: what durations are possible, and the motion for each.
 class AxisProblem {
  public:
-  /// Starts outside the limits are first brought back inside as fast as possible; such a motion is outside until then.
+  /// Starts outside the limits are first brought back inside as fast as possible; such a motion is
+  /// outside until then.
   AxisOutcome init(const AxisState& from, const AxisState& to, const AxisLimits& limits) noexcept;
 
   double minimum() const noexcept { return minimum_; }  ///< [s]
-  /// The least possible duration that is not below `duration` [s]: beyond it only where `duration` is blocked.
+  /// Returns the shortest possible duration that is not below `duration` [s]: beyond it only where
+  /// `duration` is blocked.
   double earliest(double duration) const noexcept;
+  /// Writes the motion of duration minimum(). Only after init() has returned ok.
   void minimum_profile(AxisProfile& out) const noexcept;
   /// A motion of exactly this duration inside the limits.
   AxisOutcome profile(double duration, AxisProfile& out) const noexcept;
+  /// Returns whether the start state is outside the limits or leads there, so that every motion
+  /// begins with a braking part.
   bool starts_outside() const noexcept { return brake_.count > 0; }
 
  private:
@@ -154,7 +172,8 @@ class AxisProblem {
 /// Minimum time between two states. `out` is untouched unless ok.
 AxisOutcome solve_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept;
 
-/// Minimum time of a rest-to-rest motion over a distance, in closed form (chapter section 4.3.1) [s].
+/// Minimum time of a rest-to-rest motion over a distance, in closed form (chapter section 4.3.1)
+/// [s].
 double rest_to_rest_time(double distance, const AxisLimits& limits) noexcept;
 
 }  // namespace handsel

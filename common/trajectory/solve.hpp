@@ -1,4 +1,5 @@
-// Several axes from state to state, ending together (chapter section 4.3.2; blocked durations and the blend: min_time.hpp).
+// Several axes from state to state, ending together (chapter section 4.3.2; blocked durations and
+// the blend: min_time.hpp).
 #pragma once
 
 #include <optional>
@@ -16,26 +17,34 @@ enum class Sync {
 };
 
 struct Solution {
-  Trajectory trajectory;
+  Trajectory trajectory;              ///< of all axes; without axes when there is a reason
   std::string reason;                 ///< why there is no trajectory; empty when there is
   std::vector<double> min_durations;  ///< of each axis alone [s]
-  double excess{};                    ///< beyond the limits, only when an imposed duration forced the three-segment method; else 0
+  /// Beyond the limits, only when an imposed duration forced the three-segment method; else 0
+  double excess{};
+  /// Returns whether there is a trajectory.
   bool ok() const { return reason.empty(); }
 };
 
-/// Several problems of equally many axes at once, each ending together, axes side by side in wide registers: for a planner that weighs
-/// candidates. Allocates at construction only.
+/// Several problems of equally many axes at once, each ending together, axes side by side in SIMD
+/// registers: for a planner that weighs candidates. Allocates at construction only.
 class SynchronisedBatch {
  public:
   SynchronisedBatch(int axes, int problems);
-  /// Problem p, axis i is entry p * axes + i of each array. Returns how many of the first `count` problems are solved.
+  /// Problem p, axis i is entry p * axes + i of each array. Returns how many of the first `count`
+  /// problems are solved.
   int solve(const detail::LaneInput& in, int count) noexcept;
 
-  /// Of a problem that was not solved only outcome() and axis() are to be used: what failed and where.
+  /// Of a problem that was not solved only outcome() and axis() are to be used: what failed and
+  /// where.
   AxisOutcome outcome(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].outcome; }
+  /// Returns the axis at which the problem failed; without meaning when its outcome is ok.
   int axis(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].axis; }
+  /// Returns the duration that all axes of a solved problem have [s].
   double duration(int problem) const noexcept { return problems_[static_cast<std::size_t>(problem)].duration; }
+  /// Returns the minimum duration of one axis alone [s].
   double minimum(int problem, int axis) const noexcept { return minima_[entry(problem, axis)]; }
+  /// Returns the motion of one axis of a solved problem; valid until the next solve().
   const AxisProfile& profile(int problem, int axis) const noexcept { return profiles_[entry(problem, axis)]; }
 
  private:
@@ -55,7 +64,7 @@ class SynchronisedBatch {
   int axes_;
   std::vector<Problem> problems_;
   std::vector<detail::LaneBlock> blocks_;
-  std::vector<std::uint32_t> odd_;  // of each block, the lanes solved one by one
+  std::vector<std::uint32_t> odd_;  // of each block, the axes solved one by one
   std::vector<AxisProblem> slow_;   // for those
   std::vector<double> minima_, durations_;
   std::vector<AxisProfile> profiles_;
@@ -67,10 +76,15 @@ class SynchronisedAxes {
   explicit SynchronisedAxes(int axes) : batch_(axes, 1), axes_(axes) {}
   /// On false `outcome()` and `axis()` say what failed and where; the profiles are not to be used.
   bool solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits) noexcept;
+  /// Returns the duration that all axes have [s].
   double duration() const noexcept { return batch_.duration(0); }
+  /// Returns the minimum duration of one axis alone [s].
   double minimum(int axis) const noexcept { return batch_.minimum(0, axis); }
+  /// Returns the motion of one axis; valid until the next solve().
   const AxisProfile& profile(int axis) const noexcept { return batch_.profile(0, axis); }
+  /// Returns what failed, wrong_size also for vectors that do not have as many elements as axes.
   AxisOutcome outcome() const noexcept { return wrong_size_ ? AxisOutcome::wrong_size : batch_.outcome(0); }
+  /// Returns the axis that failed; without meaning for ok and wrong_size.
   int axis() const noexcept { return batch_.axis(0); }
 
  private:
@@ -79,8 +93,9 @@ class SynchronisedAxes {
   bool wrong_size_{};
 };
 
-/// `imposed`: duration wanted [s]. Below the minimum of an axis it is refused; where an axis cannot keep its limits for exactly that
-/// duration, that axis gets three segments and `excess` says by how much they break the limits.
+/// `imposed`: duration wanted [s]. Below the minimum of an axis it is refused; where an axis cannot
+/// keep its limits for exactly that duration, that axis gets three segments and `excess` says by
+/// how much they break the limits.
 Solution solve(const MotionState3& from, const MotionState3& to, const KinematicLimits& limits, Sync sync = Sync::time,
                std::optional<double> imposed = std::nullopt);
 

@@ -1,12 +1,14 @@
-// Minimum-time stop of one axis: velocity and acceleration to zero, position free (the critical movement, chapter section 4.3.4).
+// Minimum-time stop of one axis: velocity and acceleration to zero, position free (the critical
+// movement, chapter section 4.3.4).
 #pragma once
 
 #include "common/trajectory/min_time.hpp"
 
 namespace handsel {
 
-/// Fastest change from (v, a) to (v_end, a_end), position free: at most three segments, four when |a| starts beyond the limit.
-/// The velocity goes beyond both ends only where the start acceleration makes it. Never fails for finite numbers and positive limits.
+/// Fastest change from (v, a) to (v_end, a_end), position free: at most three segments, four when
+/// |a| starts beyond the limit. The velocity goes beyond both ends only where the start
+/// acceleration makes it. Never fails for finite numbers and positive limits.
 void critical_movement(double velocity, double acceleration, double velocity_end, double acceleration_end, double max_acceleration,
                        double max_jerk, AxisProfile& out) noexcept;
 
@@ -15,14 +17,19 @@ struct StopMeasure {
   double duration{};  ///< [s]
   double distance{};  ///< signed [rad]
 };
+/// Returns duration and distance of the stop from this velocity and acceleration by
+/// critical_movement().
 StopMeasure measure_stop(double velocity, double acceleration, double max_acceleration, double max_jerk) noexcept;
 
 /// A stop in progress, for a cycle: no allocation.
 class SoftStop {
  public:
+  /// Starts a stop from a state, whose velocity may exceed the limits; limits.velocity is not used.
   void init(const AxisState& state, const AxisLimits& limits) noexcept;
   const AxisState& step(double dt) noexcept;  ///< state dt later
+  /// Returns the state after the last step(); its velocity and acceleration are 0 once finished.
   const AxisState& state() const noexcept { return state_; }
+  /// Returns whether the axis is at rest; true before init().
   bool finished() const noexcept { return segment_ >= profile_.count; }
   double remaining() const noexcept;  ///< [s]
 

@@ -1,7 +1,10 @@
-// From a state in motion onto another trajectory (chapter sections 2 and 4.3: trajectories modified on-line; the search is ours).
+// From a state in motion onto another trajectory (chapter sections 2 and 4.3: trajectories modified
+// on-line). Own method: a search over where to join, so that the end of the new trajectory is
+// reached first.
 //
-// A motion of least time, all axes ending together, leads from the present state to a state of the other trajectory; of the places where it
-// can be joined the one is taken from which its end is reached first. Velocity and acceleration are continuous, the limits hold exactly.
+// A motion of least time, all axes ending together, leads from the present state to a state of the
+// other trajectory; of the places where it can be joined the one is taken from which its end is
+// reached first. Velocity and acceleration are continuous, the limits hold exactly.
 #pragma once
 
 #include <limits>
@@ -18,23 +21,28 @@ enum class SwitchOutcome {
   not_finite,           ///< a number of the present state is NaN or infinite
   bad_limits,           ///< a limit is zero or negative
   start_beyond_limits,  ///< the present state cannot be left inside the limits
-  nowhere,              ///< nowhere in the window can the new trajectory be joined inside the limits
-  too_long,             ///< more segments than there is room for
-  not_now,              ///< the speed factor is changing too fast for it; a later step may do
+  /// Nowhere in the window can the new trajectory be joined inside the limits
+  nowhere,
+  too_long,  ///< more segments than there is room for
+  not_now,   ///< the speed factor is changing too fast for it; a later step may do
 };
+/// Returns the cause of a failure as a sentence without full stop, "" for ok.
 const char* reason(SwitchOutcome) noexcept;
 
 struct SwitchSettings {
-  double first{0.0};                                     ///< the new trajectory is joined at or after this, on its own time [s]
+  /// The new trajectory is joined at or after this, on its own time [s]
+  double first{0.0};
   double last{std::numeric_limits<double>::infinity()};  ///< and not after this [s]
-  bool on_clock{};      ///< the new trajectory runs already, its time is 0 now: it is met where it then is, as early as possible. After
-                        ///< its end it stands there. `last` is not used.
-  double reserve{1.1};  ///< the connecting motion keeps the limits / reserve; up to the limits where the start needs it
-  int tries{24};        ///< places looked at before the best is refined
+  /// The new trajectory runs already, its time is 0 now: it is met where it then is, as early as
+  /// possible. After its end it is at rest there. `last` is not used.
+  bool on_clock{};
+  /// The connecting motion keeps the limits / reserve; up to the limits where the start needs it
+  double reserve{1.1};
+  int tries{24};  ///< places tried before the best is refined
 };
 
-/// But for rounding: nothing need lead from one to the other. (The fastest way between states in motion that differ by a little is as
-/// likely as not a loop of a second.)
+/// But for rounding: nothing need lead from one to the other. (The fastest motion between states in
+/// motion that differ by a little is as likely as not a loop of a second.)
 bool same_motion(const MotionState3&, const MotionState3&) noexcept;
 
 /// For a cycle: allocates at construction only.
@@ -43,9 +51,12 @@ class TrajectorySwitch {
   TrajectorySwitch() : TrajectorySwitch(0) {}
   explicit TrajectorySwitch(int axes);
 
+  /// Plans the connecting motion from `now` to a state of `next`. On anything but ok the functions
+  /// below are not to be used.
   SwitchOutcome plan(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
 
-  double joins_at() const noexcept { return join_; }     ///< on the new trajectory's own time; beyond its end only on the clock [s]
+  /// On the new trajectory's own time; beyond its end only on the clock [s]
+  double joins_at() const noexcept { return join_; }
   double duration() const noexcept { return connect_; }  ///< of the connecting motion [s]
   int segments() const noexcept;                         ///< at most, of the connecting motion
   /// Adds the connecting motion, then the rest of `next`, which must be what was planned for.
@@ -70,23 +81,28 @@ class TrajectorySwitch {
   int cursor_{};
 };
 
-/// solve_axis for a start that is already on a time-optimal way to an end in motion, as when a motion is planned anew each tick. Such a way
-/// is often the only one for its duration, and rounding decides whether it is found; so limits wider by 1e-9, then 1e-7, are tried too, and
+/// solve_axis for a start that is already on a time-optimal motion to an end state in motion, as
+/// when it is planned anew each tick. Such a motion is often the only one for its duration, and
+/// rounding decides whether it is found; so limits wider by 1e-9, then 1e-7, are tried too, and
 /// taken where the motion is then shorter by more than that could make it.
 AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLimits& limits, AxisProfile& out) noexcept;
 
-/// The rows of `from` in [begin, its end], or up to `end`, added to `out`. No allocation within the room of `out`.
+/// The rows of `from` in [begin, its end], or up to `end`, added to `out`. No allocation within the
+/// room of `out`.
 void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state) noexcept;
 
 struct Switched {
-  Trajectory trajectory;  ///< from the present state: the connecting motion, then the rest of the new trajectory
-  std::string reason;     ///< why there is none; empty when there is
-  double joins_at{};      ///< on the new trajectory's own time [s]
-  double connecting{};    ///< [s]
+  /// From the present state: the connecting motion, then the rest of the new trajectory
+  Trajectory trajectory;
+  std::string reason;   ///< why there is none; empty when there is
+  double joins_at{};    ///< on the new trajectory's own time [s]
+  double connecting{};  ///< duration of the connecting motion [s]
+  /// Returns whether there is a trajectory.
   bool ok() const { return reason.empty(); }
 };
 
-/// The same outside of a cycle. `limits` as for the time law: what must hold at every instant.
+/// The same outside of a cycle. `limits` as for the time scaling (time_law.hpp): what must hold at
+/// every instant.
 Switched switch_to(const MotionState3& now, const Trajectory& next, const KinematicLimits& limits, const SwitchSettings& settings = {});
 
 }  // namespace handsel

@@ -1,8 +1,10 @@
-// Eight axes side by side in one register: minimum time, and motions of imposed duration, of the usual problems. What is not usual (starts
-// outside the limits, borders decided by rounding, isolated short durations, humps of the displacement, bad numbers) is marked odd and left
-// to min_time.hpp. Every motion is integrated and compared with the end wanted before it is handed out. The method is that of min_time.hpp,
-// where it is derived. Written once for any register width, chosen when the program runs; free of Eigen, whose alignment depends on the
-// width. Nothing here allocates, locks or throws.
+// Eight axes side by side in one register: minimum time, and motions of imposed duration, of the
+// usual problems. What is not usual (starts outside the limits, borders decided by rounding,
+// isolated short durations, humps of the displacement, bad numbers) is marked odd and left to
+// min_time.hpp. Every motion is integrated and compared with the end wanted before it is handed
+// out. The method is that of min_time.hpp, where it is derived. Written once for any register
+// width, chosen when the program runs; free of Eigen, whose alignment depends on the width. Nothing
+// here allocates, locks or throws.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +16,15 @@ constexpr int kLanes = 8;
 constexpr int kLaneSegments = 13;
 using LaneArray = double[kLanes];
 
-/// Lane i of a block is entry `first + i` of each array.
+/// Axis i of a block is entry `first + i` of each array.
 struct LaneInput {
   const double *position, *velocity, *acceleration;              ///< start
   const double *end_position, *end_velocity, *end_acceleration;  ///< end
   const double *max_velocity, *max_acceleration, *max_jerk;
 };
 
-/// What is known of eight axes between the steps, and the result: `segments` pieces a lane, some of no duration.
+/// What is known of eight axes between the steps, and the result: `segments` pieces an axis, some
+/// of no duration.
 struct alignas(64) LaneBlock {
   struct Family {
     LaneArray start_velocity, start_acceleration, end_velocity, end_acceleration, C, s_lo, s_hi, at_limit, reversed;
@@ -29,7 +32,7 @@ struct alignas(64) LaneBlock {
   LaneArray distance, scale, velocity, acceleration, end_velocity, end_acceleration, max_velocity, max_acceleration, max_jerk;
   Family up, down;
   LaneArray s, cruise, side;  // of the fastest motion; side +1 up, -1 down
-  LaneArray minimum;          ///< least duration [s]
+  LaneArray minimum;          ///< minimum duration [s]
   LaneArray duration[kLaneSegments], jerk[kLaneSegments];
   LaneArray phase[4];  // rest to rest: jerk, acceleration, velocity phases [s], sign
   std::uint32_t lanes;
@@ -41,7 +44,8 @@ struct alignas(64) Lane8 {
   double value[kLanes];
 };
 
-/// Where a time law is within a path, and what it must keep there: `limits` of acceleration, then of jerk, each part `stride` long.
+/// Where the time scaling is within a path, and the limits to keep there: `limits` of acceleration,
+/// then of jerk, each part `stride` long.
 struct LawStep {
   double alpha, beta;  ///< d(tau)/dt and its rate [1/s]
   double step;         ///< [s]
@@ -51,7 +55,8 @@ struct LawStep {
   int stride;
 };
 
-/// Two scalar motions with common knots. An axis moves by the first times its weight plus the second times its other weight.
+/// Two scalar motions with common knots. An axis moves by the first times its weight plus the
+/// second times its other weight.
 struct Blend {
   static constexpr int kSegments = 16;
   struct Motion {
@@ -65,25 +70,30 @@ struct Blend {
 
 struct LaneKernels {
   const char* name;
-  /// Reads `lanes` axes; returns the bits of the odd ones, whose minimum is 0.
+  /// Reads as many axes as its third argument says; returns the bits of the odd ones, whose minimum
+  /// is 0.
   std::uint32_t (*prepare)(const LaneInput& in, int first, int lanes, LaneBlock& block) noexcept;
-  /// Motions of the durations wanted, one a lane. Returns the bits of the lanes that failed; `blocked`: bits of those for which the
-  /// duration is blocked. The bits in `leave` are neither computed nor returned.
+  /// Motions of the durations wanted, one an axis. Returns the bits of the axes that failed;
+  /// `blocked`: bits of those for which the duration is blocked. The bits in `leave` are neither
+  /// computed nor returned.
   std::uint32_t (*finish)(LaneBlock& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept;
-  /// State `t` after the start of a segment: `row` has positions, velocities, accelerations and jerks of all axes, each part `stride` long,
-  /// a multiple of kLanes; on 64 bytes.
+  /// State `t` after the start of a segment: `row` has positions, velocities, accelerations and
+  /// jerks of all axes, each part `stride` long, a multiple of kLanes; on 64 bytes.
   void (*evaluate)(const double* row, int axes, int stride, double t, double* position, double* velocity, double* acceleration) noexcept;
-  /// Velocities, accelerations, jerks of the path at that time; each part `stride` long, on 64 bytes. The same layout is read below.
+  /// Velocities, accelerations, jerks of the path at that time; each part `stride` long, on 64
+  /// bytes. The same layout is read below.
   void (*rates)(const double* row, int stride, double t, double* out) noexcept;
-  /// Narrows the range of alpha'' to what keeps the limits at both ends of a step, whose end is known up to what alpha'' adds to it.
-  /// False if nothing does.
+  /// Narrows the range of alpha'' to what keeps the limits at both ends of a step, whose end is
+  /// known up to what alpha'' adds to it. False if nothing does.
   bool (*push_range)(const LawStep& at, const double* begin, const double* end, double* range) noexcept;
   /// The same for the jerk at one place passed `after` the begin of the step.
   bool (*push_range_at)(const LawStep& at, double after, const double* there, double* range) noexcept;
-  /// Whether a step that ends in `next` keeps limits * `allowed` there, and the acceleration's change over it.
+  /// Whether a step that ends in `next` keeps limits * `allowed` there, and the acceleration's
+  /// change over it.
   bool (*step_holds)(const LawStep& at, const LawStep& next, double push, double allowed, const double* begin, const double* end) noexcept;
-  /// Largest share of a limit that an axis of the blend uses, on the exact extremes; some share beyond `enough` as soon as one is found.
-  /// `inverse`: 1 / limit of velocity, acceleration, jerk, each part `stride` long.
+  /// Largest ratio of an axis of the blend to its limit, on the exact extremes; some ratio beyond
+  /// `enough` as soon as one is found. `inverse`: 1 / limit of velocity, acceleration, jerk, each
+  /// part `stride` long.
   double (*blend_share)(const Blend&, const double* weight_a, const double* weight_b, const double* inverse, int stride,
                         double enough) noexcept;
 };
@@ -95,7 +105,8 @@ extern const LaneKernels kLaneKernelsAvx512;
 #endif
 /// The widest this processor has, unless others were chosen.
 const LaneKernels& lane_kernels() noexcept;
-/// For tests, before anything else runs: "avx512", "avx2" or "base" from now on; false if this processor does not have them.
+/// For tests, before anything else runs: "avx512", "avx2" or "base" from now on; false if this
+/// processor does not have them.
 bool choose_lanes(std::string_view name) noexcept;
 
 }  // namespace handsel::detail

@@ -1,4 +1,4 @@
-// The one source of the lane kernels, compiled once per register width.
+// The one source of the batch kernels, compiled once per register width.
 #pragma once
 
 #include "common/trajectory/batch/lanes_motion.hpp"

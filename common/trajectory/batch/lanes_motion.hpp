@@ -1,4 +1,4 @@
-// Lane kernels: evaluation, the time law, corners.
+// Batch kernels: evaluation, time scaling, blends at waypoints.
 #pragma once
 
 #include <algorithm>

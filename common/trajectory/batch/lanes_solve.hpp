@@ -1,4 +1,4 @@
-// Lane kernels: minimum time and imposed duration.
+// Batch kernels: minimum time and imposed duration.
 #pragma once
 
 #include <array>
@@ -10,7 +10,8 @@ namespace {
 
 // Where 12 x^4 + 12 x^2 = 1: the valley, over sqrt(C), at which the gain is least.
 constexpr double kInflexion = 0.27811916365;
-constexpr double kBorder = 1e-12;        // starts and ends this close to a limit, relative, are inside
+// starts and ends this close to a limit, relative, are inside
+constexpr double kBorder = 1e-12;
 constexpr double kAccepted = 1e-12;      // end position, relative
 constexpr double kAcceptedRate = 1e-11;  // end velocity and acceleration
 constexpr double kStepToAccept = 2e-9;   // Newton: the step after this small a one is exact
@@ -144,8 +145,8 @@ Family get(const LaneBlock::Family& in, int g) noexcept {
           load(in.reversed + g) > 0.5};
 }
 
-/// First root of displacement(s) = D from s_lo on, where displacement(s_lo) - D = f_from < 0. `todo`: lanes that matter; lanes that need
-/// care are added to `odd`.
+/// First root of displacement(s) = D from s_lo on, where displacement(s_lo) - D = f_from < 0.
+/// `todo`: axes that matter; axes that need care are added to `odd`.
 V root(const Family& f, const V& D, const V& f_from, const Limits& l, const M& todo, M* odd, V* cruise) noexcept {
   const V to = min(l.A, f.s_hi);
   V lo = f.s_lo, hi = to, f_lo = f_from;

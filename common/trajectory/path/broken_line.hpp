@@ -7,8 +7,8 @@
 
 namespace handsel {
 
-/// Where on `path` (nodes) the arm will go on: `q` and the nodes after the point nearest to it; empty when `q` is farther than `reach` from
-/// it (max norm), or at its end.
+/// Returns the rest of `path` (nodes) from `q`: `q` and the nodes after the point nearest to it;
+/// empty when `q` is farther than `reach` from it (max norm), or at its end.
 std::vector<Eigen::VectorXd> remainder(const std::vector<Eigen::VectorXd>& path, const Eigen::VectorXd& q, double reach);
 
 }  // namespace handsel

@@ -1,6 +1,8 @@
-// A transition between two straight legs. Whatever the method, an axis moves by step_a * alpha(t) + step_b * beta(t), where alpha brings
-// the first leg from where it is left to its end and beta the second from its beginning to where it is joined: one pair of scalar motions
-// for all axes, whose limits are looked at side by side (lanes.hpp). Ours; the methods: chapter section 4.4 and smooth.hpp.
+// A transition between two straight path segments. Whatever the method, an axis moves by step_a *
+// alpha(t) + step_b * beta(t), where alpha brings the first segment from where it is left to its
+// end and beta the second from its beginning to where it is joined: one pair of scalar motions for
+// all axes, whose limits are checked side by side (lanes.hpp). Own method, because two scalar
+// motions serve all axes; the transitions: chapter section 4.4 and smooth.hpp.
 #pragma once
 
 #include <vector>
@@ -10,7 +12,7 @@
 
 namespace handsel::detail {
 
-/// The steps of all legs and the limits, laid out for the lanes.
+/// The steps of all path segments and the limits, laid out for SIMD registers.
 class CornerLanes {
  public:
   CornerLanes(const std::vector<Leg>& legs, const KinematicLimits& limits);
@@ -27,22 +29,23 @@ class Corner {
  public:
   Corner(const std::vector<Leg>& legs, std::size_t first, const CornerLanes& lanes, const KinematicLimits& limits);
 
-  /// Where the first leg is left, before its end, and the second joined, after its beginning [s].
+  /// Where the first segment is left, before its end, and the second joined, after its beginning
+  /// [s].
   void place(double before, double after) noexcept;
   /// Of a motion between these places, axes alone; negative where there is none [s].
   double least_duration() noexcept;
   /// Excess of three segments of duration / 3; gives up early beyond `enough`.
   double three_excess(double duration, double enough) noexcept;
-  /// Excess when the second leg starts `shared` before the first ends.
+  /// Excess when the second segment starts `shared` before the first ends.
   double overlap_excess(double shared, double enough) noexcept;
-  /// The segments of the transition last looked at, added to every axis.
+  /// The segments of the transition last tried, added to every axis.
   void add_to(Trajectory&) const;
   /// The same as a trajectory of its own.
   Trajectory piece() const;
 
  private:
   double excess(double enough) const noexcept;
-  /// The lowest share of the velocity limits between these places.
+  /// The lowest scale of the velocity limits between these places.
   void keep_share(double before, double after) noexcept;
 
   const Leg &a_, &b_;
@@ -52,7 +55,7 @@ class Corner {
   AxisState left_, joined_, from_;
   Blend blend_;
   double share_{1};            // of the velocity limits
-  std::vector<Lane8> scaled_;  // inverse_ for that share; empty: 1
+  std::vector<Lane8> scaled_;  // inverse_ for that scale; empty: 1
 };
 
 }  // namespace handsel::detail

@@ -1,4 +1,4 @@
-// A straight leg between two nodes: one rest-to-rest profile for all axes.
+// A straight path segment between two nodes: one rest-to-rest profile for all axes.
 #pragma once
 
 #include "common/trajectory/min_time.hpp"
@@ -28,9 +28,10 @@ struct Leg {
   AxisState state(const AxisState& s, Eigen::Index axis) const noexcept {
     return {from[axis] + step[axis] * s.position, step[axis] * s.velocity, step[axis] * s.acceleration};
   }
-  /// Adds the segments between two times, jerks of s. What there is no room for is left out; then `out` is full.
+  /// Adds the segments between two times, jerks of s. What there is no room for is left out; then
+  /// `out` is full.
   void part(double begin, double end, AxisProfile& out) const noexcept;
-  /// The lowest share of the velocity limits between two times.
+  /// The lowest scale of the velocity limits between two times.
   double share(double begin, double end) const noexcept;
 
  private:
