@@ -1,4 +1,5 @@
-// What the bridge offers: the channels from the table of topics, and what the page must know that is not on DDS. Pure.
+// What the bridge offers: the channels from the table of topics, and what the page must know that
+// is not on DDS. Pure.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +12,10 @@
 namespace handsel::bridge {
 
 struct SystemFacts {
-  std::string scenario;  ///< empty: none was named
-  std::uint32_t domain{};
-  std::string version;
-  std::string session;  ///< changes with every start
+  std::string scenario;    ///< empty: none was named
+  std::uint32_t domain{};  ///< of DDS; 0 for a bus without DDS
+  std::string version;     ///< of this build
+  std::string session;     ///< changes with every start
 };
 
 /// A channel for each row of the table, in its order.

@@ -1,4 +1,5 @@
-// Robot, people and objects as the well-known types that any 3-D panel draws: the second lane beside the raw samples. Pure.
+// Robot, people and objects as the well-known types that any 3-D panel draws, published beside the
+// raw samples. Pure.
 #pragma once
 
 #include <memory>
@@ -18,13 +19,19 @@ class Drawing {
   using Objects = std::function<const ObjectModel*(const std::string& model)>;
   Drawing(std::shared_ptr<const RobotModel> robot, Objects objects);
 
+  /// Keeps the robot's newest state; of another robot, or with another number of axes, the robot
+  /// counts as not known.
   void take(const RobotState& state) { state_ = state; }
+  /// Keeps the newest people, world frame.
   void take(const HumanState& people) { people_ = people; }
+  /// Keeps the newest objects and furniture, world frame.
   void take(const Scene& scene) { scene_ = scene; }
 
-  /// foxglove.FrameTransforms: "world" to the robot's root link, and every link below its parent; empty until the robot is known.
+  /// foxglove.FrameTransforms: "world" to the robot's root link, and every link below its parent;
+  /// empty until the robot is known.
   std::string transforms(Stamp now) const;
-  /// foxglove.SceneUpdate: robot (in its links' frames), people, objects and furniture. Each entity fades after a second without news.
+  /// foxglove.SceneUpdate: robot (in its links' frames), people, objects and furniture. Each entity
+  /// fades after a second without news.
   std::string scene(Stamp now) const;
 
   /// The two channels, in the order transforms, scene.

@@ -1,5 +1,6 @@
-// The Foxglove WebSocket protocol, server side, without a socket: what is announced, what a viewer asks, what it is sent. Pure.
-// Source: the public description of the protocol (subprotocols foxglove.websocket.v1 and foxglove.sdk.v1).
+// The Foxglove WebSocket protocol, server side, without a socket: what is announced, what a viewer
+// asks, what it is sent. Pure. Source: the public description of the protocol (subprotocols
+// foxglove.websocket.v1 and foxglove.sdk.v1).
 #pragma once
 
 #include <array>
@@ -18,39 +19,41 @@
 namespace handsel::bridge {
 
 inline constexpr std::array<const char*, 2> kSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1"};
-/// The first of ours in a Sec-WebSocket-Protocol header; empty when there is none.
+/// Returns the first of kSubprotocols in a Sec-WebSocket-Protocol header; empty when there is none.
 std::string choose_subprotocol(std::string_view header);
 
 struct Channel {
-  std::string topic;
+  std::string topic;            ///< "handsel/robot_state"
   std::string encoding;         ///< "cdr", "protobuf"
   std::string schema_name;      ///< "handsel::RobotState"
   std::string schema;           ///< omgidl: the text; protobuf: the FileDescriptorSet in base64
   std::string schema_encoding;  ///< "omgidl", "protobuf"
   bool queued{};                ///< every sample is wanted; else the newest of each instance
-  bool kept{};                  ///< the last sample of each instance is given to who comes late
+  bool kept{};                  ///< the last sample of each instance is given to late subscribers
 };
 
-/// What every viewer is told; the same for all. A channel's id is its place in `channels` + 1.
+/// What is announced to every viewer; the same for all. A channel's id is its place in `channels` +
+/// 1.
 struct Catalogue {
-  std::string name;
-  std::string session;  ///< changes with every start
-  std::map<std::string, std::string> metadata;
+  std::string name;                             ///< of the server: "handsel" and the robot's name
+  std::string session;                          ///< changes with every start
+  std::map<std::string, std::string> metadata;  ///< robot, scenario, DDS domain, version
+  /// At most 64: those of the table of topics, then those drawn
   std::vector<Channel> channels;
   std::map<std::string, std::string> parameters;  ///< read-only
 };
 
 struct Sample {
-  std::size_t channel{};  ///< place in the catalogue
-  std::uint64_t instance{};
-  bool gone{};  ///< the instance is no more; no bytes
-  Stamp stamp{};
-  Bytes bytes;
+  std::size_t channel{};     ///< place in the catalogue
+  std::uint64_t instance{};  ///< value of the topic's key, stable while the reader lives
+  bool gone{};               ///< the instance is no more; no bytes
+  Stamp stamp{};             ///< when it was written [ns, system clock of the writer]
+  Bytes bytes;               ///< serialised in the channel's encoding; null when gone
 };
 
 /// Topic -> components, alive, that write and read it.
 struct Graph {
-  std::map<std::string, std::set<std::string>> writers, readers;
+  std::map<std::string, std::set<std::string>> writers, readers;  ///< by topic
   bool operator==(const Graph&) const = default;
 };
 
@@ -59,20 +62,27 @@ struct Asset {
   std::string reason;  ///< of the refusal
 };
 
-/// What all viewers share: the announcements, made once, and the samples kept for who comes late.
+/// What all viewers share: the announcements, made once, and the samples kept for late subscribers.
 class Hub {
  public:
   explicit Hub(Catalogue catalogue, std::function<Asset(const std::string& uri)> fetch);
 
+  /// Returns the announcements as given at construction.
   const Catalogue& catalogue() const { return catalogue_; }
   const SharedText& greeting() const { return greeting_; }  ///< serverInfo
   const SharedText& channels() const { return channels_; }  ///< advertise
+  /// Returns the file of an asset's address, or why it is refused.
   Asset fetch(const std::string& uri) const { return fetch_(uri); }
+  /// Keeps the newest sample of each instance (64 at most; others are not kept) where the channel
+  /// asks for that; removes an instance that is gone.
   void keep(const Sample& sample);
   /// Nobody reads the channel any more: what is kept would grow old.
   void forget(std::size_t channel) { kept_[channel].clear(); }
+  /// Returns the kept samples of a channel by instance; empty where nothing is kept.
   const std::map<std::uint64_t, Sample>& kept(std::size_t channel) const { return kept_[channel]; }
+  /// Replaces the graph; viewers get it by Viewer::graph_changed().
   void set_graph(Graph graph) { graph_ = std::move(graph); }
+  /// Returns the graph set last, at first an empty one.
   const Graph& graph() const { return graph_; }
 
  private:
@@ -86,25 +96,35 @@ class Hub {
 /// One client: what it subscribed to and what waits for it.
 class Viewer {
  public:
-  static constexpr std::size_t kMostSubscriptions = 256;
-  static constexpr unsigned kMostErrors = 100;               ///< then it is cut
-  static constexpr std::size_t kMostAssetBytes = 64u << 20;  ///< that may wait to be sent
-  static constexpr unsigned kMostMessages = 2000;            ///< a second
+  static constexpr std::size_t kMostSubscriptions = 256;  ///< more are refused
+  /// Refused messages; one more and the client is cut
+  static constexpr unsigned kMostErrors = 100;
+  /// [bytes] waiting to be sent; beyond, assets are refused
+  static constexpr std::size_t kMostAssetBytes = 64u << 20;
+  /// From the client in a second; one more and it is cut
+  static constexpr unsigned kMostMessages = 2000;
 
   /// The hub must outlive it. Announces server and channels.
   explicit Viewer(Hub& hub, const OutboxSettings& settings = {});
 
   /// What the client sent. Broken or refused messages are answered with a status and counted.
   void text(std::string_view message, TimePoint now);
+  /// Refuses a binary message of the client: publishing and services are not offered.
   void binary(TimePoint now);
 
+  /// Queues a sample once for each subscription to its channel; nothing for an instance that is
+  /// gone.
   void sample(const Sample& sample);
+  /// Queues the time [ns]; only the newest one waits.
   void time(Stamp now);
   /// The graph of the hub has changed.
   void graph_changed();
 
+  /// Returns the messages that wait for the client.
   Outbox& outbox() { return outbox_; }
+  /// Returns whether the client is subscribed to the channel (place in the catalogue).
   bool wants(std::size_t channel) const { return by_channel_.contains(channel); }
+  /// Returns how many messages and assets were refused so far.
   std::uint64_t refused() const { return refused_; }
   /// Not empty: the client is to be cut, and why.
   const std::string& cut() const { return cut_; }

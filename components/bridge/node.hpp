@@ -1,4 +1,5 @@
-// The wall screen: passes every topic on as it is to whoever watches, serves the page on 127.0.0.1. Nothing depends on it.
+// The wall screen: passes every topic on unchanged to all viewers, serves the page on 127.0.0.1.
+// Nothing depends on it.
 #pragma once
 
 #include <map>
@@ -16,7 +17,8 @@ namespace handsel::bridge {
 
 class Node {
  public:
-  /// Throws ConfigError for settings out of range; a port that is taken only degrades it, and is tried again every 5 s.
+  /// Throws ConfigError for settings out of range; a port that is taken only degrades it, and is
+  /// tried again every 5 s.
   Node(Bus& bus, const NodeContext& context);
 
  private:
@@ -32,8 +34,9 @@ class Node {
   Site site_;
   Catalogue catalogue_;
   std::string config_;
-  std::vector<std::unique_ptr<RawReader>> readers_;  ///< by place in the table of topics; null: nobody watches
-  std::map<std::string, TimePoint> heard_;           ///< components, by their health
+  /// By place in the table of topics; null: nobody watches
+  std::vector<std::unique_ptr<RawReader>> readers_;
+  std::map<std::string, TimePoint> heard_;  ///< components, by their health
   Drawing drawing_;
   bool drawing_listens_{false};  ///< from the first viewer that wants it
   std::unique_ptr<Server> server_;

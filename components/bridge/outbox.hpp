@@ -1,4 +1,5 @@
-// What waits to be sent to one viewer: bounded, and of what a viewer only wants the newest of, only the newest. Pure.
+// What waits to be sent to one viewer: bounded, and of what a viewer only wants the newest of, only
+// the newest. Pure.
 #pragma once
 
 #include <cstdint>
@@ -20,33 +21,42 @@ struct Frame {
   std::vector<std::uint8_t> head;  ///< of a binary message
   Bytes body;                      ///< may be null
 
+  /// Returns the length of the message [bytes].
   std::size_t size() const { return (text ? text->size() : 0) + head.size() + (body ? body->size() : 0); }
 };
 
 struct OutboxSettings {
-  std::size_t most_controls{1024};              ///< answers and announcements that may wait; more mean that nobody reads
-  std::size_t most_queued{64};                  ///< samples of one queued subscription that may wait; the oldest goes first
-  std::size_t most_bytes{32u * 1024u * 1024u};  ///< of samples that may wait altogether; the oldest goes first
+  /// Answers and announcements that may wait; more mean that nobody reads
+  std::size_t most_controls{1024};
+  /// Samples of one queued subscription that may wait; the oldest goes first
+  std::size_t most_queued{64};
+  /// Of samples that may wait altogether [bytes]; the oldest goes first
+  std::size_t most_bytes{32u * 1024u * 1024u};
 };
 
 class Outbox {
  public:
   explicit Outbox(const OutboxSettings& settings = {}) : settings_(settings) {}
 
-  /// Answers and announcements: in order, before any sample. False when too many wait: the viewer is to be cut.
+  /// Answers and announcements: in order, before any sample. False when too many wait: the viewer
+  /// is to be cut.
   bool put(Frame frame);
-  /// A sample of which only the newest of each (subscription, instance) is wanted: it takes the place of the one that waits.
+  /// A sample of which only the newest of each (subscription, instance) is wanted: it takes the
+  /// place of the one that waits.
   void put_newest(std::uint32_t subscription, std::uint64_t instance, Frame frame);
   /// A sample of which every one is wanted.
   void put_queued(std::uint32_t subscription, Frame frame);
+  /// Removes the samples of a subscription that wait; they do not count as dropped.
   void forget(std::uint32_t subscription);
 
+  /// Returns whether nothing waits.
   bool empty() const { return controls_.empty() && samples_.empty(); }
   /// The next message. Only while not empty.
   Frame pop();
 
   std::uint64_t dropped() const { return dropped_; }  ///< samples replaced or given up
-  std::size_t bytes() const { return bytes_; }        ///< of the samples that wait
+  std::size_t bytes() const { return bytes_; }        ///< of the samples that wait [bytes]
+  /// Returns the size of the answers and announcements that wait [bytes].
   std::size_t control_bytes() const { return control_bytes_; }
 
  private:

@@ -1,4 +1,5 @@
-// What may be had over HTTP and as an asset: files of the page, of robots, hands and objects, and nothing else.
+// What may be had over HTTP and as an asset: files of the page, of robots, hands and objects, and
+// nothing else.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +13,20 @@ namespace handsel::bridge {
 
 class Site {
  public:
-  static constexpr std::uintmax_t kLargestAsset = 32u << 20;  ///< [bytes] of an asset sent over WebSocket
+  /// [bytes] of an asset sent over WebSocket
+  static constexpr std::uintmax_t kLargestAsset = 32u << 20;
 
-  /// `page`: folder of the built page, empty when there is none; `resources`: the folder that holds robots/, hands/ and objects/.
+  /// `page`: folder of the built page, empty when there is none; `resources`: the folder that holds
+  /// robots/, hands/ and objects/.
   Site(std::filesystem::path page, const std::filesystem::path& resources);
 
-  /// The file a path of HTTP names ("/", "/page.js", "/assets/robots/jido/jido.urdf"); nothing when there is no such file, the path is
-  /// not canonical, the kind of file is not served or it lies (through a link) outside its folder.
+  /// The file a path of HTTP names ("/", "/page.js", "/assets/robots/jido/jido.urdf"); nothing when
+  /// there is no such file, the path is not canonical, the kind of file is not served or it lies
+  /// (through a link) outside its folder.
   std::optional<std::filesystem::path> find(std::string_view target) const;
   /// "package://handsel/robots/jido/jido.urdf", robots and hands only.
   Asset fetch(const std::string& uri) const;
+  /// Returns whether the folder of the built page was there at construction.
   bool has_page() const { return !page_.empty(); }
 
  private:
@@ -31,8 +36,8 @@ class Site {
 /// By the file's extension; application/octet-stream when unknown.
 const char* content_type(const std::filesystem::path& file);
 
-/// The built page: $HANDSEL_WEB, else `web` beside the executable's folder, else share/handsel/web beside it; empty when none has an
-/// index.html.
+/// The built page: $HANDSEL_WEB, else `web` beside the executable's folder, else share/handsel/web
+/// beside it; empty when none has an index.html.
 std::filesystem::path find_page();
 
 }  // namespace handsel::bridge

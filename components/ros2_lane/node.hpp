@@ -1,4 +1,4 @@
-// The lane to ROS 2 on a Bus: its topics beside ours.
+// The link to ROS 2 on a Bus: topics of ROS beside those of the system.
 #pragma once
 
 #include <map>
@@ -51,8 +51,9 @@ class Node {
   TrajectoryDesk desk_;
   Pose T_world_base_{Pose::Identity()};
   bool robot_heard_{false};
-  std::map<std::string, std::string> own_parents_;  ///< of the robot's links, when TF is told of them: nobody else may
-  std::string clash_;                               ///< of a frame from outside with one of them
+  /// Of the robot's links, when TF gets them: nobody else may send them
+  std::map<std::string, std::string> own_parents_;
+  std::string clash_;  ///< of a frame from outside with one of them
   TimePoint clash_at_{};
   std::string refused_;
   TimePoint refused_at_{};
@@ -64,7 +65,8 @@ class Node {
   std::unique_ptr<Publisher<StateQuery>> query_out_;
   std::unique_ptr<Publisher<TrajectoryRequest>> request_out_;
   std::unique_ptr<Publisher<TrajectoryCommand>>
-      command_out_;  // there only while a command is handed over: then the manipulation planner's are refused
+      // there only while a command is handed over: then the manipulation planner's are refused
+      command_out_;
   std::unique_ptr<Publisher<ros2::JointState>> joints_out_;
   std::unique_ptr<Publisher<ros2::Transforms>> frames_out_;
   std::unique_ptr<Publisher<ros2::Text>> result_out_;

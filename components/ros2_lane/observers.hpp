@@ -13,11 +13,13 @@
 
 namespace handsel::ros2_lane {
 
-/// "r_wrist_7f" -> {"r_wrist", "7f"}: a joint of a body as ROS4HRI names its frames. `torso` of ROS4HRI is between the shoulders: it is
-/// told as our neck. Nullopt for other frames.
+/// "r_wrist_7f" -> {"r_wrist", "7f"}: a joint of a body as ROS4HRI names its frames. `torso` of
+/// ROS4HRI is between the shoulders: it is reported as `neck` here.
 struct BodyFrame {
-  std::string joint, body;
+  std::string joint, body;  ///< one of kBodyJoints; id of the body
 };
+/// Splits the name of a frame; nullopt when it does not begin with a joint of kBodyJoints and "_",
+/// or has no body.
 std::optional<BodyFrame> body_frame(const std::string& frame);
 
 /// Bodies are those with frames lately; where a list of tracked ids has come, those on it.
@@ -25,9 +27,12 @@ class PeopleObserver {
  public:
   explicit PeopleObserver(const config::Ros2LaneSettings& settings) : settings_(settings) {}
 
+  /// Notes that a joint of a body has a frame; others, and bodies beyond 256, are left out.
   void on(const ros2::Transform&);
+  /// Takes the list of tracked bodies, which counts for 2 s.
   void on(const ros2::Ids&, TimePoint arrival);
-  /// What there is to tell: nullopt while nothing new came, or when it is not known whether somebody is there.
+  /// Returns the bodies seen lately, world frame: nullopt while nothing new came, or when presence
+  /// is not known.
   std::optional<HumanObservation> observe(const TfTree& tree, TimePoint now);
 
  private:
@@ -41,6 +46,8 @@ class PeopleObserver {
 class ObjectsObserver {
  public:
   explicit ObjectsObserver(const config::Ros2LaneSettings& settings) : settings_(settings) {}
+  /// Returns the objects of the settings whose frame came within people_age, in the world frame;
+  /// nullopt when there are none.
   std::optional<ObjectObservation> observe(const TfTree& tree, TimePoint now) const;
 
  private:

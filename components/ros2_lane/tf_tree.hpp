@@ -1,4 +1,4 @@
-// Frames of TF as they were told last. Pure.
+// Frames of TF as they were received last. Pure.
 #pragma once
 
 #include <map>
@@ -12,15 +12,17 @@ namespace handsel::ros2_lane {
 
 class TfTree {
  public:
-  /// A static frame does not grow old. At 4096 frames those not sent for ten seconds are forgotten; while there is no room, false.
+  /// A static frame does not grow old. At 4096 frames those not sent for ten seconds are forgotten;
+  /// while there is no room, false.
   bool set(const ros2::Transform&, TimePoint arrival, bool is_static);
 
   struct Place {
-    Pose T_root_frame{Pose::Identity()};
-    Stamp stamp{};        ///< of the frame itself; 0: static
-    TimePoint arrival{};  ///< of the oldest part of the way to the root that is not static; max when all is
+    Pose T_root_frame{Pose::Identity()};  ///< from the frame to the root [m]
+    Stamp stamp{};                        ///< of the frame itself; 0: static
+    /// Of the oldest transform up to the root that is not static; max when all is
+    TimePoint arrival{};
   };
-  /// Nullopt when no way leads from the frame to the root within 64 steps.
+  /// Returns a frame's place, or nullopt when its parents do not lead to the root within 64 steps.
   std::optional<Place> find(const std::string& frame, const std::string& root) const;
 
  private:

@@ -1,5 +1,6 @@
-// A motion asked for from ROS goes the way every motion goes: its configurations are judged by the collision checker, its line is timed by
-// the trajectory planner, the controller's guard decides while it runs. Or it is refused with the reason. Pure.
+// A motion asked for from ROS passes the same checks as every motion: its configurations are
+// checked by the collision checker, its line is timed by the trajectory planner, the controller's
+// guard decides while it runs. Or it is refused with the reason. Pure.
 #pragma once
 
 #include <optional>
@@ -15,26 +16,36 @@
 namespace handsel::ros2_lane {
 
 struct TrajectoryOutbox {
-  std::optional<StateQuery> query;
-  std::optional<TrajectoryRequest> request;
-  std::optional<TrajectoryCommand> command;
-  bool command_done{};               ///< the controller has taken or refused it: others may command again
+  std::optional<StateQuery> query;           ///< to the collision checker
+  std::optional<TrajectoryRequest> request;  ///< to the trajectory planner
+  std::optional<TrajectoryCommand> command;  ///< to the trajectory controller
+  /// The controller has taken or refused it: others may command again
+  bool command_done{};
   std::vector<std::string> results;  ///< one sentence each
 };
 
-/// The points of a JointTrajectory are the nodes of a path, from where the arm is. Its times count in so far as a slower motion is asked
-/// for; how fast it may be is ours to say. A first point at time 0 must be where the arm is. No points: the running one is stopped softly.
-/// Only while no task runs and the arm is at rest; a second one before the first has ended is refused.
+/// The points of a JointTrajectory are the nodes of a path, from where the arm is. Its times count
+/// in so far as a slower motion is asked for; the trajectory planner limits the speed. A first
+/// point at time 0 must be where the arm is. No points: the running one is stopped, jerk-limited.
+/// Only while no task runs and the arm is at rest; a second one before the first has ended is
+/// refused.
 class TrajectoryDesk {
  public:
   /// `client`: unique over the system and its restarts, grows.
   TrajectoryDesk(const config::Ros2LaneSettings& settings, std::shared_ptr<const RobotModel> robot, std::uint64_t client);
 
+  /// Begins the motion asked for, or refuses it with a sentence in `out`; without points stops the
+  /// running one.
   void on(const ros2::JointTrajectory&, TimePoint now, TrajectoryOutbox& out);
+  /// Takes the newest status of the task's action; while it runs, motions are refused.
   void on(const ActionStatus& status) { action_ = status; }
+  /// Takes the newest status of the controller: epoch, and whether the command runs.
   void on(const ExecutionStatus& status) { execution_ = status; }
+  /// Takes the robot's motion now; when older than 0.3 s, motions are refused.
   void on(const ActiveTrajectory&, TimePoint arrival);
+  /// Takes the checker's answer; one to another query is left out.
   void on(const StateVerdict&);
+  /// Takes the planner's answer; one to another request is left out.
   void on(const TrajectoryReply&);
   /// To be called often; repeats what is not answered.
   void step(TimePoint now, TrajectoryOutbox& out);

@@ -1,5 +1,6 @@
-// One register of doubles, as wide as the unit that includes this is compiled for. Everything is local to that unit: a function of a wide
-// unit must never be the one the linker keeps for the others.
+// One register of doubles, as wide as the unit that includes this is compiled for. Everything is
+// local to that unit: a function of a unit for wide registers must never be the one the linker
+// keeps for the others.
 #pragma once
 
 #include <experimental/simd>

@@ -1,7 +1,7 @@
 // A transition between two straight path segments. Whatever the method, an axis moves by step_a *
 // alpha(t) + step_b * beta(t), where alpha brings the first segment from where it is left to its
 // end and beta the second from its beginning to where it is joined: one pair of scalar motions for
-// all axes, whose limits are checked side by side (lanes.hpp). Own method, because two scalar
+// all axes, whose limits are checked side by side (LaneKernels). Own method, because two scalar
 // motions serve all axes; the transitions: chapter section 4.4 and smooth.hpp.
 #pragma once
 
