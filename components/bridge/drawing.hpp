@@ -19,8 +19,8 @@ class Drawing {
   using Objects = std::function<const ObjectModel*(const std::string& model)>;
   Drawing(std::shared_ptr<const RobotModel> robot, Objects objects);
 
-  /// Keeps the robot's newest state; of another robot, or with another number of axes, the robot
-  /// counts as not known.
+  /// Keeps the robot's newest state; the robot counts as not known while it has another number of
+  /// positions than the model has axes, or one that is not finite.
   void take(const RobotState& state) { state_ = state; }
   /// Keeps the newest people, world frame.
   void take(const HumanState& people) { people_ = people; }

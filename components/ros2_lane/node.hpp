@@ -64,8 +64,8 @@ class Node {
   std::unique_ptr<Publisher<RobotState>> robot_out_;
   std::unique_ptr<Publisher<StateQuery>> query_out_;
   std::unique_ptr<Publisher<TrajectoryRequest>> request_out_;
+  /// There only while a command is handed over: then the manipulation planner's are refused.
   std::unique_ptr<Publisher<TrajectoryCommand>>
-      // there only while a command is handed over: then the manipulation planner's are refused
       command_out_;
   std::unique_ptr<Publisher<ros2::JointState>> joints_out_;
   std::unique_ptr<Publisher<ros2::Transforms>> frames_out_;

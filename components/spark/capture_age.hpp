@@ -11,9 +11,11 @@ namespace handsel::spark {
 
 /// The clock that stamps a source's pictures.
 struct SourceClock {
-  double error{};                         ///< bound of its offset from the system clock here [s]
-  std::optional<double> assumed_latency;  ///< of pictures without a stamp [s]; none: their age is unknown
+  double error{};  ///< bound of its offset from the system clock here [s]
+  /// Of pictures without a stamp [s]; none: their age is unknown
+  std::optional<double> assumed_latency;
 };
+/// Returns the settings of the source's clock; those it does not have are the general ones.
 SourceClock clock_of(const config::SparkSettings& settings, const std::string& source);
 
 struct CaptureAge {
@@ -21,9 +23,11 @@ struct CaptureAge {
   std::string unknown;  ///< why the age is not known, one sentence; empty: it is
 };
 
-/// Returns the age of a picture at its arrival. `stamp`: of its capture, 0: none. `arrival`: the system clock then. `relative`: by how much
-/// it took longer than the fastest one of its source [s]: of a delay that is always there this shows nothing, of a system clock that was
-/// set nothing either. `least_latency`: no tracker is faster [s].
+/// Returns the age of a picture at its arrival. `stamp`: of its capture, 0: none. `arrival`: the
+/// system clock then. `relative`: by how much it took longer than the fastest one of its source
+/// [s]: of a delay that is always there this shows nothing, of a system clock that was set nothing
+/// either. The fourth argument: the smallest latency of any tracker [s], added to `relative` as a
+/// lower bound of the age.
 CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double least_latency, const SourceClock& clock);
 
 }  // namespace handsel::spark

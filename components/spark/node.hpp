@@ -29,13 +29,14 @@ class Node {
   void count_left_out(const std::string& what, std::uint64_t so_far, std::uint64_t& counted);
   std::string trouble(TimePoint now) const;
   void publish(const Scene& scene, TimePoint now);
-  void publish_news(TimePoint now);  // the scene, when it has changed in a way that matters to a planner
-  void interpret(TimePoint now);     // facts and scene, each when it is due
+  // the scene, when it has changed in a way that matters to a planner
+  void publish_news(TimePoint now);
+  void interpret(TimePoint now);  // facts and scene, each when it is due
 
   Bus& bus_;
   config::SparkSettings settings_;
   Calibration calibration_;
-  std::map<std::string, Vector3> eyes_;  // where sources look from
+  std::map<std::string, Vector3> eyes_;  // viewpoint of each source
   PeopleTracker tracker_;
   SceneModel scene_;
   FactFinder facts_;
@@ -48,7 +49,8 @@ class Node {
   LeftOut people_left_out_;      // of the last HumanState
   std::uint64_t refused_counted_{0}, forgotten_counted_{0};
   TimePoint started_, people_published_{};
-  bool knows_lost_{false};  // the safety state has been heard: who was lost before the start is known
+  // the safety state was received: the people lost before the start are known
+  bool knows_lost_{false};
   std::uint64_t revision_published_{0};
 };
 

@@ -1,4 +1,5 @@
-// How many people, objects, boxes and facts SPARK keeps, and which when there are more: the nearest and most relevant. Pure.
+// How many people, objects, boxes and facts SPARK keeps, and which when there are more: the nearest
+// and most relevant. Pure.
 #pragma once
 
 #include <algorithm>
@@ -16,38 +17,49 @@ namespace handsel::spark {
 
 /// Settings of the same names; a setting that is not given has the value here.
 struct Quotas {
+  /// Largest numbers: bodies of an observation that become new people, tracks of people, people of
+  /// a HumanState, sources of people, objects remembered, objects, boxes of a Scene, facts of
+  /// Facts.
   std::size_t bodies{32}, tracks{64}, people{16}, sources{16}, known_objects{128}, objects{64}, boxes{64}, facts{256};
 };
+/// Returns the quotas of the settings; their ranges are not checked.
 Quotas quotas_of(const config::SparkSettings& settings);
 /// Throws ConfigError "file:line: key ..." when a quota is out of range.
 void check_quotas(const config::SparkSettings& settings, const std::filesystem::path& file);
 
 /// What a quota has left out.
 struct LeftOut {
-  std::uint32_t count{};
-  double nearest{std::numeric_limits<double>::infinity()};  ///< distance of the nearest one from the axis of the arm [m]
+  std::uint32_t count{};  ///< 0: nothing
+  /// Distance of the nearest one from the axis of the arm [m]
+  double nearest{std::numeric_limits<double>::infinity()};
 };
 
 /// Horizontal distance from the axis to the sides of what the arm reaches [m].
 double arm_radius(const Coverage& reach);
-/// Distance of a point from the vertical axis in the middle of `reach` [m]; below and above the axis from its end.
+/// Distance of a point from the vertical axis in the middle of `reach` [m]; below and above the
+/// axis from its end.
 double distance_to_arm(const Vector3& point, const Coverage& reach);
-/// Of the nearest joint, less the inflation of a lost person [m]; negative inside the inflated body.
+/// Of the nearest joint, less the inflation of a lost person [m]; negative inside the inflated
+/// body.
 double distance_to_arm(const Person& person, const Coverage& reach);
+/// Of the nearest joint, of the gaze origin for a body without joints [m]; infinity without either.
 double distance_to_arm(const ObservedPerson& person, const Coverage& reach);
+/// Of the box from the nearest of five points on the axis [m]; 0 when one is inside.
 double distance_to_arm(const SceneBox& box, const Coverage& reach);
 
 /// Place of something in the order in which it is kept: lower first.
 struct Rank {
-  int order{};
+  int order{};        ///< kept in this order, then by distance
   double distance{};  ///< to the arm [m]
   friend auto operator<=>(const Rank&, const Rank&) = default;
 };
 
-/// Of an object: held by the robot, held by a person, wanted by the task, any other; the nearest first.
+/// Of an object: held by the robot, held by a person, wanted by the task, any other; the nearest
+/// first.
 Rank rank_of(const SceneObject& object, bool wanted, const Coverage& reach);
 
-/// Keeps the `max` items of the lowest rank, in the order they have; of equal ranks the first. `rank`: Rank of an item.
+/// Keeps the `max` items of the lowest rank, in the order they have; of equal ranks the first.
+/// `rank`: Rank of an item.
 template <class T, class RankOf>
 LeftOut keep_lowest(std::vector<T>& items, std::size_t max, RankOf&& rank) {
   LeftOut out;
@@ -79,17 +91,20 @@ LeftOut keep_nearest(std::vector<SomePerson>& people, std::size_t max, const Cov
 /// Which of the bodies are the `max` nearest to the arm; all of them when `reach` is null.
 std::vector<bool> nearest_of(const std::vector<ObservedPerson>& bodies, std::size_t max, const Coverage* reach);
 
-/// Keeps the facts about safety and exchanges first, then those about what is held, then the others; of each kind those about the nearest.
+/// Keeps the facts about safety and exchanges first, then those about what is held, then the
+/// others; of each kind those about the nearest.
 LeftOut keep_most_relevant(std::vector<Fact>& facts, std::size_t max, const Scene& scene, const HumanState& people, const Coverage& reach);
 
 /// A count that sources report one after the other: the largest of the last second.
 class RecentCount {
  public:
+  /// Takes a count; a smaller one replaces the largest only after a second.
   void add(std::uint32_t count, TimePoint now) {
     if (count < count_ && to_seconds(now - at_) < kMemory) return;
     count_ = count;
     at_ = now;
   }
+  /// Returns the count kept, 0 when it is a second old.
   std::uint32_t get(TimePoint now) const { return to_seconds(now - at_) < kMemory ? count_ : 0; }
 
  private:

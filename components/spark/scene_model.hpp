@@ -1,4 +1,5 @@
-// What stands where and who holds it: objects from observations, fixed boxes from the place, the robot's own posture. Pure.
+// What stands where and who holds it: objects from observations, fixed boxes from the place, the
+// robot's own configuration. Pure.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +22,16 @@
 
 namespace handsel::spark {
 
-/// Where a robot at `base` could reach, and some more: the room in which people must be watched [m].
+/// Where a robot at `base` could reach, and some more: the room in which people must be watched
+/// [m].
 Coverage reach_of(const RobotModel& robot, const Vector3& base);
 
-/// An object stays when nobody sees it: `uncertainty` grows from then on, faster where somebody's hand could reach it, until it is seen
-/// again. In a hand out of sight it moves with the hand, and leaves with the person. Of several sources that see it one is believed as long
-/// as it tells; what another says makes the place more uncertain when it differs. Two things of a kind that change places faster than
-/// anybody could have carried them have changed names. An object nobody has described enters as its primitive. Ours.
+/// An object stays when nobody sees it: `uncertainty` grows from then on, faster where somebody's
+/// hand could reach it, until it is seen again. In a hand out of sight it moves with the hand, and
+/// leaves with the person. Of several sources that see it one is believed as long as it reports;
+/// what another reports makes the place more uncertain when it differs. Two things of a kind that
+/// change places faster than anybody could have carried them have changed names. An object nobody
+/// has described enters as its primitive. Own method: an object out of sight may have been moved.
 class SceneModel {
  public:
   SceneModel(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
@@ -35,21 +39,32 @@ class SceneModel {
 
   /// What is neither described nor a primitive of a size is refused and counted.
   void observe(const ObjectObservation& observation, TimePoint seen);
+  /// Returns how many objects of observations were refused so far.
   std::uint64_t refused() const { return refused_; }
-  /// The task wants this object: it is kept before others when there are too many. The last few count.
+  /// The task wants this object: it is kept before others when there are too many. The last few
+  /// count.
   void want(const std::string& object);
   /// Objects and boxes left out of the last scene.
   std::uint32_t objects_left_out() const { return objects_left_out_.count; }
+  /// Returns how many boxes were left out of the last scene.
   std::uint32_t boxes_left_out() const { return boxes_left_out_.count; }
-  std::uint64_t forgotten() const { return forgotten_; }  ///< observations of objects beyond what is remembered
-  /// One sentence about the objects refused lately and what is left out within reach of the arm; empty: none.
+  /// Observations of objects beyond what is remembered
+  std::uint64_t forgotten() const { return forgotten_; }
+  /// One sentence about the objects refused lately and what is left out within reach of the arm;
+  /// empty: none.
   std::string trouble(TimePoint now) const;
+  /// Takes the state of the robot, which must be this one's: configuration, base pose, payload of
+  /// each hand.
   void update(const RobotState& state);
   /// Decides who holds what from geometry, the hand's load and the people's hands.
   Scene scene(TimePoint now, const HumanState& people);
 
+  /// Returns whether update() was called.
   bool robot_known() const { return robot_known_; }
+  /// Returns the base pose of the last update(); identity before.
   const Pose& T_world_base() const { return T_world_base_; }
+  /// Returns the pose of the first hand's palm as of the last observe(), scene() or obstacles();
+  /// identity before the robot is known.
   const Pose& T_world_tool() const { return hands_.front().T_world_palm; }
   /// The box around everything the robot can reach: what must be covered for "nobody" to be a fact.
   Coverage reach() const;
@@ -72,7 +87,7 @@ class SceneModel {
     TimePoint jump_until{};
     int hand{};                              ///< joint of the person who holds it
     Vector3 p_hand_object{Vector3::Zero()};  ///< from there, world axes [m]
-    std::optional<TimePoint> gripped;        ///< the look p_hand_object is of
+    std::optional<TimePoint> gripped;        ///< the sample p_hand_object is of
     double wandered{};                       ///< how far it may have gone since it was seen [m]
     TimePoint judged{};                      ///< when that was
   };
@@ -88,7 +103,8 @@ class SceneModel {
   void shorten(std::vector<ObservedObject>& seen);
   void forget_least_relevant();
   std::string left_out_in_reach() const;
-  /// Of the hands that feel it together, the one that has it: whoever had it, while it feels some of the load; else who feels most of it.
+  /// Of the hands that feel it together, the one that has it: whoever had it, while it feels some
+  /// of the load; else who feels most of it.
   std::optional<std::size_t> loaded_hand(const Known& known) const;
   void follow(Known& known, const ObservedObject& observed, TimePoint seen) const;
   bool known_shape(ObservedObject& observed) const;

@@ -1,4 +1,5 @@
-// What the sources of people have looked at: their coverage, less what is hidden from where they stand. Pure.
+// What the sources of people have observed: their coverage, less what is hidden from where they
+// stand. Pure.
 #pragma once
 
 #include <optional>
@@ -13,30 +14,35 @@ namespace handsel::spark {
 
 /// What hides things from a source.
 struct Obstacles {
-  std::vector<SightCapsule> robot;
-  std::vector<SightBox> boxes;
+  std::vector<SightCapsule> robot;  ///< of its links, world [m]
+  std::vector<SightBox> boxes;      ///< fixed ones of the scene, world [m]
 };
 
 struct Source {
-  Coverage coverage;
-  bool ever{};                         ///< an observation of known age has come
-  TimePoint seen{};                    ///< when its newest new observation was captured
-  TimePoint unbroken{};                ///< since when it has looked without a gap longer than coverage_memory
-  std::optional<Vector3> eye;          ///< where it looks from, world [m]; none: it sees all of its coverage
-  std::vector<ObservedPerson> people;  ///< as last told
-  bool repeats{};                      ///< its last observation told the same once more
+  Coverage coverage;  ///< box it reports to observe, world [m]
+  bool ever{};        ///< an observation of known age has come
+  TimePoint seen{};   ///< when its newest new observation was captured
+  /// Since when it has looked without a gap longer than coverage_memory
+  TimePoint unbroken{};
+  std::optional<Vector3> eye;          ///< viewpoint, world [m]; none: it sees all of its coverage
+  std::vector<ObservedPerson> people;  ///< of its newest observation
+  bool repeats{};                      ///< its last observation was the same as the one before
   Stamp stamp{};                       ///< of its newest observation
-  double latency{};                    ///< from the capture of its newest observation to the arrival [s]
-  std::string unknown_age;             ///< why the age of its last observation is not known; empty: it is
+  /// From the capture of its newest observation to the arrival [s]
+  double latency{};
+  /// Why the age of its last observation is not known; empty: it is
+  std::string unknown_age;
 
   /// Since the capture of its newest new picture [s]; 1e9: there was none.
   double age(TimePoint now) const { return ever ? to_seconds(now - seen) : 1e9; }
 };
 
-/// Returns why the source is not live now, one sentence without its name; empty: it is. `max_age`: of its newest new picture [s].
+/// Returns why the source is not live now, one sentence without its name; empty: it is. `max_age`:
+/// of its newest new picture [s].
 std::string why_not_live(const Source& source, TimePoint now, double max_age);
 
-/// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the floor: the margin is horizontal.
+/// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the
+/// floor: the margin is horizontal.
 bool contains(const Coverage&, const Vector3& point, double margin);
 
 /// Whether the union of the boxes contains the whole of `box`. Exact.

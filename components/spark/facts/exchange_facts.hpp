@@ -1,4 +1,5 @@
-// Who holds, offers, waits for, takes back and lets go of what: the facts of an exchange between any two, person or robot. Pure.
+// Who holds, offers, waits for, takes back and releases what: the facts of a handover between any
+// two, person or robot. Pure.
 #pragma once
 
 #include <map>
@@ -23,9 +24,9 @@ class ExchangeFacts {
  public:
   explicit ExchangeFacts(const config::SparkSettings& settings) : settings_(settings) {}
 
-  /// Adds the candidates of this look. An object with force sensors is held by everybody whose grip exceeds `grip_force` until it falls
-  /// below `grip_lost`, so that both have it while it goes over; any other by its one holder. Letting go of something that nobody else
-  /// holds is no release.
+  /// Adds the candidates of this sample. An object with force sensors is held by everybody whose
+  /// grip exceeds `grip_force` until it falls below `grip_lost`, so that both have it during the
+  /// handover; any other by its one holder. Only what another still holds counts as released.
   void find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now, std::vector<Candidate>& out);
 
  private:
@@ -43,8 +44,9 @@ class ExchangeFacts {
 
   config::SparkSettings settings_;
   std::map<std::string, std::set<std::string>> holders_;  // of each object
-  std::map<Pair, Moment> released_, withdrawn_;           // object and who let go; person and what they drew back from
-  std::map<Pair, TimePoint> offering_, reaching_;         // person and thing, when last so
+  // object and its last holder; person and what they withdrew from
+  std::map<Pair, Moment> released_, withdrawn_;
+  std::map<Pair, TimePoint> offering_, reaching_;  // person and thing, when last so
 };
 
 }  // namespace handsel::spark

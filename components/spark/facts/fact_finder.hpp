@@ -1,4 +1,5 @@
-// From geometry to facts: zones, who moves, looks, sees and reaches, what is on, in and next to what, and the exchange. Pure.
+// From geometry to facts: zones, who moves, looks, sees and reaches, what is on, in and next to
+// what, and the exchange. Pure.
 #pragma once
 
 #include <map>
@@ -23,7 +24,8 @@ class FactFinder {
  public:
   FactFinder(const config::SparkSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects);
 
-  /// The facts that hold now, with how long they have held and what they rest on. Those of the robot need its state to be known.
+  /// The facts that hold now, with how long they have held and what they rest on. Those of the
+  /// robot need its state to be known.
   Facts find(const Scene& scene, const HumanState& people, TimePoint now);
 
  private:
@@ -54,7 +56,7 @@ class FactFinder {
   ArmReach reach_;
   std::map<std::string, Zone> zones_;
   ExchangeFacts exchange_;
-  FactMemory lasting_, instant_;  // what is judged here; what was judged with a memory of its own
+  FactMemory lasting_, instant_;  // what is found here; what was found with a memory of its own
 };
 
 }  // namespace handsel::spark

@@ -1,4 +1,5 @@
-// What holds begins at one limit and ends at another, and what has only just ended still holds for a moment. Pure.
+// What holds begins at one limit and ends at another, and what has only just ended still holds for
+// a moment. Pure.
 #pragma once
 
 #include <map>
@@ -13,12 +14,12 @@ namespace handsel::spark {
 
 /// Something that may be a fact.
 struct Candidate {
-  FactKind kind{};
-  std::string subject, object;
-  double value{};
-  bool begins{};         ///< is a fact, also when it was none before
-  bool stays{};          ///< remains one when it was
-  std::string evidence;  ///< what was measured, one line for people
+  FactKind kind{};              ///< kind, subject and object together are its identity
+  std::string subject, object;  ///< ids; of the robot kRobotName or empty, as the kind has it
+  double value{};               ///< measure of the kind, as in Fact
+  bool begins{};                ///< is a fact, also when it was none before
+  bool stays{};                 ///< remains one when it was
+  std::string evidence;         ///< what was measured, one line for people
 };
 
 /// A line of evidence, printf style.
@@ -29,7 +30,8 @@ class FactMemory {
   /// A fact whose candidate neither begins nor stays, or is not there, holds for `dwell` [s] more.
   explicit FactMemory(double dwell) : dwell_(dwell) {}
 
-  /// To be called once per look with all candidates of that look, each kind, subject and object at most once.
+  /// To be called once per sample with all candidates of that sample, each kind, subject and object
+  /// at most once.
   std::vector<Fact> settle(const std::vector<Candidate>& candidates, TimePoint now);
 
  private:

@@ -1,4 +1,5 @@
-// How the joints of one body move: the trunk, told by all of its joints at once, and every joint from there. Pure.
+// How the joints of one body move: the trunk, from all of its joints at once, and every joint from
+// there. Pure.
 #pragma once
 
 #include <array>
@@ -14,12 +15,14 @@ namespace handsel::spark {
 
 bool of_trunk(std::size_t joint);  ///< index into kBodyJoints
 
-/// The mean of the trunk's joints is less noisy than any of them: who starts to walk shows in it two looks sooner than in each joint alone,
-/// and all joints start with it. Ours.
+/// The mean of the trunk's joints is less noisy than any of them: a person who starts to walk shows
+/// in it two samples sooner than in each joint alone, and all joints start with it. Own method, for
+/// that earlier sight.
 class BodyMotion {
  public:
-  /// Takes in where the joints (kBodyJoints) were seen at `at`, never before the last such time, and tells their velocities in the same
-  /// place. `noise`: standard deviation of each coordinate [m], 0 for a joint of which there is no news.
+  /// Takes in where the joints (kBodyJoints) were seen at `at`, never before the last such time,
+  /// and writes their velocities to `body`. `noise`: standard deviation of each coordinate [m], 0
+  /// for a joint of which there is no news.
   void update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise, TimePoint at);
 
  private:
@@ -29,7 +32,8 @@ class BodyMotion {
     JointMotion motion;
     std::optional<TimePoint> told;
   };
-  // A body starts to walk, and a hand to reach, at some m/s^2; a trunk bends slowly, and what was seen wrongly jumps.
+  // A body starts to walk, and a hand to reach, at some m/s^2; a trunk bends slowly, and what was
+  // seen wrongly jumps.
   static constexpr JointMotion::Agility kTrunk{2, 10}, kFromTrunk{1, 20};
 
   Point trunk_{kTrunk};

@@ -8,21 +8,23 @@
 
 namespace handsel::spark {
 
-/// The trunk goes on as it goes, the hand moves relative to it and comes to rest. The ball is meant to hold the hand in 95 of 100 cases: it
-/// grows with time and speed, and with what came farther off lately than expected, for as long as memory lasts. Ours.
+/// The trunk continues as it moves, the hand moves relative to it and comes to rest. The ball is
+/// meant to hold the hand in 95 of 100 cases: it grows with time and speed, and with what came
+/// farther off lately than expected, for as long as memory lasts. Own method: that factor corrects
+/// a filter whose model does not fit.
 class HandPredictor {
  public:
   HandPredictor();
-  /// A first look, or one after a gap. `trunk`: mean of several of its joints.
+  /// Starts with a first sample, or one after a gap. `trunk`: mean of several of its joints.
   void reset(const Vector3& hand, const Vector3& trunk, double noise);
-  /// `dt` > 0 [s] since the last look, `noise` of a point [m]; world [m].
+  /// `dt` > 0 [s] since the last sample, `noise` of a point [m]; world [m].
   void update(const Vector3& hand, const Vector3& trunk, double dt, double noise);
 
   struct Ball {
     Vector3 centre{Vector3::Zero()};  ///< world [m]
     double radius{};                  ///< [m]
   };
-  /// `horizon` >= 0 after the last look [s].
+  /// `horizon` >= 0 after the last sample [s].
   Ball at(double horizon) const { return at(horizon, misses_); }
 
  private:

@@ -1,4 +1,5 @@
-// Velocity of one noisy point: a constant-velocity Kalman filter, quick when the point surprises it. Pure.
+// Velocity of one noisy point: a constant-velocity Kalman filter, quick when the point surprises
+// it. Pure.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +12,14 @@ namespace handsel::spark {
 
 class JointMotion {
  public:
-  /// Standard deviations of its acceleration, on each axis [m/s^2]: as usual, and when it surprises.
+  /// Standard deviations of its acceleration, on each axis [m/s^2]: as usual, and when it
+  /// surprises.
   struct Agility {
-    double calm, sudden;
+    double calm, sudden;  ///< as usual; when a position is off by two standard deviations
   };
   explicit JointMotion(const Agility& agility) : agility_(agility) {}
   const Vector3& velocity() const { return velocity_; }  ///< world [m/s]
+  /// Starts at a position with standard deviation `noise` of each axis [m], at rest.
   void reset(const Vector3& position, double noise) {
     position_ = position;
     velocity_.setZero();
@@ -24,7 +27,7 @@ class JointMotion {
     pv_ = 0;
     vv_ = 1.0;
   }
-  /// `dt` > 0 [s] since the last look, `noise` of this one [m].
+  /// `dt` > 0 [s] since the last sample, `noise` of this one [m].
   void update(const Vector3& seen, double dt, double noise) {
     const Vector3 expected = position_ + dt * velocity_;
     const double r = noise * noise;
