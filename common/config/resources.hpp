@@ -24,8 +24,8 @@ std::string locate(const std::filesystem::path& file, const std::string& text);
 
 /// "jido" or a path to a .txtpb -> path of the description. MissingError lists what there is.
 std::filesystem::path robot_description(const std::string& name_or_path);
-/// Returns hands/<name>/<name>.txtpb, or a path as given. Throws MissingError: of a name with the
-/// names there are.
+/// Returns hands/<name>/<name>.txtpb, or a path as given. Throws MissingError, for a name with the
+/// list of those there are.
 std::filesystem::path hand_description(const std::string& name_or_path);
 /// Returns objects/<name>/<name>.txtpb, or a path as given. Throws MissingError as
 /// hand_description().

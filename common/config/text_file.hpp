@@ -7,7 +7,7 @@
 
 namespace handsel {
 
-/// Of a description, settings or a story, far more than any of them has
+/// Of a description, settings or a story, far more than any of them has.
 inline constexpr std::uintmax_t kMaxTextBytes = 4u << 20;
 
 /// Returns the content of a file. Throws MissingError where there is none, ConfigError naming the

@@ -18,7 +18,7 @@ struct PointContact {
   Vector3 position{Vector3::Zero()};        ///< [m]
   Vector3 inward_normal{Vector3::UnitZ()};  ///< unit vector into the object
   double friction{0.5};                     ///< Coulomb coefficient
-  /// Torque about the normal per normal force [m]; 0: a point (hard finger)
+  /// Torque about the normal per normal force [m]; 0: a point (hard finger).
   double torsion{0.0};
 };
 

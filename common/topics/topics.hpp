@@ -14,7 +14,7 @@ enum class Profile : std::uint8_t {
   sensor,   ///< best effort, keep last 1
   state,    ///< reliable, transient local, keep last 1
   command,  ///< reliable, keep last 8
-  /// A command whose last sample a late joiner must know: reliable, transient local, keep last 1
+  /// A command whose last sample a late joiner must know: reliable, transient local, keep last 1.
   latch,
   goal,      ///< reliable, keep last 8, many writers
   advice,    ///< reliable, keep last 1
@@ -35,7 +35,7 @@ struct TopicRow {
   double deadline;      ///< longest time between samples [s]; 0 = none
   std::size_t largest;  ///< bound of the serialised sample [bytes]
   const char* writers;  ///< components, separated by spaces
-  /// Components, separated by spaces; the bridge reads everything and is not named
+  /// Components, separated by spaces; the bridge reads everything and is not named.
   const char* readers;
 };
 

@@ -28,7 +28,7 @@ inline AxisLimits limits_of(const KinematicLimits& limits, Eigen::Index axis) {
 struct AxisProfile {
   static constexpr int kCapacity = 20;  ///< largest number of segments; push() drops what is beyond
   int count{};                          ///< number of segments in use
-  /// In order of time; only the first `count` are initialised
+  /// In order of time; only the first `count` are initialised.
   std::array<Segment, kCapacity> segments;
 
   AxisProfile() = default;
@@ -64,7 +64,7 @@ enum class AxisOutcome {
   end_beyond_limits,  ///< the end state, or what must precede it, breaks a limit
   too_short,          ///< the imposed duration is below the minimum
   wrong_size,         ///< a state or the limits have another number of axes
-  /// No motion inside the limits has the imposed duration, though shorter ones exist
+  /// No motion inside the limits has the imposed duration, though shorter ones exist.
   blocked,
 };
 /// Returns the cause of a failure as part of a sentence, "" for ok.
@@ -110,7 +110,7 @@ class MotionFamily {
 
   bool island{};                    ///< short durations form a component of their own
   double island_lo{}, island_hi{};  ///< parameter range of that component
-  /// Range of the main component; at s_hi the velocity limit is met
+  /// Range of the main component; at s_hi the velocity limit is met.
   double s_lo{}, s_hi{};
 
  private:

@@ -33,7 +33,7 @@ struct SetpointRefusal {
   };
   Reason reason{Reason::none};  ///< first check that failed; none: accepted
   Eigen::Index axis{-1};        ///< -1: not of one axis
-  /// In the unit of the reason; numbers and times where it is not of one axis
+  /// In the unit of the reason; numbers and times where it is not of one axis.
   double value{}, bound{};
   explicit operator bool() const { return reason != Reason::none; }
 };

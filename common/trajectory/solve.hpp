@@ -20,7 +20,7 @@ struct Solution {
   Trajectory trajectory;              ///< of all axes; without axes when there is a reason
   std::string reason;                 ///< why there is no trajectory; empty when there is
   std::vector<double> min_durations;  ///< of each axis alone [s]
-  /// Beyond the limits, only when an imposed duration forced the three-segment method; else 0
+  /// Beyond the limits, only when an imposed duration forced the three-segment method; else 0.
   double excess{};
   /// Returns whether there is a trajectory.
   bool ok() const { return reason.empty(); }

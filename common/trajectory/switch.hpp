@@ -21,7 +21,7 @@ enum class SwitchOutcome {
   not_finite,           ///< a number of the present state is NaN or infinite
   bad_limits,           ///< a limit is zero or negative
   start_beyond_limits,  ///< the present state cannot be left inside the limits
-  /// Nowhere in the window can the new trajectory be joined inside the limits
+  /// Nowhere in the window can the new trajectory be joined inside the limits.
   nowhere,
   too_long,  ///< more segments than there is room for
   not_now,   ///< the speed factor is changing too fast for it; a later step may do
@@ -30,13 +30,13 @@ enum class SwitchOutcome {
 const char* reason(SwitchOutcome) noexcept;
 
 struct SwitchSettings {
-  /// The new trajectory is joined at or after this, on its own time [s]
+  /// The new trajectory is joined at or after this, on its own time [s].
   double first{0.0};
   double last{std::numeric_limits<double>::infinity()};  ///< and not after this [s]
   /// The new trajectory runs already, its time is 0 now: it is met where it then is, as early as
   /// possible. After its end it is at rest there. `last` is not used.
   bool on_clock{};
-  /// The connecting motion keeps the limits / reserve; up to the limits where the start needs it
+  /// The connecting motion keeps the limits / reserve; up to the limits where the start needs it.
   double reserve{1.1};
   int tries{24};  ///< places tried before the best is refined
 };
@@ -55,7 +55,7 @@ class TrajectorySwitch {
   /// below are not to be used.
   SwitchOutcome plan(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
 
-  /// On the new trajectory's own time; beyond its end only on the clock [s]
+  /// On the new trajectory's own time; beyond its end only on the clock [s].
   double joins_at() const noexcept { return join_; }
   double duration() const noexcept { return connect_; }  ///< of the connecting motion [s]
   int segments() const noexcept;                         ///< at most, of the connecting motion
@@ -92,7 +92,7 @@ AxisOutcome replan_axis(const AxisState& from, const AxisState& to, const AxisLi
 void add_part(const SegmentTable& from, double begin, double end, SegmentTable& out, MotionState3& state) noexcept;
 
 struct Switched {
-  /// From the present state: the connecting motion, then the rest of the new trajectory
+  /// From the present state: the connecting motion, then the rest of the new trajectory.
   Trajectory trajectory;
   std::string reason;   ///< why there is none; empty when there is
   double joins_at{};    ///< on the new trajectory's own time [s]

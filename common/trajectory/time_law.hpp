@@ -68,11 +68,11 @@ class TimeLaw {
   /// On the own time of the trajectory given last; while the connecting motion of a switch runs:
   /// before joined_at() [s].
   double own_time() const noexcept { return now_.tau - offset_; }
-  /// Own time at which the trajectory given last was joined [s]
+  /// Own time at which the trajectory given last was joined [s].
   double joined_at() const noexcept { return joined_at_; }
-  /// Switch point of the last switch on time() [s]
+  /// Switch point of the last switch on time() [s].
   double left_at() const noexcept { return left_at_; }
-  /// What is run: trajectories given and connecting motions
+  /// What is run: trajectories given and connecting motions.
   const SegmentTable& path() const noexcept { return table_; }
   /// Returns d(tau)/dt now, in [-1, 1].
   double alpha() const noexcept { return now_.alpha; }

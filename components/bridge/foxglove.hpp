@@ -38,7 +38,7 @@ struct Catalogue {
   std::string name;                             ///< of the server: "handsel" and the robot's name
   std::string session;                          ///< changes with every start
   std::map<std::string, std::string> metadata;  ///< robot, scenario, DDS domain, version
-  /// At most 64: those of the table of topics, then those drawn
+  /// At most 64: those of the table of topics, then those drawn.
   std::vector<Channel> channels;
   std::map<std::string, std::string> parameters;  ///< read-only
 };
@@ -97,11 +97,11 @@ class Hub {
 class Viewer {
  public:
   static constexpr std::size_t kMostSubscriptions = 256;  ///< more are refused
-  /// Refused messages; one more and the client is cut
+  /// Refused messages; one more and the client is cut.
   static constexpr unsigned kMostErrors = 100;
-  /// [bytes] waiting to be sent; beyond, assets are refused
+  /// [bytes] of answers waiting to be sent; beyond, assets are refused.
   static constexpr std::size_t kMostAssetBytes = 64u << 20;
-  /// From the client in a second; one more and it is cut
+  /// From the client in a second; one more and it is cut.
   static constexpr unsigned kMostMessages = 2000;
 
   /// The hub must outlive it. Announces server and channels.

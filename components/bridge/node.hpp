@@ -34,7 +34,7 @@ class Node {
   Site site_;
   Catalogue catalogue_;
   std::string config_;
-  /// By place in the table of topics; null: nobody watches
+  /// By place in the table of topics; null: nobody watches.
   std::vector<std::unique_ptr<RawReader>> readers_;
   std::map<std::string, TimePoint> heard_;  ///< components, by their health
   Drawing drawing_;

@@ -15,14 +15,14 @@ namespace handsel::bridge {
 struct ServerSettings {
   std::uint16_t port{8765};  ///< 0: any free one
   /// WebSocket clients at once; four times as many connections altogether; more are refused with
-  /// 503
+  /// 503.
   unsigned max_clients{16};
   double request_timeout{5.0};  ///< [s] to send a request, and to take the answer
-  /// [s] a WebSocket client may take for one message before it is cut
+  /// [s] a WebSocket client may take for one message before it is cut.
   double stall_timeout{5.0};
-  /// Pages of other hosts that may connect, as in their Origin header
+  /// Pages of other hosts that may connect, as in their Origin header.
   std::vector<std::string> allowed_origins;
-  /// IPv4, of the interface it listens on; pages still name this machine as 127.0.0.1 or localhost
+  /// IPv4, of the interface it listens on; pages still name this machine as 127.0.0.1 or localhost.
   std::string address{"127.0.0.1"};
 };
 

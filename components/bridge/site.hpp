@@ -13,7 +13,7 @@ namespace handsel::bridge {
 
 class Site {
  public:
-  /// [bytes] of an asset sent over WebSocket
+  /// [bytes] of an asset sent over WebSocket.
   static constexpr std::uintmax_t kLargestAsset = 32u << 20;
 
   /// `page`: folder of the built page, empty when there is none; `resources`: the folder that holds

@@ -51,7 +51,7 @@ class Node {
   TrajectoryDesk desk_;
   Pose T_world_base_{Pose::Identity()};
   bool robot_heard_{false};
-  /// Of the robot's links, when TF gets them: nobody else may send them
+  /// Of the robot's links, when TF gets them: nobody else may send them.
   std::map<std::string, std::string> own_parents_;
   std::string clash_;  ///< of a frame from outside with one of them
   TimePoint clash_at_{};

@@ -19,7 +19,7 @@ class TfTree {
   struct Place {
     Pose T_root_frame{Pose::Identity()};  ///< from the frame to the root [m]
     Stamp stamp{};                        ///< of the frame itself; 0: static
-    /// Of the oldest transform up to the root that is not static; max when all is
+    /// Of the oldest transform up to the root that is not static; max when all is.
     TimePoint arrival{};
   };
   /// Returns a frame's place, or nullopt when its parents do not lead to the root within 64 steps.

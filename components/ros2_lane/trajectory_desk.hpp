@@ -19,7 +19,7 @@ struct TrajectoryOutbox {
   std::optional<StateQuery> query;           ///< to the collision checker
   std::optional<TrajectoryRequest> request;  ///< to the trajectory planner
   std::optional<TrajectoryCommand> command;  ///< to the trajectory controller
-  /// The controller has taken or refused it: others may command again
+  /// The controller has taken or refused it: others may command again.
   bool command_done{};
   std::vector<std::string> results;  ///< one sentence each
 };

@@ -12,7 +12,7 @@ namespace handsel::spark {
 /// The clock that stamps a source's pictures.
 struct SourceClock {
   double error{};  ///< bound of its offset from the system clock here [s]
-  /// Of pictures without a stamp [s]; none: their age is unknown
+  /// Of pictures without a stamp [s]; none: their age is unknown.
   std::optional<double> assumed_latency;
 };
 /// Returns the settings of the source's clock; those it does not have are the general ones.

@@ -30,7 +30,7 @@ void check_quotas(const config::SparkSettings& settings, const std::filesystem::
 /// What a quota has left out.
 struct LeftOut {
   std::uint32_t count{};  ///< 0: nothing
-  /// Distance of the nearest one from the axis of the arm [m]
+  /// Distance of the nearest one from the axis of the arm [m].
   double nearest{std::numeric_limits<double>::infinity()};
 };
 

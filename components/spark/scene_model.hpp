@@ -48,7 +48,7 @@ class SceneModel {
   std::uint32_t objects_left_out() const { return objects_left_out_.count; }
   /// Returns how many boxes were left out of the last scene.
   std::uint32_t boxes_left_out() const { return boxes_left_out_.count; }
-  /// Observations of objects beyond what is remembered
+  /// Observations of objects beyond what is remembered.
   std::uint64_t forgotten() const { return forgotten_; }
   /// One sentence about the objects refused lately and what is left out within reach of the arm;
   /// empty: none.

@@ -22,15 +22,15 @@ struct Source {
   Coverage coverage;  ///< box it reports to observe, world [m]
   bool ever{};        ///< an observation of known age has come
   TimePoint seen{};   ///< when its newest new observation was captured
-  /// Since when it has looked without a gap longer than coverage_memory
+  /// Since when it has looked without a gap longer than coverage_memory.
   TimePoint unbroken{};
   std::optional<Vector3> eye;          ///< viewpoint, world [m]; none: it sees all of its coverage
   std::vector<ObservedPerson> people;  ///< of its newest observation
   bool repeats{};                      ///< its last observation was the same as the one before
   Stamp stamp{};                       ///< of its newest observation
-  /// From the capture of its newest observation to the arrival [s]
+  /// From the capture of its newest observation to the arrival [s].
   double latency{};
-  /// Why the age of its last observation is not known; empty: it is
+  /// Why the age of its last observation is not known; empty: it is.
   std::string unknown_age;
 
   /// Since the capture of its newest new picture [s]; 1e9: there was none.

@@ -15,11 +15,11 @@ struct ApproximationTolerance {
 };
 
 struct Approximation {
-  /// Meets the samples at the ends of every piece; limits are not bounded: check them
+  /// Meets the samples at the ends of every piece; limits are not bounded: check them.
   Trajectory trajectory;
   std::string reason;  ///< why there is none; empty when there is
   int pieces{};        ///< of three segments on every axis
-  /// Numbers in the samples / numbers in the trajectory
+  /// Numbers in the samples / numbers in the trajectory.
   double compression{};
   double position_error{}, velocity_error{};  ///< largest at the samples [rad], [rad/s]
   /// Returns whether there is a trajectory.
@@ -43,7 +43,7 @@ struct Derived {
 Derived differentiate(const std::vector<double>& times, const std::vector<Eigen::VectorXd>& positions, int reach = 2);
 
 struct SlowedDown {
-  /// Later instants of the same positions [s], from the first time on
+  /// Later instants of the same positions [s], from the first time on.
   std::vector<double> times;
   std::vector<MotionState3> samples;  ///< velocity and acceleration as they are then
   std::vector<double> alpha;          ///< time increment at each sample, in (0, 1]
@@ -62,7 +62,7 @@ struct Executable {
   Approximation approximation;  ///< its trajectory keeps the limits, exactly
   double slowest{1};            ///< smallest alpha
   /// Factor of the duration, > 1 where the whole was lengthened because pieces exceed what samples
-  /// did not
+  /// did not.
   double stretch{1};
   std::vector<double> times;  ///< when it meets each sample [s]
 };

@@ -13,11 +13,11 @@ namespace handsel {
 
 /// Along a straight path segment, up to a place on it, the velocity limits hold times `share`.
 struct SpeedZone {
-  /// Part of the distance from node to node; grows from zone to zone, the last is 1
+  /// Part of the distance from node to node; grows from zone to zone, the last is 1.
   double end{1};
   double share{1};  ///< scale of the velocity limits, (0, 1]
 };
-using SpeedZones = std::vector<SpeedZone>;  ///< of a leg; none: the limits as they are
+using SpeedZones = std::vector<SpeedZone>;  ///< of a path segment; none: the limits as they are
 
 /// Rest-to-rest motion on the straight line from one configuration to another, all axes in phase:
 /// time-optimal with one zone; with several the acceleration is 0 where one meets the next, and it
@@ -28,11 +28,11 @@ Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& t
 
 enum class CornerMethod {
   /// Minimum-time transition, three segments an axis, at most the allowed excess (the chapter's
-  /// rule)
+  /// rule).
   three_segment,
   stretched,  ///< the same, made longer; own method: less excess
   /// The next path segment starts before this one has ended; no excess; stays in their plane; own
-  /// method
+  /// method.
   overlap,
   stop,  ///< the stop at the node is kept
 };
@@ -52,7 +52,7 @@ struct SmoothSettings {
   /// stops. Left out: the transition starts and ends at constant velocity.
   std::optional<double> tau;
   bool three_segments{true}, stretching{true}, overlapping{true};  ///< which transitions are tried
-  /// Of three segments (planning limits <= guard limits / 1.1, so the guarantee stands)
+  /// Of three segments (planning limits <= guard limits / 1.1, so the guarantee stands).
   double allowed_excess{0.1};
 };
 
@@ -62,7 +62,7 @@ struct SmoothResult {
   double duration_ptp{};              ///< with a stop at each node [s]
   std::vector<CornerReport> corners;  ///< of each inner node, in order; of equal neighbours one
   /// Duration of the motion to each node but the first, with a stop there [s]; 0 for equal
-  /// neighbours
+  /// neighbours.
   std::vector<double> legs;
   /// Returns whether there is a trajectory.
   bool ok() const { return reason.empty(); }

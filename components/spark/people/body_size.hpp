@@ -13,7 +13,7 @@ class BodySize {
   /// Takes in the bones whose two joints have a confidence of 0.3 or more; a stature outside [0.6,
   /// 2.2] m is left out.
   void see(const ObservedPerson& body);
-  /// [m]; 1.75 until a bone was seen; follows the average in steps above 0.02
+  /// [m]; 1.75 until a bone was seen; follows the average in steps above 0.02.
   double stature() const { return told_; }
 
  private:
