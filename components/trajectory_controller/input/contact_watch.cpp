@@ -26,6 +26,8 @@ Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, 
     }
     const double now = external_torque[axes_[i]];
     if (!seen_) usual_[i] = before_[i] = std::clamp(now, -settings_.max_usual, settings_.max_usual);
+    // A press that grew slowly has taken the torque before it along.
+    if (contact_ == Contact::clamped) before_[i] = usual_[i];
     const double push = now - before_[i], beyond = std::abs(now - usual_[i]);
     const bool beyond_yield = std::abs(push) > settings_.yield_torque;
     pushes_[i] = resting && beyond_yield ? push : 0.0;

@@ -114,6 +114,26 @@ TEST(Controller, a_clamp_stays_a_stop_until_it_is_freed_and_the_arm_gives_way_as
   expect_smooth(b);
 }
 
+TEST(Controller, an_arm_pressed_ever_harder_gives_way_once_it_is_clamped) {
+  ControllerBench b;
+  b.external_torque = Vector::Zero(7);
+  b.start();
+  while (b.external_torque[0] > -45.0) {
+    b.external_torque[0] -= 0.04;
+    b.run(0.01);
+  }
+  b.run(1.5);
+  ASSERT_TRUE(has(b, Cause::clamped));
+  EXPECT_LT(b.core.set_point().position[0], -0.05) << "no push is felt beyond one that grew so slowly";
+  b.external_torque[0] = 0.0;
+  b.run(1.5);
+  const double left = b.core.set_point().position[0];
+  EXPECT_TRUE(b.at_rest());
+  b.run(1.0);
+  EXPECT_EQ(b.core.set_point().position[0], left) << "nor does the end of the press count as a push";
+  expect_smooth(b);
+}
+
 TEST(Controller, an_arm_that_gives_way_rests_first_when_the_permission_ends) {
   ControllerBench b;
   b.external_torque = Vector::Zero(7);
