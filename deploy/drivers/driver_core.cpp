@@ -5,6 +5,11 @@
 
 namespace handsel::drivers {
 
+bool fit(std::initializer_list<const Vector*> vectors, const std::vector<int>& axes) {
+  const auto count = static_cast<Eigen::Index>(axes.size());
+  return std::all_of(vectors.begin(), vectors.end(), [count](const Vector* v) { return v->size() == count; });
+}
+
 void scatter(const Vector& values, const std::vector<int>& axes, Vector& robot) {
   for (std::size_t i = 0; i < axes.size(); ++i) robot[axes[i]] = values[static_cast<Eigen::Index>(i)];
 }

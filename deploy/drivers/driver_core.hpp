@@ -5,6 +5,7 @@
 // driver. Own method: built on common/robot_side, as the simulator is.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -128,6 +129,8 @@ class Driver {
   double load_{};
 };
 
+/// Returns whether each of `vectors` has one value for each axis of the arm.
+bool fit(std::initializer_list<const Vector*> vectors, const std::vector<int>& axes);
 /// Writes `values`, in the order of `axes`, to these axes of `robot`.
 void scatter(const Vector& values, const std::vector<int>& axes, Vector& robot);
 /// Returns the values of `axes` from `robot`, in the order of `axes`.

@@ -36,7 +36,8 @@ PositionArm::PositionArm(const RobotModel& model, std::vector<int> arm_axes, dou
 
 void PositionArm::cycle(double now) {
   CyclicState s;
-  const bool came = link_.receive(s);
+  // A state of another arm counts as none.
+  const bool came = link_.receive(s) && fit({&s.position, &s.velocity, &s.torque, &s.external_torque, &s.interpolated}, core_.arm_axes());
   if (came) {
     missed_in_a_row_ = 0;
     last_ = s;

@@ -62,7 +62,10 @@ void ReflexArm::judge() {
 }
 
 void ReflexArm::cycle(double now) {
-  lost_ = link_.read(state_) ? 0 : lost_ + 1;
+  ReflexState& s = received_;
+  const bool came = link_.read(s) && fit({&s.position, &s.velocity, &s.torque, &s.external_torque}, core_.arm_axes());
+  if (came) std::swap(state_, received_);  // a state of another arm counts as none
+  lost_ = came ? 0 : lost_ + 1;
   if (state_.position.size() == 0 || (lost_ > 0 && lost_ < settings_.lost_cycles)) return;  // ridden out
   const double dt = lost_ == 0 ? kCycle * count_.passed(state_.cycle) : kCycle;
   const std::vector<int>& axes = core_.arm_axes();

@@ -86,7 +86,7 @@ class ReflexArm : public Driver {
   ReflexSettings settings_;
   DriverCore core_;
   Measured measured_;
-  ReflexState state_;
+  ReflexState state_, received_;
   CycleCount count_;
   bool commanding_{}, recovering_{};
   int lost_{};

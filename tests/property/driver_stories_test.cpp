@@ -163,6 +163,20 @@ TYPED_TEST(AnyDriver, a_wire_and_a_maker_that_jitter_never_make_the_references_j
   EXPECT_EQ(s.fake().account.violations, 0) << s.fake().account.last_violation;
 }
 
+TYPED_TEST(AnyDriver, a_state_with_an_axis_too_few_is_taken_for_a_lost_one) {
+  auto& s = this->stage_;
+  s.start();
+  s.go_to(1.2, 0.4, -0.5);
+  s.run(1.0);
+  s.fake().events.foreign = 2;
+  s.run(0.5);
+  EXPECT_EQ(s.fake().events.foreign, 0);
+  EXPECT_EQ(s.state.mode, DriveMode::enabled) << s.driver().trouble();
+  s.run(5.0);
+  EXPECT_EQ(s.bench.core.status().motion, MotionState::finished) << s.bench.core.status().reason;
+  EXPECT_EQ(s.fake().account.violations, 0) << s.fake().account.last_violation;
+}
+
 TYPED_TEST(AnyDriver, a_set_point_that_jumps_never_reaches_the_arm) {
   auto& s = this->stage_;
   s.start();

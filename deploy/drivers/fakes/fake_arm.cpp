@@ -84,12 +84,26 @@ void FakeCyclicArm::on(const Order& order) {
   if (order.kind == OrderKind::load) set_load(order.values[0]);
 }
 
+namespace {
+
+/// One axis less, the others elsewhere.
+void make_foreign(Vector& values) {
+  values.conservativeResize(values.size() - 1);
+  values.array() += 1.0;
+}
+
+}  // namespace
+
 bool FakeCyclicArm::receive(CyclicState& out) {
   if (events.drop > 0) {
     --events.drop;
     return false;
   }
   out = now();
+  if (events.foreign > 0) {
+    --events.foreign;
+    for (Vector* v : {&out.position, &out.velocity, &out.torque, &out.external_torque, &out.interpolated}) make_foreign(*v);
+  }
   return true;
 }
 
@@ -194,6 +208,10 @@ bool FakeReflexArm::read(ReflexState& out) {
     return false;
   }
   out = now();
+  if (events.foreign > 0) {
+    --events.foreign;
+    for (Vector* v : {&out.position, &out.velocity, &out.torque, &out.external_torque}) make_foreign(*v);
+  }
   return true;
 }
 

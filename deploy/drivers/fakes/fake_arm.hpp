@@ -13,19 +13,20 @@ namespace handsel::drivers {
 /// What happens to a fake from outside.
 struct FakeEvents {
   bool emergency_stop{}, user_stop{}, brake{}, power_off{};  ///< true: in force; the arm stands
-  int drop{};       ///< so many of the next states do not reach the driver
-  double push{};    ///< external torque on the first axis [Nm]
-  double object{};  ///< width of what is between the fingers [m]
+  int foreign{};                                             ///< so many of the next states are those of another arm, with an axis less
+  int drop{};                                                ///< so many of the next states do not reach the driver
+  double push{};                                             ///< external torque on the first axis [Nm]
+  double object{};                                           ///< width of what is between the fingers [m]
 };
 
 struct FakeAccount {
-  int commanded{};        ///< cycles in which a reference moved the arm
-  int violations{};       ///< references a real arm would not have taken
-  int sessions{};         ///< commanding sessions that began; recoveries for an arm with reflexes
-  int grasps{}, moves{};  ///< of the gripper
-  double load{};          ///< commanded payload [kg]
-  double grasp_force{};   ///< of the last grasp [N]
-  double fastest{};       ///< of any axis [rad/s]
+  int commanded{};             ///< cycles in which a reference moved the arm
+  int violations{};            ///< references a real arm would not have taken
+  int sessions{};              ///< commanding sessions that began; recoveries for an arm with reflexes
+  int grasps{}, moves{};       ///< of the gripper
+  double load{};               ///< commanded payload [kg]
+  double grasp_force{};        ///< of the last grasp [N]
+  double fastest{};            ///< of any axis [rad/s]
   std::string last_violation;  ///< quantity and axis, or a phrase; empty: none
 };
 
