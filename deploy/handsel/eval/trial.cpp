@@ -29,7 +29,7 @@ constexpr double kReadyPatience = 10.0;  // [s]
 std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
   if (truth.dropped) return "dropped";
   if (performer.succeeded()) return "";
-  if (!performer.started()) return "not_ready";
+  if (performer.outcomes().empty()) return "not_ready";
   const TaskOutcome& last = performer.outcomes().back();
   if (last.timed_out) return "timeout";
   if (last.state == name(TaskState::succeeded)) return "no_handover";
