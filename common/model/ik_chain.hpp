@@ -37,8 +37,9 @@ struct Element {
 class Chain {
  public:
   Chain(const RobotModel& robot, const Group& group, const Vector& q) : size_(static_cast<int>(group.axes.size())) {
-    lower_.resize(size_), upper_.resize(size_), rest_.resize(size_);
-    for (int i = 0; i < size_; ++i) {
+    const int kept = std::min(size_, kMaxAxes);  // fits() tells that there are more
+    lower_.resize(kept), upper_.resize(kept), rest_.resize(kept);
+    for (int i = 0; i < kept; ++i) {
       const Axis& axis = robot.axes()[group.axes[i]];
       lower_[i] = axis.lower, upper_[i] = axis.upper, rest_[i] = robot.rest_posture()[group.axes[i]];
     }
@@ -51,7 +52,7 @@ class Chain {
       T = T * joint.T_parent_joint;
       if (joint.kind == JointKind::fixed) continue;
       int column = -1;
-      for (int c = 0; c < size_; ++c)
+      for (int c = 0; c < kept; ++c)
         if (group.axes[c] == joint.dof) column = c;
       if (column < 0) {
         const double value = (joint.dof >= 0 ? joint.mimic_factor * q[joint.dof] : 0.0) + joint.mimic_offset;

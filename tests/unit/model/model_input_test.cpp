@@ -350,6 +350,24 @@ TEST(ObjectDescription, says_what_is_wrong) {
   EXPECT_LT((std::get<Box>(object.parts[0].shape).size - Vector3::Constant(0.1)).norm(), 1e-9);
 }
 
+TEST(ForeignRobots, an_arm_of_more_axes_than_can_be_solved_has_no_inverse) {
+  const TemporaryFolder folder;
+  std::string inside;
+  std::string parent = "one";
+  for (int i = 0; i < 30; ++i) {
+    const std::string link = "l" + std::to_string(i);
+    inside += "<link name=\"" + link + "\"/>\n" + joint("j" + std::to_string(i), parent, link);
+    parent = link;
+  }
+  const std::string group = "<group name=\"arm\"><chain base_link=\"base\" tip_link=\"l29\"/></group>";
+  const std::string srdf = "<robot name=\"r\">\n" + group + "</robot>\n";
+  const auto robot = RobotModel::load_urdf(folder.write("r.urdf", urdf(inside)), folder.write("r.srdf", srdf));
+  const Group& arm = robot.require_group("arm");
+  ASSERT_EQ(arm.axes.size(), 31u);
+  const Vector q = robot.rest_posture();
+  EXPECT_FALSE(robot.inverse(arm, robot.link_pose(q, arm.tip), q).has_value());
+}
+
 TEST(ForeignRobots, are_loaded_from_the_data_folder) {
   const char* data = std::getenv("HANDSEL_DATA");
   const std::filesystem::path root = data != nullptr ? data : "";
