@@ -114,6 +114,9 @@ void RobotBody::lump(const RobotModel& model) {
       if (joint.kind == JointKind::fixed || joint.dof < 0) {
         body_of_link_[l] = parent_body;
         T_body_link_[l] = T_parent_joint;
+        if (joint.kind == JointKind::prismatic) T_body_link_[l].translate(joint.mimic_offset * joint.axis);
+        if (joint.kind == JointKind::revolute || joint.kind == JointKind::continuous)
+          T_body_link_[l].rotate(Eigen::AngleAxisd(joint.mimic_offset, joint.axis));
       } else {
         Body b;
         b.link = l;
