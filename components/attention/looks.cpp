@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/model/human/body_index.hpp"
+
 namespace handsel::attention {
 
 bool robot_known(const World& w, const Body& body) { return w.active && w.active->position.size() == body.dof(); }
@@ -14,7 +16,7 @@ const Person* person_of_interest(const World& w, const Vector3& p, double lost_a
   for (const Person& person : w.people->people) {
     if (person.joints.size() != kBodyJoints.size() || person.age > lost_after) continue;
     if (w.action && !w.action->human.empty() && w.action->human == person.id) return &person;
-    const double d = (person.joints[2].position - p).norm();
+    const double d = (person.joints[body::torso].position - p).norm();
     if (d < nearest) {
       nearest = d;
       best = &person;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/model/human/body_index.hpp"
 #include "common/model/human/body_motion.hpp"
 #include "components/attention/looks.hpp"
 #include "components/attention/watch.hpp"
@@ -65,8 +66,8 @@ class Track : public Schema {
     const Person* person = person_of_interest(w, base, motor_.lost_after);
     tracked_ = false;
     if (!person) return kInfinity;
-    const BodyJoint& head = person->joints[0];
-    const BodyJoint& torso = person->joints[2];
+    const BodyJoint& head = person->joints[body::head];
+    const BodyJoint& torso = person->joints[body::torso];
     const Eigen::Vector2d away = (torso.position - base).head<2>();
     const double distance = std::max(0.1, away.norm());
     tracked_ = zone_.update(distance, now) <= Zone::social;
@@ -281,7 +282,7 @@ class Exchange : public Schema {
     distance_ = hand.distance;
     present_ = distance_ < motor_.hand_near || attentive(w, person->id);
     const bool at_exchange = distance_ < motor_.hand_near;
-    gaze_ = at_exchange ? hand.position : person->joints[0].position;
+    gaze_ = at_exchange ? hand.position : person->joints[body::head].position;
     if (kind_ == Behaviour::receive) {
       shift_ = hand.position - w.action->exchange_point;
       if (shift_.norm() > motor_.shift_limit) shift_ *= motor_.shift_limit / shift_.norm();

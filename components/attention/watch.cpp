@@ -1,5 +1,6 @@
 #include "components/attention/watch.hpp"
 
+#include "common/model/human/body_index.hpp"
 #include "components/attention/looks.hpp"
 
 namespace handsel::attention {
@@ -22,7 +23,7 @@ double Watch::look(const World& w, TimePoint now) {
   const Vector3 p_grasp = body_.grasp_point(active.position, active.T_world_base);
   const Person* person = person_of_interest(w, p_grasp, motor_.lost_after);
   const NearHand hand = person ? nearest_hand(*person, p_grasp) : NearHand{};
-  if (person && settings_.gaze == GazeAt::head) gaze_ = person->joints[0].position;
+  if (person && settings_.gaze == GazeAt::head) gaze_ = person->joints[body::head].position;
   if (person && settings_.gaze == GazeAt::hand) gaze_ = hand.position;
   double to_object = kInfinity;
   if (w.scene && w.action) {

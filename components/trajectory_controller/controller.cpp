@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "common/base/errors.hpp"
+#include "common/model/human/body_index.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/stop.hpp"
 
@@ -137,8 +138,11 @@ void Controller::on(const HumanState& people, TimePoint sampled) {
   human_seen_.mark(sampled);
   stop_space_.set(people);
   points_.clear();
-  for (const Person& p : people.people)
-    if (p.joints.size() == kBodyJoints.size()) points_.push_back({p.id, p.joints[2].position, p.joints[7].position, p.joints[11].position});
+  for (const Person& p : people.people) {
+    if (p.joints.size() != kBodyJoints.size()) continue;
+    const Vector3 &torso = p.joints[body::torso].position, &left = p.joints[body::l_hand].position;
+    points_.push_back({p.id, torso, left, p.joints[body::r_hand].position});
+  }
   refresh_crowd();
 }
 

@@ -1,5 +1,4 @@
-// The joints of a body by number, in the order of kBodyJoints. For the implementation of
-// human_body.hpp only.
+// The joints of a complete body by number, in the order of kBodyJoints.
 #pragma once
 
 #include <array>
