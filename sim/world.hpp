@@ -50,10 +50,10 @@ class SimWorld {
   const std::string& last_limit_violation() const;  ///< one sentence; empty: none
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
   DriveMode mode() const;                           ///< as the emulated robot reports it
-  bool robot_grips() const;                       ///< whether any hand of the robot holds an object
-  const std::vector<Touch>& touches() const;      ///< of the last step; robot bodies by number
-  const std::string& robot_body(int body) const;  ///< name of its link
-  double robot_pressure() const;  ///< normal force of its hands on the watched object [N]
+  bool robot_grips() const;                         ///< whether any hand of the robot holds an object
+  const std::vector<Touch>& touches() const;        ///< of the last step; robot bodies by number
+  const std::string& robot_body(int body) const;    ///< name of its link
+  double robot_pressure() const;                    ///< normal force of its hands on the watched object [N]
   /// Returns the fraction of the time the robot held something in which the grasp constraints
   /// carried more than the contacts; 0 if nothing was held yet.
   double constraint_share() const;

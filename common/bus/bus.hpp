@@ -19,8 +19,8 @@ namespace handsel {
 
 /// Circumstances of a sample's arrival.
 struct Receipt {
-  TimePoint arrival{};  ///< receiver's monotonic clock
-  Duration age{};  ///< age at arrival: stamp offset - least offset seen from that writer (>= 0)
+  TimePoint arrival{};     ///< receiver's monotonic clock
+  Duration age{};          ///< age at arrival: stamp offset - least offset seen from that writer (>= 0)
   std::uint64_t writer{};  ///< distinguishes writers (handle), stable while the writer lives
 };
 
@@ -31,11 +31,11 @@ struct SubscriptionStatus {
   std::uint64_t deadline_misses{};  ///< silences longer than the topic's deadline, one each
   std::uint64_t writers_lost{};     ///< writers that died, left or lost their lease
   int writers{};                    ///< alive and matched now
-  TimePoint last_arrival{};    ///< arrival of the last valid sample; the epoch while there was none
-  Duration last_age{};         ///< age at arrival of the last sample
-  std::string last_rejection;  ///< one sentence
-  std::uint64_t left_out{};    ///< malformed elements of lists that were left out of valid samples
-  std::string last_left_out;   ///< one sentence
+  TimePoint last_arrival{};         ///< arrival of the last valid sample; the epoch while there was none
+  Duration last_age{};              ///< age at arrival of the last sample
+  std::string last_rejection;       ///< one sentence
+  std::uint64_t left_out{};         ///< malformed elements of lists that were left out of valid samples
+  std::string last_left_out;        ///< one sentence
   /// Samples of another writer than the accepted one, on a topic with one writer.
   std::uint64_t refused{};
   std::string second_writer;  ///< identity of that other writer while it is there; else empty

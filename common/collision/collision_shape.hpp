@@ -17,9 +17,9 @@ class CollisionShape {
   const Shape& shape() const { return shape_; }  ///< as given to make()
   /// Bounding sphere, shape frame [m].
   const Vector3& sphere_center() const { return sphere_center_; }
-  double sphere_radius() const { return sphere_radius_; }    ///< of the bounding sphere [m]
-  const Vector3& box_center() const { return box_center_; }  ///< bounding box, shape frame [m]
-  const Vector3& box_half() const { return box_half_; }      ///< its half extents [m]
+  double sphere_radius() const { return sphere_radius_; }                   ///< of the bounding sphere [m]
+  const Vector3& box_center() const { return box_center_; }                 ///< bounding box, shape frame [m]
+  const Vector3& box_half() const { return box_half_; }                     ///< its half extents [m]
   bool is_mesh() const { return std::holds_alternative<MeshPtr>(shape_); }  ///< a surface
   bool is_box() const { return std::holds_alternative<Box>(shape_); }       ///< a solid box
 

@@ -12,11 +12,11 @@
 namespace handsel {
 
 struct SceneBody {
-  std::string id;                    ///< of the box or object in the scene
-  bool is_object{}, supports{};      ///< object instead of box; objects may stand on it
-  CollisionShapePtr shape, lowered;  ///< lowered: for what the hand holds, see kSupportSlack
+  std::string id;                                                           ///< of the box or object in the scene
+  bool is_object{}, supports{};                                             ///< object instead of box; objects may stand on it
+  CollisionShapePtr shape, lowered;                                         ///< lowered: for what the hand holds, see kSupportSlack
   Pose T_world_shape{Pose::Identity()}, T_world_lowered{Pose::Identity()};  ///< of the two shapes
-  bool allowed{};  ///< contact with it is allowed
+  bool allowed{};                                                           ///< contact with it is allowed
 };
 
 /// Returns the corners of the box around the primitive of an unknown object, its own frame [m].

@@ -13,7 +13,7 @@
 namespace handsel {
 
 struct OutsideCost {
-  double cost{};  ///< weighted sum over the layers; what a layer forbids costs 1 there
+  double cost{};                   ///< weighted sum over the layers; what a layer forbids costs 1 there
   const CostGrid* forbidden_by{};  ///< null: by none
 };
 

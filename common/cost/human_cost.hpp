@@ -16,7 +16,7 @@
 namespace handsel {
 
 struct CostSettings {
-  double safety_radius{1.0};                                ///< R [m]
+  double safety_radius{1.0};      ///< R [m]
   double visibility_cutoff{3.0};  ///< nothing beyond this distance of the eyes [m]
   /// >= 0, not all 0; their sum is scaled to 1.
   double w_safety{1.0}, w_visibility{0.3}, w_comfort{0.3};
@@ -51,7 +51,7 @@ double arm_comfort_cost(const ArmSize& arm, const Vector3& p_arm);
 struct PlacedArm {
   /// Lengths of its two parts.
   ArmSize size;
-  Vector3 shoulder{Vector3::Zero()};                        ///< world [m]
+  Vector3 shoulder{Vector3::Zero()};  ///< world [m]
   /// From the world to (forward, outward, up) of the torso.
   Eigen::Matrix3d to_arm{Eigen::Matrix3d::Identity()};
   double length() const { return size.upper + size.fore; }  ///< shoulder to hand [m]
@@ -86,7 +86,7 @@ CostParts point_cost(const Person&, const Vector3& p, const CostSettings&);
 /// What an outside layer forbids: which link is there.
 struct ForbiddenPlace {
   const CostGrid* layer{};  ///< null: nowhere forbidden
-  int link{-1};  ///< robot link that is in the forbidden place; -1: none
+  int link{-1};             ///< robot link that is in the forbidden place; -1: none
 };
 
 /// Cost of a robot configuration for everyone in the scene; the largest over people. Safety looks

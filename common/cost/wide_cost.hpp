@@ -35,7 +35,7 @@ class WideCost {
   /// Sets the pose of the root link of the robot in the world.
   void set_base(const Pose& T_world_base);
   struct Someone {
-    SimplifiedBody body;  ///< cylinder and head, world [m]
+    SimplifiedBody body;         ///< cylinder and head, world [m]
     std::optional<Sight> sight;  ///< eyes and gaze; nullopt: unknown, visibility is then 0
   };
   /// Replaces all people. `safety_radius`: R [m]; `visibility_cutoff`: nothing beyond this distance

@@ -72,11 +72,11 @@ class Chain {
     reach_ += T.translation().norm();
   }
 
-  int size() const { return size_; }                ///< axes of the group
-  bool empty() const { return elements_.empty(); }  ///< no axis of the group moves the tip
-  const Axes& lower() const { return lower_; }      ///< position limits [rad] ([m])
-  const Axes& upper() const { return upper_; }      ///< position limits [rad] ([m])
-  const Axes& rest() const { return rest_; }        ///< rest configuration of the group
+  int size() const { return size_; }                                  ///< axes of the group
+  bool empty() const { return elements_.empty(); }                    ///< no axis of the group moves the tip
+  const Axes& lower() const { return lower_; }                        ///< position limits [rad] ([m])
+  const Axes& upper() const { return upper_; }                        ///< position limits [rad] ([m])
+  const Axes& rest() const { return rest_; }                          ///< rest configuration of the group
   const std::vector<Element>& elements() const { return elements_; }  ///< from root to tip
   /// Returns false for points (root frame [m]) that the tip cannot reach; true is no promise. The
   /// chain must not be empty.

@@ -18,7 +18,7 @@ using Text = WireIo::Text;
 
 /// Texts that are too long are cut when sent.
 void describe(WireIo& io, Refusal& m, handsel_Refusal& w);
-void describe(WireIo& io, Segment& m, handsel_Segment& w);  ///< duration [0, 1e4] s, |jerk| <= 1e9
+void describe(WireIo& io, Segment& m, handsel_Segment& w);                ///< duration [0, 1e4] s, |jerk| <= 1e9
 void describe(WireIo& io, AxisTrajectory& m, handsel_AxisTrajectory& w);  ///< at most 4096 segments
 /// At most 64 axes of equal duration (1e-6 s).
 void describe(WireIo& io, Trajectory& m, handsel_SoftMotion& w);

@@ -40,7 +40,7 @@ class Node {
   ObjectLibrary objects_;
   std::shared_ptr<const HandKit> kit_;
   std::shared_ptr<const GraspChooser> chooser_;
-  std::shared_ptr<GraspBook> book_;          // used by jobs only, one after the other
+  std::shared_ptr<GraspBook> book_;  // used by jobs only, one after the other
   // used by jobs only; nullptr: no hand of a person is known
   std::shared_ptr<TransferBook> transfers_;
   std::vector<ArmBook> arms_;  // used by jobs only; the first has the geometry and the lists above
@@ -56,7 +56,7 @@ class Node {
   std::optional<RequestId> regrasp_pending_;
   std::size_t regrasps_waiting_{0};
   std::optional<RegraspReply> regrasp_reply_;  // the latest
-  GraspRequest served_;  // the request whose object candidates are kept up for
+  GraspRequest served_;                        // the request whose object candidates are kept up for
   TimePoint served_at_{};
   bool serving_{}, proposing_{};
   Pose T_world_proposed_{Pose::Identity()};

@@ -17,8 +17,8 @@ namespace handsel::manipulation_planner {
 
 struct ExchangePose {
   Pose T_world_object{Pose::Identity()};  ///< where and how the object is offered
-  Vector arm_joints;  ///< arm axes that put the held object there
-  double cost{};  ///< as exchange_cost() counts it, the lower the better
+  Vector arm_joints;                      ///< arm axes that put the held object there
+  double cost{};                          ///< as exchange_cost() counts it, the lower the better
 };
 
 struct ExchangeSearch {

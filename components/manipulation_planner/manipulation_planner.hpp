@@ -33,13 +33,13 @@ namespace handsel::manipulation_planner {
 
 /// What the core wants sent; the node empties it after each step.
 struct Outbox {
-  std::vector<GraspRequest> grasp_requests;  ///< to the grasp planner
-  std::vector<RegraspRequest> regrasp_requests;  ///< to the grasp planner, for two hands
-  std::vector<PathRequest> path_requests;  ///< to the path planner; also those that cancel
+  std::vector<GraspRequest> grasp_requests;            ///< to the grasp planner
+  std::vector<RegraspRequest> regrasp_requests;        ///< to the grasp planner, for two hands
+  std::vector<PathRequest> path_requests;              ///< to the path planner; also those that cancel
   std::vector<TrajectoryRequest> trajectory_requests;  ///< to the trajectory planner
-  std::vector<TrajectoryCommand> trajectories;  ///< to the trajectory controller
-  std::vector<HandCommand> hand_commands;  ///< to the controller of the hand
-  std::vector<std::function<void()>> jobs;  ///< long work; call job_done() after each
+  std::vector<TrajectoryCommand> trajectories;         ///< to the trajectory controller
+  std::vector<HandCommand> hand_commands;              ///< to the controller of the hand
+  std::vector<std::function<void()>> jobs;             ///< long work; call job_done() after each
 };
 
 /// How a motion of the arm ended.
@@ -55,7 +55,7 @@ enum class MotionEnd : std::uint8_t {
 
 /// Outcome of a part of an action.
 struct Outcome {
-  bool good{true};  ///< the part has succeeded
+  bool good{true};                          ///< the part has succeeded
   std::string reason;                       ///< why not, one sentence
   MotionEnd end{MotionEnd::reached};        ///< failed also where no motion was part of it
   ActionFailure kind{ActionFailure::none};  ///< of a failure: recovery is chosen by it
@@ -146,7 +146,7 @@ class ManipulationPlanner {
     std::vector<std::string> tolerated;
     double speed{1.0};
     double longest{kAnyLength};  // a path that is longer is none, sum of the legs' max norms [rad]
-    double think{};                        // for the path at most [s]; 0: as set
+    double think{};              // for the path at most [s]; 0: as set
     // the goals are handover configurations for this person, chosen anew as they move; empty: they
     // stay
     std::string receiver;
@@ -158,9 +158,9 @@ class ManipulationPlanner {
     Vector3 p_world_aim{Vector3::Zero()};
     double aim_slack{};
     double patience{std::numeric_limits<double>::infinity()};  // given up when it takes longer [s]
-    std::string makes_room_for;  // ends when this person offers what the goal is about ...
+    std::string makes_room_for;                                // ends when this person offers what the goal is about ...
     bool any_offer{};                                          // ... however little room they have
-    std::optional<Grasp> follows;  // led before where that grasp is now, while it moves
+    std::optional<Grasp> follows;                              // led before where that grasp is now, while it moves
   };
   struct PlannedPath {
     Outcome outcome;
@@ -176,10 +176,10 @@ class ManipulationPlanner {
   };
   /// A path that is offered while another runs.
   struct Ways {
-    std::optional<Trajectory> over;   // onto it; empty: nothing leads there
+    std::optional<Trajectory> over;  // onto it; empty: nothing leads there
     // the old one, timed for the people as they are now; empty: it must be left
     std::optional<Trajectory> along;
-    bool worth{true};                 // switching to it
+    bool worth{true};  // switching to it
     // of the velocity limits, that what leads over keeps where it is not faster already
     double share{1};
     double reach{};  // joined at most this far from where the old one is left, max norm [rad]
@@ -208,7 +208,7 @@ class ManipulationPlanner {
   struct Serving {
     Outcome outcome;
     std::map<std::size_t, Destination> at;  // by the grasp's place in the list
-    std::string objections;  // why the others do not serve on the last surface
+    std::string objections;                 // why the others do not serve on the last surface
   };
 
   // Actions.
@@ -304,7 +304,7 @@ class ManipulationPlanner {
   Routine<Outcome> run_to_end(const TrajectoryCommand& command);
   HandState hand_state() const;
   std::string hand_name() const { return hand_ == 0 ? "" : fingers_.name; }  // as messages have it
-  bool holds(const std::string& object) const;  // the hand in use holds it, as the scene has it
+  bool holds(const std::string& object) const;                               // the hand in use holds it, as the scene has it
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
   /// Until `reply` has come: asks again each request_retry, since asking twice is harmless; false:
@@ -392,7 +392,7 @@ class ManipulationPlanner {
   const SceneBox* surface(const std::string& id) const;
   // of an object of the scene; null: unknown
   const ObjectModel* model_of(const std::string& id) const;
-  const Person* person(const std::string& id) const;         // empty id: the nearest
+  const Person* person(const std::string& id) const;  // empty id: the nearest
   // whether this person is out of sight and may be near their last place
   bool lost(const std::string& id) const;
   void hold(const SceneObject& object);
@@ -422,7 +422,7 @@ class ManipulationPlanner {
   Waiting waiting_;
   Routine<Outcome> action_;
   ActionGoal goal_;
-  Offer taken_up_;                  // by receive; empty: none
+  Offer taken_up_;  // by receive; empty: none
   // nothing was offered farther out for so long that what is held before the body counts as offered
   bool waited_long_{};
   // the hand, while it moves: motions are planned for what it will be
@@ -446,9 +446,9 @@ class ManipulationPlanner {
   std::optional<RegraspReply> regrasp_reply_;
   std::optional<PathReply> path_reply_;
   std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
-  RequestId comparison_;  // for the time that the path which runs would take from now on
-  bool path_awaited_{false};               // the newest path request is without a reply
-  bool drop_path_{false};                  // the reply to it is not needed any more
+  RequestId comparison_;      // for the time that the path which runs would take from now on
+  bool path_awaited_{false};  // the newest path request is without a reply
+  bool drop_path_{false};     // the reply to it is not needed any more
   // what a dropped action has set in motion is to end, until the controller has acknowledged it
   std::optional<TrajectoryCommand> halt_;
   TimePoint halted_at_{};

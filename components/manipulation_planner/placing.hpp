@@ -38,7 +38,7 @@ std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const
 struct PuttingPosture {
   Pose T_world_object{Pose::Identity()};  ///< at the place
   Vector arm_above, arm_at;               ///< arm axes [rad]
-  bool opens{};  ///< the hand can open there without touching anything else
+  bool opens{};                           ///< the hand can open there without touching anything else
 };
 
 /// Puts what is held on a surface, somewhere.

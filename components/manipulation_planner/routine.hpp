@@ -17,7 +17,7 @@ template <class T>
 class [[nodiscard]] Routine {
  public:
   struct promise_type {
-    std::optional<T> value;  ///< result; empty until the routine has ended
+    std::optional<T> value;          ///< result; empty until the routine has ended
     std::coroutine_handle<> parent;  ///< routine that awaits this one; null: none
 
     /// Makes the owner of the frame.
@@ -101,9 +101,9 @@ class Waiting {
   template <class Condition>
   struct Until {
     static_assert(std::is_trivially_copyable_v<Condition>);
-    Waiting& waiting;  ///< where the routine is resumed from
+    Waiting& waiting;     ///< where the routine is resumed from
     Condition condition;  ///< callable without arguments, gives bool
-    TimePoint deadline;  ///< resumed then at the latest
+    TimePoint deadline;   ///< resumed then at the latest
     /// Returns whether the condition holds already: then nothing waits.
     bool await_ready() const { return condition(); }
     /// Puts routine, condition and deadline where poll() finds them.

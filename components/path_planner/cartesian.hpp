@@ -9,51 +9,51 @@
 namespace handsel::path_planner {
 
 struct CartesianProblem {
-  Vector start;                        ///< all axes of the robot [rad]
+  Vector start;  ///< all axes of the robot [rad]
   /// Of the tool, robot root frame; the elbow may end anywhere.
   Pose T_root_goal{Pose::Identity()};
-  std::vector<int> also;               ///< further active axes (hand, head)
-  Vector also_goal;                    ///< of those [rad]
+  std::vector<int> also;  ///< further active axes (hand, head)
+  Vector also_goal;       ///< of those [rad]
   std::uint64_t seed{1};  ///< of the random samples; the same gives the same result
   /// States that may be checked; each solution of the inverse kinematics counts as one, too.
   std::uint64_t budget{100000};
 };
 
 struct CartesianSettings {
-  double metre{3.0};         ///< that many radians count as much as a metre [rad/m]
-  double elbow{0.5};         ///< weight of a radian of the elbow angle
-  double range{0.6};         ///< longest edge of the tree, in that measure
+  double metre{3.0};  ///< that many radians count as much as a metre [rad/m]
+  double elbow{0.5};  ///< weight of a radian of the elbow angle
+  double range{0.6};  ///< longest edge of the tree, in that measure
   /// The inverse kinematics is solved this often along a local path, in that measure.
   double step{0.04};
   /// No joint moves farther between two samples, however close they are; farther is a jump,
   /// refused [rad].
   double largest_step{0.1};
-  double goal_bias{0.1};     ///< fraction of the samples that are goals
-  int goal_elbows{48};       ///< elbow angles tried at the goal
-  int shortcuts{60};         ///< tried on what was found
+  double goal_bias{0.1};             ///< fraction of the samples that are goals
+  int goal_elbows{48};               ///< elbow angles tried at the goal
+  int shortcuts{60};                 ///< tried on what was found
   double initial_temperature{0.02};  ///< of the transition test, where people are concerned (T-RRT)
 };
 
 /// A configuration in active variables, with the passive ones that belong to it.
 struct CartesianNode {
   Pose T_root_tool{Pose::Identity()};  ///< pose of the tool, frame of the root link
-  double elbow{};  ///< on its circle, 0 = farthest along axis 1 [rad]
-  Vector q;        ///< all axes
+  double elbow{};                      ///< on its circle, 0 = farthest along axis 1 [rad]
+  Vector q;                            ///< all axes
 };
 
 struct CartesianResult {
-  bool solved{};  ///< the path ends at the goal
-  bool cancelled{};    ///< ended by its cancel hook before the budget was used up
-  std::string reason;  ///< why not, one sentence
+  bool solved{};                     ///< the path ends at the goal
+  bool cancelled{};                  ///< ended by its cancel hook before the budget was used up
+  std::string reason;                ///< why not, one sentence
   std::vector<CartesianNode> nodes;  ///< of the path, the start first
   /// All axes, along the local paths; neighbours differ by at most largest_step in every joint.
   std::vector<Vector> samples;
   /// This many motions of the samples, the first, are of the joints: they bend the arm as it is
   /// bent at the goal.
   std::size_t in_joints{};
-  double cost{};                ///< integral of the human-aware cost along the samples [rad]
-  double work{};                ///< sum of the rises of that cost
-  double length{};              ///< of the samples, joint space [rad]
+  double cost{};           ///< integral of the human-aware cost along the samples [rad]
+  double work{};           ///< sum of the rises of that cost
+  double length{};         ///< of the samples, joint space [rad]
   std::uint64_t checks{};  ///< states checked, and solutions of the inverse kinematics
 };
 

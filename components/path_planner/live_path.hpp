@@ -24,7 +24,7 @@ struct LiveSettings {
   double reach{0.5};
   /// l_max: the path is cut into pieces of at most this before it is repaired [rad].
   double piece{0.15};
-  double least_gain{0.02};  ///< a path cheaper by less than this fraction is not worth switching to
+  double least_gain{0.02};    ///< a path cheaper by less than this fraction is not worth switching to
   double verify_step{0.002};  ///< states on what is returned are checked this close [rad]
   int rounds{60};             ///< shortcuts and perturbations tried each time
   int tries{60};              ///< perturbations tried to repair

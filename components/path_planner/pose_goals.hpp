@@ -13,8 +13,8 @@ namespace handsel::path_planner {
 /// The group's tip is to be there, or in the region around it.
 struct PoseGoal {
   Pose T_root_tip{Pose::Identity()};  ///< pose of the tip, frame of the root link
-  Vector3 slack{Vector3::Zero()};  ///< half extents of a box along the pose's axes [m]
-  double turn{};                   ///< about the pose's z axis in either direction [rad]
+  Vector3 slack{Vector3::Zero()};     ///< half extents of a box along the pose's axes [m]
+  double turn{};                      ///< about the pose's z axis in either direction [rad]
 };
 
 struct PoseGoals {

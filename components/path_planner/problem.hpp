@@ -23,10 +23,10 @@ struct Settings {
   double initial_temperature{0.002};  ///< of the transition test, in units of cost
   /// Of the budget for the first planner; the rest is for RRT-Connect when it finds nothing.
   double search_share{0.7};
-  double cost_step{0.1};              ///< spacing of cost samples along a motion [rad]
-  double length_weight{0.05};         ///< cost of a radian where no person is concerned
-  int smoothing_rounds{120};          ///< shortcuts and perturbations tried
-  int patience{40};                   ///< stop smoothing after this many in a row without gain
+  double cost_step{0.1};       ///< spacing of cost samples along a motion [rad]
+  double length_weight{0.05};  ///< cost of a radian where no person is concerned
+  int smoothing_rounds{120};   ///< shortcuts and perturbations tried
+  int patience{40};            ///< stop smoothing after this many in a row without gain
   /// l_max: a perturbation replaces at most this much of the path to either side [rad].
   double longest_edge{0.6};
 };
@@ -58,11 +58,11 @@ struct Problem {
   PlannerKind planner{PlannerKind::automatic};
   /// OMPL's planner of that name instead of the own one, for comparison; automatic: as without.
   bool stock{};
-  std::uint64_t seed{1};  ///< of all random numbers; the same gives the same result
-  std::uint64_t budget{100000};      ///< states that may be checked
-  std::optional<Upright> upright{};  ///< holds everywhere on the path
-  bool straight{};                   ///< only the line from start to goals[0], checked
-  std::optional<Driving> driving{};  ///< when axes of the platform are planned for
+  std::uint64_t seed{1};                            ///< of all random numbers; the same gives the same result
+  std::uint64_t budget{100000};                     ///< states that may be checked
+  std::optional<Upright> upright{};                 ///< holds everywhere on the path
+  bool straight{};                                  ///< only the line from start to goals[0], checked
+  std::optional<Driving> driving{};                 ///< when axes of the platform are planned for
   std::optional<std::pair<Vector, Vector>> room{};  ///< `axes` stay within these, too
 };
 
@@ -83,18 +83,18 @@ struct Hooks {
 };
 
 struct Result {
-  bool solved{};  ///< the path ends at a goal and is free at the finest step
-  bool cancelled{};           ///< ended by its cancel hook before the budget was used up
-  std::string reason;         ///< why not, one sentence
+  bool solved{};       ///< the path ends at a goal and is free at the finest step
+  bool cancelled{};    ///< ended by its cancel hook before the budget was used up
+  std::string reason;  ///< why not, one sentence
   /// Id of the object, box or person the robot touches at the start; empty: none.
   std::string start_touches;
-  std::size_t goal{};         ///< index of the goal reached
-  std::vector<Vector> path;   ///< `axes` only; front() = start, back() = goals[goal]
-  double cost{};              ///< integral of the human-aware cost along the path [rad]
-  double work{};              ///< mechanical work: sum of the rises of the cost
-  double length{};            ///< joint-space length, Euclidean [rad]
-  std::uint64_t checks{};     ///< states checked
-  std::string planner;        ///< that found it
+  std::size_t goal{};        ///< index of the goal reached
+  std::vector<Vector> path;  ///< `axes` only; front() = start, back() = goals[goal]
+  double cost{};             ///< integral of the human-aware cost along the path [rad]
+  double work{};             ///< mechanical work: sum of the rises of the cost
+  double length{};           ///< joint-space length, Euclidean [rad]
+  std::uint64_t checks{};    ///< states checked
+  std::string planner;       ///< that found it
 };
 
 }  // namespace handsel::path_planner

@@ -65,8 +65,7 @@ class Node {
   std::unique_ptr<Publisher<StateQuery>> query_out_;
   std::unique_ptr<Publisher<TrajectoryRequest>> request_out_;
   /// There only while a command is handed over: then the manipulation planner's are refused.
-  std::unique_ptr<Publisher<TrajectoryCommand>>
-      command_out_;
+  std::unique_ptr<Publisher<TrajectoryCommand>> command_out_;
   std::unique_ptr<Publisher<ros2::JointState>> joints_out_;
   std::unique_ptr<Publisher<ros2::Transforms>> frames_out_;
   std::unique_ptr<Publisher<ros2::Text>> result_out_;

@@ -24,14 +24,14 @@ struct CartesianWaypoint {
   /// Angle on its circle about the line from shoulder to wrist, 0 = farthest along axis 1 [rad];
   /// left out: chosen so that the joints keep clearance to their limits.
   std::optional<double> elbow{};
-  Vector also{};                  ///< positions of the further active axes [rad]
+  Vector also{};  ///< positions of the further active axes [rad]
 };
 
 /// What is held stays upright on the whole path.
 struct HeldLevel {
   Vector3 axis_tool{Vector3::UnitZ()};  ///< of the tool, along up_root when upright
-  Vector3 up_root{Vector3::UnitZ()};  ///< up in the frame of the root link
-  double most{0.1};  ///< largest angle between the two [rad]
+  Vector3 up_root{Vector3::UnitZ()};    ///< up in the frame of the root link
+  double most{0.1};                     ///< largest angle between the two [rad]
 };
 
 struct CartesianRequest {
@@ -40,9 +40,9 @@ struct CartesianRequest {
   /// (common/model/platform.hpp) x, y, heading too.
   std::vector<int> also;
   std::vector<CartesianWaypoint> nodes;  ///< after the start
-  std::optional<HeldLevel> level{};  ///< what is held is to stay upright; empty: nothing is
-  std::optional<JoinedArm> joined{};  ///< follows; every node is then a stop
-  double speed_scale{1};              ///< (0, 1] on all velocity limits
+  std::optional<HeldLevel> level{};      ///< what is held is to stay upright; empty: nothing is
+  std::optional<JoinedArm> joined{};     ///< follows; every node is then a stop
+  double speed_scale{1};                 ///< (0, 1] on all velocity limits
   /// Lowers those of the active axes along the path; null: no people.
   const SpeedAlong* people{};
 };
@@ -57,15 +57,15 @@ struct CartesianSettings {
   RateBounds translation{0.25, 0.6, 2.0};
   /// Of each coordinate of its rotation vector; no turn is faster than their norm [rad/s, ...].
   RateBounds rotation{0.6, 1.5, 5.0};
-  RateBounds elbow{0.6, 1.5, 5.0};         ///< [rad/s, ...]
-  double allowed_excess{0.1};              ///< of three segments at corners
-  double period{0.002};                    ///< the joints are computed this often [s]
+  RateBounds elbow{0.6, 1.5, 5.0};  ///< [rad/s, ...]
+  double allowed_excess{0.1};       ///< of three segments at corners
+  double period{0.002};             ///< the joints are computed this often [s]
   /// A joint that moves farther in a period has changed branch: refused [rad].
   double largest_step{0.1};
-  double collision_step{0.01};  ///< configurations are checked this often [rad, max norm]
-  int elbows{24};                          ///< angles tried at a node that leaves its elbow open
+  double collision_step{0.01};                   ///< configurations are checked this often [rad, max norm]
+  int elbows{24};                                ///< angles tried at a node that leaves its elbow open
   ApproximationTolerance tolerance{2e-4, 1e-2};  ///< of TR_app to the sampled joints [rad], [rad/s]
-  JoinError most_apart{1e-3, 3.5e-3};  ///< of joined tips: beyond it the motion is refused
+  JoinError most_apart{1e-3, 3.5e-3};            ///< of joined tips: beyond it the motion is refused
 };
 
 /// TR: the smoothed trajectory of the active axes and how to read poses from it. Own method: the
@@ -75,7 +75,7 @@ class CartesianTrajectory {
  public:
   struct Node {
     Pose T_root_tool{Pose::Identity()};  ///< pose of the tool at the node, frame of the root link
-    Vector active;  ///< position [m], rotation vector, elbow, further axes [rad]
+    Vector active;                       ///< position [m], rotation vector, elbow, further axes [rad]
   };
 
   /// Returns the time from the first node to the last [s].
@@ -102,24 +102,24 @@ class CartesianTrajectory {
 };
 
 struct CartesianMotion {
-  bool solved{};  ///< every node of the request is reached
-  std::string reason;     ///< why not, one sentence
+  bool solved{};       ///< every node of the request is reached
+  std::string reason;  ///< why not, one sentence
   /// Nodes of the request on the path that follows; all of them when solved. Never a node that
   /// collides.
   std::size_t reached{};
-  CartesianTrajectory path;  ///< TR, as far as the motion goes
+  CartesianTrajectory path;           ///< TR, as far as the motion goes
   double duration_ptp{};              ///< with a stop at each node [s]
   std::vector<CornerReport> corners;  ///< of nodes of `path`
   /// Of each node of `path` the number in the request; the start is 0.
   std::vector<std::size_t> given;
   /// Of each segment of `path`, because of people; empty: no people.
   std::vector<SpeedZones> speeds;
-  double cost{};                      ///< largest human-aware cost on the path, [0, 1]
+  double cost{};  ///< largest human-aware cost on the path, [0, 1]
   /// Robot axes of what follows: those of the arm, the further ones, then those of the joined arm.
   std::vector<int> axes;
-  JoinError joined{};                 ///< largest on the path, of TR_app
-  std::vector<Vector> samples;        ///< positions at each period of `path`
-  Executable executable;              ///< TR_app, inside the comfort limits of the robot
+  JoinError joined{};           ///< largest on the path, of TR_app
+  std::vector<Vector> samples;  ///< positions at each period of `path`
+  Executable executable;        ///< TR_app, inside the comfort limits of the robot
 };
 
 /// Nodes equal to the one before are left out. Where the path to a node does not exist (out of

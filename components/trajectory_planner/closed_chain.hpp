@@ -12,7 +12,7 @@
 namespace handsel::trajectory_planner {
 
 struct JoinedArm {
-  const Group* arm{};  ///< group of the second arm; must outlive this
+  const Group* arm{};                     ///< group of the second arm; must outlive this
   Pose T_tip_follower{Pose::Identity()};  ///< tip of the first arm to that of the second
 };
 

@@ -26,10 +26,10 @@ struct SpeedSettings {
   double concern_radius{1.5};
   /// A trunk that comes nearer to the tool this fast, or faster, counts in full [m/s].
   double approach_speed{0.8};
-  double approach_factor{0.7};     ///< then it is this, (0, 1]
+  double approach_factor{0.7};  ///< then it is this, (0, 1]
   /// A tool this far from where someone looks, or farther, counts as unseen [rad].
   double unseen_angle{1.2};
-  double unseen_factor{0.8};       ///< then it is this, (0, 1]
+  double unseen_factor{0.8};  ///< then it is this, (0, 1]
 };
 
 class SpeedAlong {
@@ -44,7 +44,7 @@ class SpeedAlong {
   };
   /// Returns whether no person is present and no layer adds a cost: the factor is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
-  Look at(const Vector& q) const;                                       ///< all axes [rad]
+  Look at(const Vector& q) const;  ///< all axes [rad]
   /// Returns samples of the straight motion between two configurations, ends included.
   std::vector<Look> along(const Vector& from, const Vector& to) const;
   /// Factor of the velocity limits because of what people do, (0, 1]; 1 without people.

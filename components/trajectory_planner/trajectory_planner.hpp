@@ -20,9 +20,9 @@ struct Settings {
 };
 
 struct Result {
-  TrajectoryReply reply;  ///< as sent to the client; its reason says why there is no trajectory
-  std::uint64_t checks{};          ///< configurations checked
-  double cost{};                   ///< largest human-aware cost along the line, [0, 1]
+  TrajectoryReply reply;   ///< as sent to the client; its reason says why there is no trajectory
+  std::uint64_t checks{};  ///< configurations checked
+  double cost{};           ///< largest human-aware cost along the line, [0, 1]
   /// Least factor of the comfort velocity limits: asked for x because of people.
   double speed_factor{1.0};
   std::vector<SpeedZones> speeds;  ///< of each segment, because of people

@@ -13,10 +13,10 @@ enum class Safety : std::uint8_t { clear, user_stop, emergency_stop };
 
 /// What the arm's controller sends at the beginning of a cycle; arm axes only.
 struct CyclicState {
-  std::uint64_t cycle{};            ///< number of the arm's cycle: a gap shows missed states
-  Session session{Session::idle};   ///< what commands the controller accepts
-  Safety safety{Safety::clear};     ///< stop that is in force; clear: none
-  bool drives_on{}, brakes_open{};  ///< motion needs both
+  std::uint64_t cycle{};                               ///< number of the arm's cycle: a gap shows missed states
+  Session session{Session::idle};                      ///< what commands the controller accepts
+  Safety safety{Safety::clear};                        ///< stop that is in force; clear: none
+  bool drives_on{}, brakes_open{};                     ///< motion needs both
   Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm]
   /// Position of its own interpolator [rad]: the required answer in commanding_wait.
   Vector interpolated;

@@ -12,9 +12,9 @@ enum class ArmMode : std::uint8_t { idle, moving, reflex, user_stopped, emergenc
 
 /// What the arm's controller says each cycle; arm axes only.
 struct ReflexState {
-  std::uint64_t cycle{};                  ///< number of the arm's cycle: a gap shows missed states
-  ArmMode mode{ArmMode::idle};            ///< of the arm's controller
-  bool powered{true}, brakes_open{true};  ///< motion needs both
+  std::uint64_t cycle{};                               ///< number of the arm's cycle: a gap shows missed states
+  ArmMode mode{ArmMode::idle};                         ///< of the arm's controller
+  bool powered{true}, brakes_open{true};               ///< motion needs both
   Vector position, velocity, torque, external_torque;  ///< measured [rad, rad/s, Nm, Nm]
   Wrench wrist_wrench;                                 ///< on the hand with its load, tool frame
   double gripper_width{};                              ///< between the fingers [m]
@@ -28,10 +28,10 @@ class ReflexLink {
   virtual ~ReflexLink() = default;
   /// The newest state; false when this cycle's did not come.
   virtual bool read(ReflexState& out) = 0;
-  virtual void move_to(const Vector& position) = 0;           ///< for this cycle
-  virtual void recover() = 0;                                 ///< from a reflex
-  virtual void set_load(double mass) = 0;                     ///< [kg]
-  virtual void gripper_move(double width, double speed) = 0;  ///< without force [m, m/s]
+  virtual void move_to(const Vector& position) = 0;                          ///< for this cycle
+  virtual void recover() = 0;                                                ///< from a reflex
+  virtual void set_load(double mass) = 0;                                    ///< [kg]
+  virtual void gripper_move(double width, double speed) = 0;                 ///< without force [m, m/s]
   virtual void gripper_grasp(double width, double speed, double force) = 0;  ///< [m, m/s, N]
 };
 
@@ -41,8 +41,8 @@ struct GripperSettings {
   double open{}, closed{};                     ///< axis positions of the widths below
   double open_width{0.08}, closed_width{0.0};  ///< [m]
   double speed{0.1};                           ///< [m/s]
-  double stiffness{400.0};  ///< force for a set-point beyond the measured position [N/m of width]
-  double least_force{5.0}, most_force{40.0};  ///< [N]
+  double stiffness{400.0};                     ///< force for a set-point beyond the measured position [N/m of width]
+  double least_force{5.0}, most_force{40.0};   ///< [N]
 };
 
 struct ReflexSettings {

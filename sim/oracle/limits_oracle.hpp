@@ -40,7 +40,7 @@ class LimitsOracle {
 
   double share_velocity() const { return shares_[0]; }      ///< largest |velocity| / limit so far
   double share_acceleration() const { return shares_[1]; }  ///< the same of the acceleration
-  double share_jerk() const { return shares_[2]; }  ///< the same of the jerk between set-points
+  double share_jerk() const { return shares_[2]; }          ///< the same of the jerk between set-points
   /// Set-points that broke a bound by more than 1e-6 of it.
   std::uint64_t violations() const { return violations_; }
   const std::string& last_violation() const { return last_; }  ///< one sentence; empty: none

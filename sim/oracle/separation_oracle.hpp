@@ -28,10 +28,10 @@ struct PersonVolume {
 };
 
 struct TrueSeparation {
-  double distance{};  ///< [m], +inf if nobody; negative: overlapping
-  int link{-1};       ///< of the robot; -1 if nobody
+  double distance{};                                              ///< [m], +inf if nobody; negative: overlapping
+  int link{-1};                                                   ///< of the robot; -1 if nobody
   Vector3 on_robot{Vector3::Zero()}, on_person{Vector3::Zero()};  ///< nearest points, world [m]
-  Vector3 person_velocity{Vector3::Zero()};  ///< of the joint nearest to on_person, world [m/s]
+  Vector3 person_velocity{Vector3::Zero()};                       ///< of the joint nearest to on_person, world [m/s]
 };
 
 /// The highest speed that lasts: the median of five steps in a row. An elbow whose bend is solved

@@ -13,8 +13,8 @@ namespace handsel::sim {
 enum class BvhChannel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
 
 struct BvhJoint {
-  std::string name;  ///< without a prefix before ':'; of an end site: its parent's name + "_End"
-  int parent{-1};    ///< index into Bvh::joints; -1: the root
+  std::string name;                  ///< without a prefix before ':'; of an end site: its parent's name + "_End"
+  int parent{-1};                    ///< index into Bvh::joints; -1: the root
   Vector3 offset{Vector3::Zero()};   ///< from the parent, file units
   std::vector<BvhChannel> channels;  ///< rotations apply in this order, the first outermost
   int first_channel{};               ///< in a frame

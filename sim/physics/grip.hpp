@@ -18,7 +18,7 @@ struct GripSettings {
 
 /// A rigid body at an instant, world frame; the pose is that of its centre of mass.
 struct BodyState {
-  Pose T_world_body{Pose::Identity()};  ///< origin at the centre of mass
+  Pose T_world_body{Pose::Identity()};                                   ///< origin at the centre of mass
   Vector3 velocity{Vector3::Zero()}, angular_velocity{Vector3::Zero()};  ///< [m/s], [rad/s]
 };
 

@@ -89,7 +89,7 @@ class RobotBody {
     Pose T_world{Pose::Identity()};
     Vector3 omega{Vector3::Zero()}, v{Vector3::Zero()};  // of the frame origin, world
     int finger{-1};                                      // which chain beyond the tool's body
-    double stiffness{0}, damping{0};  // of a finger joint's motor, or of its coupling
+    double stiffness{0}, damping{0};                     // of a finger joint's motor, or of its coupling
     double torque{0};
   };
 

@@ -51,9 +51,9 @@ struct SceneSetup {
   std::vector<StartPerson> people;
   std::vector<SensorSettings> human_sensors, object_sensors;  ///< in the order of the scenario
   std::vector<TimedControl> disturbances;                     ///< in time order
-  std::string watched;    ///< object of the first task, else the first object; may be empty
-  bool never_releases{};  ///< injected fault: the hand does not open again (StuckHand)
-  bool no_weld{};         ///< contacts alone hold objects, without a grasp constraint
+  std::string watched;                                        ///< object of the first task, else the first object; may be empty
+  bool never_releases{};                                      ///< injected fault: the hand does not open again (StuckHand)
+  bool no_weld{};                                             ///< contacts alone hold objects, without a grasp constraint
 };
 
 /// Throws ConfigError or MissingError naming what in the scenario is wrong and what there is.

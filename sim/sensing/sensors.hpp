@@ -32,17 +32,17 @@ enum class GazeOutput { with_body, none, only };
 
 /// Fields as in SensorDescription of common/config/schema/scenario.proto.
 struct SensorSettings {
-  std::string source;                    ///< name in the observations; not empty
-  double rate{30};                       ///< [Hz]
-  double latency{0.03};                  ///< from the instant seen to delivery [s]
-  double noise{0.0};                     ///< standard deviation of each coordinate [m]
-  Coverage coverage;                     ///< box that the sensor claims to observe, world [m]
-  double jitter{};                       ///< of the delivery, to either side [s]
-  double dropout{}, joint_dropout{};     ///< fractions of samples and of joints that are lost
-  double burst_rate{}, burst_length{};   ///< of losses: mean rate [1/s], mean length [s]
-  std::optional<Pose> T_world_sensor;    ///< x forward; without it no field of view
-  std::string link;                      ///< robot link that carries the sensor; empty: it is fixed
-  Pose T_link_sensor{Pose::Identity()};  ///< pose on that link
+  std::string source;                       ///< name in the observations; not empty
+  double rate{30};                          ///< [Hz]
+  double latency{0.03};                     ///< from the instant seen to delivery [s]
+  double noise{0.0};                        ///< standard deviation of each coordinate [m]
+  Coverage coverage;                        ///< box that the sensor claims to observe, world [m]
+  double jitter{};                          ///< of the delivery, to either side [s]
+  double dropout{}, joint_dropout{};        ///< fractions of samples and of joints that are lost
+  double burst_rate{}, burst_length{};      ///< of losses: mean rate [1/s], mean length [s]
+  std::optional<Pose> T_world_sensor;       ///< x forward; without it no field of view
+  std::string link;                         ///< robot link that carries the sensor; empty: it is fixed
+  Pose T_link_sensor{Pose::Identity()};     ///< pose on that link
   double fov_horizontal{}, fov_vertical{};  ///< full angles [rad], 0: unlimited
   double range{};                           ///< [m], 0: unlimited
   bool occlusion{};                         ///< robot, boxes and bodies hide points

@@ -17,9 +17,9 @@ namespace handsel {
 enum class Urgency : int { perceive = 20, control = 40 };
 
 struct DdsBusSettings {
-  std::string component;    ///< entity name of the participant and key of its ComponentHealth
-  std::uint32_t domain{0};  ///< DDS domain, 0 to 230
-  bool realtime{false};     ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
+  std::string component;               ///< entity name of the participant and key of its ComponentHealth
+  std::uint32_t domain{0};             ///< DDS domain, 0 to 230
+  bool realtime{false};                ///< SCHED_FIFO and locked memory for the executor; see realtime_note()
   Urgency urgency{Urgency::perceive};  ///< scheduling priority where `realtime` is in force
   int cpu{-1};                         ///< pins the executor; -1: none
   bool health{true};                   ///< publishes ComponentHealth (tools do not)

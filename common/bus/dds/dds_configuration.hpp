@@ -12,8 +12,8 @@ struct dds_qos;
 namespace handsel {
 
 struct DdsConfiguration {
-  std::string source;  ///< file or "CYCLONEDDS_URI" that was read last; empty: none, all defaults
-  std::string error;   ///< empty, or one sentence: which file is not there or not XML
+  std::string source;                            ///< file or "CYCLONEDDS_URI" that was read last; empty: none, all defaults
+  std::string error;                             ///< empty, or one sentence: which file is not there or not XML
   std::vector<std::string> interfaces;           ///< named ones; empty: Cyclone chooses
   std::vector<std::string> peers;                ///< unicast discovery asks them
   bool multicast{true};                          ///< AllowMulticast is not false

@@ -14,32 +14,32 @@
 namespace handsel::grasp_planner {
 
 struct ChoiceSettings {
-  double stand_off{0.09};               ///< length of the straight approach [m]
-  double approach_clearance{0.003};     ///< kept between the opened hand and the object on it [m]
-  double lift{0.12};                    ///< the arm must be able to go this far straight up [m]
-  double support_gap{0.004};            ///< kept between hand and support [m]
-  std::uint32_t reach_budget{400};      ///< inverse kinematics of the arm tried at most
-  double rank_quality{1.0};             ///< weights of the order of the reply
-  double rank_posture{0.4};             ///< nearness to the rest configuration of the arm
-  double rank_contacts{0.2};            ///< fraction of the fingers in contact
-  double rank_room{0.3};                ///< surface left free; when a person is to take the object
-  double rank_partner{0.3};  ///< the person's best grasp beside it; then too, as the next two
+  double stand_off{0.09};            ///< length of the straight approach [m]
+  double approach_clearance{0.003};  ///< kept between the opened hand and the object on it [m]
+  double lift{0.12};                 ///< the arm must be able to go this far straight up [m]
+  double support_gap{0.004};         ///< kept between hand and support [m]
+  std::uint32_t reach_budget{400};   ///< inverse kinematics of the arm tried at most
+  double rank_quality{1.0};          ///< weights of the order of the reply
+  double rank_posture{0.4};          ///< nearness to the rest configuration of the arm
+  double rank_contacts{0.2};         ///< fraction of the fingers in contact
+  double rank_room{0.3};             ///< surface left free; when a person is to take the object
+  double rank_partner{0.3};          ///< the person's best grasp beside it; then too, as the next two
   /// The arm can offer the object upright, the hand behind it, the person's wrist at ease.
   double rank_exchange{0.3};
-  double rank_transfer{0.3};            ///< a place was found where the person can take it so
-  double rank_tilt{1.0};  ///< taken off for each radian the object must be tilted there
+  double rank_transfer{0.3};  ///< a place was found where the person can take it so
+  double rank_tilt{1.0};      ///< taken off for each radian the object must be tilted there
   /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last.
   double rank_sturdy{1.0};
-  double sturdy_margin{2.0};            ///< [N]
-  double rank_away{0.6};  ///< the hand stays on the robot's side of what a person holds
-  double rank_stands{1.0};              ///< from a person's hand: it can be put down in this grasp
-  double off_fingers{0.01};  ///< kept between the robot and the hands of the giver [m]
+  double sturdy_margin{2.0};  ///< [N]
+  double rank_away{0.6};      ///< the hand stays on the robot's side of what a person holds
+  double rank_stands{1.0};    ///< from a person's hand: it can be put down in this grasp
+  double off_fingers{0.01};   ///< kept between the robot and the hands of the giver [m]
   /// Kept between the robot and the giver's head, torso, upper arms and legs: nearer the guard lets
   /// it only creep [m].
   double off_giver{0.12};
   double rank_visible{0.2};             ///< Grasp::visible; when a person is to take the object
   double rank_drive{0.2};               ///< taken off for each metre the platform has to drive
-  double platform_room{0.5};  ///< kept between robot and people where the platform drives to [m]
+  double platform_room{0.5};            ///< kept between robot and people where the platform drives to [m]
   std::uint32_t platform_reaches{500};  ///< inverse kinematics tried for places of the platform
 };
 
@@ -91,7 +91,7 @@ struct Choice {
   std::uint64_t transfer_reaches{};  ///< those for places to hand over
   std::uint64_t states{};            ///< robot states checked for collision
   std::uint64_t touch_tests{};       ///< hand against object
-  PlatformSearch platform;  ///< what came of the search for places of the platform
+  PlatformSearch platform;           ///< what came of the search for places of the platform
 
   /// Returns the counts per reason of the grasps and places of the platform that do not serve.
   Refusals refusals() const;

@@ -20,8 +20,8 @@ class FingerChain {
                   Vector& hand_effort) const;
   /// Links this finger's joints carry, and how each follows: T_hand_link = step pose * T_step_link.
   struct Carried {
-    int link{};  ///< index of the link in the hand model
-    int step{};  ///< index of the moving joint that carries the link
+    int link{};                          ///< index of the link in the hand model
+    int step{};                          ///< index of the moving joint that carries the link
     Pose T_step_link{Pose::Identity()};  ///< fixed pose of the link in the frame of that joint
   };
   /// Returns the links that the joints of this finger move.

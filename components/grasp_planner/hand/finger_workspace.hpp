@@ -11,14 +11,14 @@
 namespace handsel::grasp_planner {
 
 struct WorkspaceSettings {
-  double step{0.005};          ///< edge of a grid cell [m]
-  double least_radius{0.004};  ///< spheres smaller than this are not made [m]
+  double step{0.005};             ///< edge of a grid cell [m]
+  double least_radius{0.004};     ///< spheres smaller than this are not made [m]
   std::uint32_t max_spheres{60};  ///< at most so many are made; smaller ones are left out
 };
 
 struct WorkspaceSphere {
   Vector3 centre{Vector3::Zero()};  ///< hand frame [m]
-  double radius{};  ///< [m]
+  double radius{};                  ///< [m]
 };
 
 class FingerWorkspace {
@@ -36,7 +36,7 @@ class FingerWorkspace {
   /// Joint values (the chain's axes) that put the tip into the cell of a point: up to three,
   /// clearly different, the farthest from the joint bounds first. Empty outside the workspace.
   struct Seed {
-    Vector q;  ///< values of the chain's axes [rad]
+    Vector q;             ///< values of the chain's axes [rad]
     double centrality{};  ///< least distance to a bound / half range, [0, 1]
     /// Hand frame, unit.
     Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};

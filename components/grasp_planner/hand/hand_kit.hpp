@@ -20,9 +20,9 @@ struct HandKit {
   /// Returns whether this hand axis moves more than one finger.
   bool shared(int axis) const;
 
-  HandModel hand;  ///< the hand as its description has it
+  HandModel hand;                   ///< the hand as its description has it
   std::vector<FingerChain> chains;  ///< one for each finger, in the order of the hand model
-  HandShape shape;  ///< solids of palm and fingers
+  HandShape shape;                  ///< solids of palm and fingers
 };
 
 /// One a finger, in their order.

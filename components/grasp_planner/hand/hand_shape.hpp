@@ -42,16 +42,16 @@ class HandShape {
     /// Whether the solid has a closed form as a capsule; whether it is part of the palm.
     bool capsule{}, palm{};
     Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< ends of the axis of a capsule [m]
-    double radius{};                            ///< of a capsule [m]
-    CollisionShapePtr shape;                    ///< of solids that are no capsules
-    Pose T_frame_shape{Pose::Identity()};       ///< pose of `shape` in the frame
-    ConvexCore core;                            ///< of `shape` in the frame; unused for meshes
-    Vector3 middle{Vector3::Zero()};            ///< centre of the ball around the solid [m]
-    double bound{};                             ///< radius of the ball around the solid [m]
+    double radius{};                                 ///< of a capsule [m]
+    CollisionShapePtr shape;                         ///< of solids that are no capsules
+    Pose T_frame_shape{Pose::Identity()};            ///< pose of `shape` in the frame
+    ConvexCore core;                                 ///< of `shape` in the frame; unused for meshes
+    Vector3 middle{Vector3::Zero()};                 ///< centre of the ball around the solid [m]
+    double bound{};                                  ///< radius of the ball around the solid [m]
   };
   struct PlacedHand {
     std::vector<Placed> solids;  ///< palm first, then finger by finger
-    Eigen::AlignedBox3d box;  ///< around the balls of all solids [m]
+    Eigen::AlignedBox3d box;     ///< around the balls of all solids [m]
   };
   /// Places palm and fingers in the frame of T_frame_hand.
   PlacedHand placed(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_frame_hand) const;

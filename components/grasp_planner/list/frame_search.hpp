@@ -10,11 +10,11 @@ namespace handsel::grasp_planner {
 
 /// A contact that one finger can make.
 struct FingerContact {
-  SurfacePoint place;  ///< contact point on the object
+  SurfacePoint place;             ///< contact point on the object
   Vector q;                       ///< all hand axes; only this finger's matter
   Vector q_open;                  ///< the same finger backed off from the surface
   std::vector<Pose> T_hand_step;  ///< at q
-  double force{};  ///< |cosine| of the normal and the main axis of the force ellipsoid
+  double force{};                 ///< |cosine| of the normal and the main axis of the force ellipsoid
 };
 
 class FrameSearch {

@@ -24,20 +24,20 @@ struct QualityWeights {
 };
 
 struct GraspListSettings {
-  std::uint32_t positions{60};      ///< of the grasp frame in the object's box, uniform
+  std::uint32_t positions{60};  ///< of the grasp frame in the object's box, uniform
   /// In a large box as many more as make them about this far apart [m]; 0: never more.
   double spacing{0.04};
-  std::uint32_t orientations{144};  ///< of the incremental grid over all rotations
-  double step_share{0.6};           ///< distance of contact points / fingertip radius
-  double friction{0};               ///< Coulomb coefficient; 0: the object's
-  int cone_edges{8};                ///< of a linearised friction cone, >= 6
-  double full_epsilon{0.25};        ///< an epsilon from which on the stability counts as 1
-  QualityWeights weights;  ///< of the terms of the quality
+  std::uint32_t orientations{144};       ///< of the incremental grid over all rotations
+  double step_share{0.6};                ///< distance of contact points / fingertip radius
+  double friction{0};                    ///< Coulomb coefficient; 0: the object's
+  int cone_edges{8};                     ///< of a linearised friction cone, >= 6
+  double full_epsilon{0.25};             ///< an epsilon from which on the stability counts as 1
+  QualityWeights weights;                ///< of the terms of the quality
   std::uint32_t contacts_per_finger{4};  ///< alternatives kept for each finger of a frame
   std::uint32_t tries_per_finger{24};    ///< candidates checked for them
-  double depth{0.0008};  ///< how deep the model of a touching finger may be in the object [m]
-  double opening{0.025};  ///< pre-grasp: fingertips this far off the surface along its normal [m]
-  double open_clearance{0.004};  ///< and the whole finger at least this far from the object [m]
+  double depth{0.0008};                  ///< how deep the model of a touching finger may be in the object [m]
+  double opening{0.025};                 ///< pre-grasp: fingertips this far off the surface along its normal [m]
+  double open_clearance{0.004};          ///< and the whole finger at least this far from the object [m]
   GripForceSettings grip;                ///< how hard it is held, and what it must bear
   /// Surface this far from the hand counts as room for another hand [m].
   double free_distance{0.03};
@@ -66,13 +66,13 @@ struct GraspScores {
 };
 
 struct ListedGrasp {
-  Grasp grasp;  ///< id = number of its frame; contacts in the order of the fingers
+  Grasp grasp;         ///< id = number of its frame; contacts in the order of the fingers
   GraspScores scores;  ///< terms of the quality before weighting
-  double room{};  ///< fraction of the surface that is free for another hand, [0, 1]
+  double room{};       ///< fraction of the surface that is free for another hand, [0, 1]
 };
 
 struct GraspList {
-  std::string hand, object;  ///< names of the hand and of the object model
+  std::string hand, object;         ///< names of the hand and of the object model
   std::vector<ListedGrasp> grasps;  ///< best quality first; ties by id
   std::uint64_t frames{};           ///< tested
   /// Frames tested, by FrameReason; `grasped` those with a grasp.

@@ -45,9 +45,9 @@ class PinchSearch {
   /// A grasp without its quality. Its contacts are the corners of the patches, in the order of the
   /// fingers.
   struct Found {
-    Grasp grasp;  ///< with contacts, hand configuration and pre-grasp
+    Grasp grasp;                         ///< with contacts, hand configuration and pre-grasp
     std::vector<PointContact> contacts;  ///< corners of the patches, object frame
-    double force{};  ///< mean cosine between the surface and the pads
+    double force{};                      ///< mean cosine between the surface and the pads
   };
   /// Tests the frame with this number, below frames(). `counters`: work done is added. `why` says
   /// what was wrong when there is none.

@@ -9,8 +9,8 @@ namespace handsel::grasp_planner {
 
 /// Of a closed surface filled evenly.
 struct MassProperties {
-  double volume{};  ///< [m^3]; not above 0: the surface is open or inside out
-  Vector3 com{Vector3::Zero()};                               ///< frame of the mesh [m]
+  double volume{};               ///< [m^3]; not above 0: the surface is open or inside out
+  Vector3 com{Vector3::Zero()};  ///< frame of the mesh [m]
   /// About the com, axes of the mesh [m^2].
   Eigen::Matrix3d inertia_per_mass{Eigen::Matrix3d::Zero()};
 };
@@ -21,10 +21,10 @@ MassProperties mass_properties(const TriangleMesh& mesh);
 struct Placement {
   /// Support: plane z = 0, up is z; the mass centre is on the z axis.
   Pose T_support_object{Pose::Identity()};
-  double height{};                          ///< of the mass centre [m]
-  double margin{};  ///< from below the mass centre to the nearest edge it could tip over [m]
-  double tipping{};                         ///< tilt of the support at which it tips over [rad]
-  double area{};                            ///< of the face [m^2]
+  double height{};   ///< of the mass centre [m]
+  double margin{};   ///< from below the mass centre to the nearest edge it could tip over [m]
+  double tipping{};  ///< tilt of the support at which it tips over [rad]
+  double area{};     ///< of the face [m^2]
 };
 
 /// Hardest to tip over first; at most one for each face, those that tip below `least_tipping` [rad]

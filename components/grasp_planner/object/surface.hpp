@@ -11,19 +11,19 @@
 namespace handsel::grasp_planner {
 
 struct SurfacePoint {
-  Vector3 position{Vector3::Zero()};  ///< frame of the mesh [m]
-  Vector3 normal{Vector3::UnitZ()};  ///< of its triangle, outward
-  std::uint32_t triangle{};  ///< index into the triangles of the mesh
+  Vector3 position{Vector3::Zero()};     ///< frame of the mesh [m]
+  Vector3 normal{Vector3::UnitZ()};      ///< of its triangle, outward
+  std::uint32_t triangle{};              ///< index into the triangles of the mesh
   Vector3 barycentric{Vector3::Zero()};  ///< weights of the three corners of the triangle, sum 1
-  double curvature{};  ///< normalised mean curvature, [0, 1]
+  double curvature{};                    ///< normalised mean curvature, [0, 1]
 };
 
 struct SurfaceSettings {
-  double step{0.008};               ///< least distance of two samples on the same side [m]
+  double step{0.008};  ///< least distance of two samples on the same side [m]
   /// The curvature is averaged over a ball of this radius; the fingertip's [m].
   double curvature_radius{0.013};
   std::uint32_t max_points{20000};  ///< the step grows when more would be needed
-  std::uint64_t seed{1};  ///< of the random samples; the same gives the same points
+  std::uint64_t seed{1};            ///< of the random samples; the same gives the same points
 };
 
 /// Uniform over the area, deterministic for a seed. Degenerate triangles carry no points.
@@ -43,7 +43,7 @@ double normalised_curvature(double mean_curvature, double radius);
 Vector3 mass_centre(const TriangleMesh& mesh);
 
 struct MeshFindings {
-  std::uint32_t components{};  ///< parts that no edge connects
+  std::uint32_t components{};     ///< parts that no edge connects
   std::uint32_t open_edges{};     ///< borders of holes
   std::uint32_t crowded_edges{};  ///< shared by more than two triangles
   std::uint32_t turned{};         ///< triangles whose orientation was mended

@@ -11,10 +11,10 @@ namespace handsel::grasp_planner {
 
 /// Where a ray meets the surface.
 struct SurfaceHit {
-  double along{};                                               ///< from the ray's start [m]
+  double along{};  ///< from the ray's start [m]
   /// Of its triangle, by its orientation.
   Vector3 position{Vector3::Zero()}, normal{Vector3::UnitZ()};
-  std::uint32_t triangle{};  ///< index into the triangles of the mesh
+  std::uint32_t triangle{};              ///< index into the triangles of the mesh
   Vector3 barycentric{Vector3::Zero()};  ///< weights of the three corners of the triangle, sum 1
 };
 

@@ -16,7 +16,7 @@ struct CarriedWay {
 struct CarriedSettings {
   /// Angles of the elbow on its circle that are tried; it keeps its angle all along the path.
   int elbows{24};
-  double least_room{0.06};   ///< [rad]
+  double least_room{0.06};  ///< [rad]
   /// Of a joint from one pose to the next: more is a jump from branch to branch [rad].
   double largest_step{0.5};
 };

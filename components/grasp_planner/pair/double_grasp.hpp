@@ -11,7 +11,7 @@ namespace handsel::grasp_planner {
 
 /// One hand's side of a double grasp.
 struct HandSide {
-  const HandKit* kit{};  ///< geometry of the hand
+  const HandKit* kit{};     ///< geometry of the hand
   const GraspList* list{};  ///< grasps of the hand on the object
   /// How naturally the arm reaches each grasp, one a grasp of the list, the higher the better
   /// (posture_scores()); below 0: not at all, such grasps are left out. Empty: not asked.
@@ -42,12 +42,12 @@ std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, 
                                       const std::vector<std::size_t>& also = {});
 
 struct DoubleSettings {
-  std::size_t most_of_each{200};  ///< grasps taken from each list
-  Taken taken{Taken::best};  ///< how those are chosen
+  std::size_t most_of_each{200};             ///< grasps taken from each list
+  Taken taken{Taken::best};                  ///< how those are chosen
   Vector3 p_object_middle{Vector3::Zero()};  ///< for spread grasps
   double clearance{0.0};                     ///< between the hands [m]
-  double palm_clearance{0.0};  ///< between either palm and the other hand, when more [m]
-  double least_opposition{0.0};  ///< [rad] for a transfer: wrists opposed by at least this
+  double palm_clearance{0.0};                ///< between either palm and the other hand, when more [m]
+  double least_opposition{0.0};              ///< [rad] for a transfer: wrists opposed by at least this
   /// For passing the object on: either hand, opened, must be able to come and to leave straight
   /// over `stand_off`, past the object and the other hand. Needs the object.
   const Graspable* passed{};

@@ -10,7 +10,7 @@ namespace handsel::grasp_planner {
 
 /// Where an arm starts and how long it is.
 struct HumanArm {
-  Side side{Side::right};  ///< which arm of the person
+  Side side{Side::right};             ///< which arm of the person
   Vector3 shoulder{Vector3::Zero()};  ///< world [m]
   Vector3 outward{Vector3::UnitY()};  ///< level, away from the other shoulder, unit
   double upper{}, forearm{};          ///< lengths [m]

@@ -22,8 +22,8 @@ struct TransferSettings {
   double most_strain{kComfortableStrain};
   /// Angle between the person's hand and the level direction from their body to the object [rad].
   double most_aim{1.05};
-  int headings{24};       ///< of the object
-  double most_tilt{0};    ///< it may be tilted by up to this [rad]; upright is better
+  int headings{24};     ///< of the object
+  double most_tilt{0};  ///< it may be tilted by up to this [rad]; upright is better
 };
 
 /// What a person's hand could do with the object in one grasp of the robot.
@@ -59,13 +59,13 @@ class TransferTable {
 /// A place to offer the object.
 struct TransferPose {
   Pose T_world_object{Pose::Identity()};  ///< where and how the object is offered
-  Vector arm_joints;  ///< of the robot
-  TransferPartner partner;  ///< grasp of the person that the pose is for
-  WristPosture wrist;  ///< of the person
+  Vector arm_joints;                      ///< of the robot
+  TransferPartner partner;                ///< grasp of the person that the pose is for
+  WristPosture wrist;                     ///< of the person
   /// Angle between the person's hand and the direction from their body to the object [rad].
   double aim{};
-  double tilt{};       ///< of the object, against how it is held now [rad]
-  double score{};      ///< at most 1: legibility (opposition), comfort (strain), aim, little tilt
+  double tilt{};   ///< of the object, against how it is held now [rad]
+  double score{};  ///< at most 1: legibility (opposition), comfort (strain), aim, little tilt
 };
 
 /// Returns how far the object may be tilted, in steps, upright first [rad].

@@ -15,7 +15,7 @@ namespace handsel::grasp_planner {
 /// An object with its list.
 struct GraspPage {
   std::shared_ptr<const Graspable> object;  ///< prepared for grasping, as the list has it
-  GraspList list;  ///< all its grasps by this hand
+  GraspList list;                           ///< all its grasps by this hand
 };
 
 class GraspBook {

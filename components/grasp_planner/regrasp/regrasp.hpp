@@ -19,20 +19,20 @@ namespace handsel::grasp_planner {
 
 /// An arm with the grasps of its hand on the object.
 struct RegraspArm {
-  Manipulator arm;  ///< groups of arm and hand in the robot model
-  const HandKit* kit{};  ///< geometry of the hand of this arm; must outlive this struct
+  Manipulator arm;          ///< groups of arm and hand in the robot model
+  const HandKit* kit{};     ///< geometry of the hand of this arm; must outlive this struct
   const GraspList* list{};  ///< grasps of that hand on the object; must outlive this struct
 };
 
 /// One hand holds the object, or it stands somewhere.
 struct ObjectState {
   int arm{-1};                            ///< index of the arm; -1: it stands
-  std::optional<std::size_t> grasp;  ///< index into the arm's list; as a goal it may be left open
+  std::optional<std::size_t> grasp;       ///< index into the arm's list; as a goal it may be left open
   Pose T_world_object{Pose::Identity()};  ///< where it stands
 };
 
 struct RegraspTask {
-  ObjectState start, goal;  ///< where the object is, and where it is to be
+  ObjectState start, goal;       ///< where the object is, and where it is to be
   std::vector<Pose> placements;  ///< T_world_object: where else it can be put down
 };
 
@@ -40,12 +40,12 @@ enum class RegraspStepKind { pick, pass, place, join };
 
 /// One change of hands. The whole robot's axes [rad].
 struct RegraspStep {
-  RegraspStepKind kind{};  ///< what happens to the object
-  int from{-1}, to{-1};  ///< indices of the arm that releases and the arm that takes; -1: none
-  std::size_t grasp_from{}, grasp_to{};  ///< indices into the lists of these arms
+  RegraspStepKind kind{};                 ///< what happens to the object
+  int from{-1}, to{-1};                   ///< indices of the arm that releases and the arm that takes; -1: none
+  std::size_t grasp_from{}, grasp_to{};   ///< indices into the lists of these arms
   Pose T_world_object{Pose::Identity()};  ///< where the object is during the step
-  Vector q;       ///< all hands that touch the object closed on it
-  Vector before;  ///< pick, pass, join: the hand that comes, opened, off the object
+  Vector q;                               ///< all hands that touch the object closed on it
+  Vector before;                          ///< pick, pass, join: the hand that comes, opened, off the object
   /// Pass, place: the hand that went, opened, off the object; both when two put it down.
   Vector after;
 };
@@ -53,24 +53,24 @@ struct RegraspStep {
 struct RegraspSettings {
   /// Grasps of each list that are considered, spread over all orientations.
   std::size_t most_of_each{200};
-  double clearance{0.004};               ///< between the hands [m]
+  double clearance{0.004};  ///< between the hands [m]
   /// What is held may lie this far from its planned place when the other hand comes [m].
   double slack{0.005};
-  double stand_off{0.09};                ///< of a hand before it comes and after it went [m]
-  double lift{0.08};  ///< what is picked up or put down must be able to go this far straight up [m]
+  double stand_off{0.09};   ///< of a hand before it comes and after it went [m]
+  double lift{0.08};        ///< what is picked up or put down must be able to go this far straight up [m]
   int exchange_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
   /// The search ends when so many picks, passes and places were checked.
   std::uint64_t most_steps_tried{3000};
-  GripForceSettings grip;                ///< of hands that bear a load together
-  double least_apart{0.25};              ///< of the palms of two hands that carry together [m]
-  std::size_t most_pairs_tried{400};     ///< of two hands at once
+  GripForceSettings grip;             ///< of hands that bear a load together
+  double least_apart{0.25};           ///< of the palms of two hands that carry together [m]
+  std::size_t most_pairs_tried{400};  ///< of two hands at once
 };
 
 struct RegraspPlan {
   std::vector<RegraspStep> steps;  ///< empty when nothing has to change, or when there is none
-  bool solved{};  ///< the object gets to the goal; also when nothing has to change
-  std::string reason;  ///< why not, one sentence
-  Refusals rejected;   ///< steps that were checked and why they cannot be made
+  bool solved{};                   ///< the object gets to the goal; also when nothing has to change
+  std::string reason;              ///< why not, one sentence
+  Refusals rejected;               ///< steps that were checked and why they cannot be made
   /// Steps checked in detail; pairs of grasps of two hands that do not collide.
   std::uint64_t judged{}, double_grasps{};
   std::vector<LoadShare> shares;  ///< of two hands at once, one an arm: grip of each

@@ -15,13 +15,13 @@ namespace handsel::grasp_planner {
 
 /// An arm, the geometry of its hand and the grasp lists of that hand.
 struct ArmBook {
-  Manipulator arm;  ///< groups of arm and hand in the robot model
+  Manipulator arm;                     ///< groups of arm and hand in the robot model
   std::shared_ptr<const HandKit> kit;  ///< geometry of the hand of this arm
-  std::shared_ptr<GraspBook> book;  ///< grasp lists of that hand, made when first asked for
+  std::shared_ptr<GraspBook> book;     ///< grasp lists of that hand, made when first asked for
 };
 
 struct RegraspAnswer {
-  RegraspReply reply;  ///< as sent to the client; its reason says why there is no sequence
+  RegraspReply reply;      ///< as sent to the client; its reason says why there is no sequence
   std::uint64_t judged{};  ///< steps checked in detail
   std::uint64_t listed{};  ///< grasps that were listed for it
 };

@@ -9,11 +9,11 @@
 namespace handsel::path_planner {
 
 struct Found {
-  std::vector<Vector> path;   ///< empty when nothing was found
-  std::size_t goal{};         ///< index into `goals`
+  std::vector<Vector> path;  ///< empty when nothing was found
+  std::size_t goal{};        ///< index into `goals`
   /// Least distance between the two trees, or tree and goals, when nothing was found [rad].
   double closest{};
-  std::size_t nodes{};        ///< of the tree or trees
+  std::size_t nodes{};  ///< of the tree or trees
   /// Of the planners here: from the start, and where one was grown from the goals.
   std::vector<Tree> trees{};
 };

@@ -83,7 +83,7 @@ class SearchSpace : public Budget {
   /// cost.
   const std::vector<double>& costs_at_steps(const Vector& from, const Vector& to, int steps) const;
   double integral_cost(const Vector& from, const Vector& to) const;  ///< along a motion [rad]
-  double work(const Vector& from, const Vector& to) const;  ///< rises of the cost along a motion
+  double work(const Vector& from, const Vector& to) const;           ///< rises of the cost along a motion
   /// Returns what smoothing makes smaller: integral of the cost above that of the cheapest of start
   /// and goals, and length_weight times the length.
   double price(const Vector& from, const Vector& to) const;
@@ -115,7 +115,7 @@ class SearchSpace : public Budget {
   bool only_drives_{};  // no axis but those of the platform
   // by what outside layers forbid: not when it starts there, the arm must be able to leave
   bool bound_{};
-  bool widely_{};       // else every motion is checked exactly
+  bool widely_{};  // else every motion is checked exactly
   std::vector<Vector> tight_ends_;
   double reach_{};
 };

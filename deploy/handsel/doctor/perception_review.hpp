@@ -14,7 +14,7 @@ namespace handsel {
 
 /// What a source ought to see.
 struct PerceptionGround {
-  Coverage reach;  ///< of the robot, world [m]: sources of people together must look at all of it
+  Coverage reach;                 ///< of the robot, world [m]: sources of people together must look at all of it
   Vector3 base{Vector3::Zero()};  ///< of the robot, world [m]
   std::set<std::string> models;   ///< object descriptions there are
 };

@@ -18,9 +18,9 @@ struct TrialOptions {
   std::string attention{"adaptive"}, law{"linear"};
   std::string condition, participant;  ///< of a study; empty: the attention's mode; nobody
   std::size_t order{};                 ///< number among the trials asked for, from 1; 0: none
-  bool hash_outputs{};  ///< adds "output_hash": of every value every component sent, and when
-  std::string record;   ///< file that every sample is recorded into; empty: none
-  double timeout{};     ///< [s] of virtual time; 0: the scenario's
+  bool hash_outputs{};                 ///< adds "output_hash": of every value every component sent, and when
+  std::string record;                  ///< file that every sample is recorded into; empty: none
+  double timeout{};                    ///< [s] of virtual time; 0: the scenario's
   /// Time [s] and text of each event; may be empty.
   std::function<void(double, const std::string&)> on_event;
 };

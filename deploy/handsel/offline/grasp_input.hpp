@@ -28,8 +28,8 @@ struct Listed {
   std::shared_ptr<const grasp_planner::HandKit> kit;                  ///< model of the hand
   std::shared_ptr<const grasp_planner::FingerWorkspaces> workspaces;  ///< null from prepared()
   std::shared_ptr<const grasp_planner::Graspable> object;             ///< with its contact points
-  grasp_planner::GraspList list;  ///< empty from prepared(); best grasp first
-  double seconds{};               ///< that the list took
+  grasp_planner::GraspList list;                                      ///< empty from prepared(); best grasp first
+  double seconds{};                                                   ///< that the list took
 };
 /// Loads a hand by the name or file of its description.
 std::shared_ptr<const grasp_planner::HandKit> kit_of(const std::string& hand);

@@ -28,14 +28,14 @@ struct Snapshot {
   std::map<std::uint64_t, TaskStatus> tasks;            ///< by task id
   Seen<TaskStatus> task;                                ///< newest of any id
   Seen<ActionStatus> action;                            ///< of the manipulation planner
-  std::string partner;                ///< the person the newest action that concerned one was about
-  Seen<ExecutionStatus> execution;    ///< of the trajectory controller
-  Seen<SafetyState> safety;           ///< of the supervisor
-  Seen<AttentionAdvice> advice;       ///< speed factor and gaze that attention advises
-  Seen<AttentionState> attention;     ///< behaviours and their clocks
-  Seen<TrajectoryForecast> forecast;  ///< of the running trajectory
-  Seen<ActiveTrajectory> active;      ///< without the trajectory itself
-  Seen<GroundTruth> truth;            ///< of the simulator; never seen on a real robot
+  std::string partner;                                  ///< the person the newest action that concerned one was about
+  Seen<ExecutionStatus> execution;                      ///< of the trajectory controller
+  Seen<SafetyState> safety;                             ///< of the supervisor
+  Seen<AttentionAdvice> advice;                         ///< speed factor and gaze that attention advises
+  Seen<AttentionState> attention;                       ///< behaviours and their clocks
+  Seen<TrajectoryForecast> forecast;                    ///< of the running trajectory
+  Seen<ActiveTrajectory> active;                        ///< without the trajectory itself
+  Seen<GroundTruth> truth;                              ///< of the simulator; never seen on a real robot
 };
 
 /// A change worth reporting, e.g. "mode hold".

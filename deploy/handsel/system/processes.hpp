@@ -25,13 +25,13 @@ struct ProcessSpec {
 
 /// What the whole system is started with.
 struct SystemOptions {
-  int domain{0};                     ///< DDS domain, 0..230
-  std::string robot;                 ///< empty: the scenario's
-  std::string scenario{"give_mug"};  ///< name or file
-  std::uint64_t seed{1};             ///< of the simulation
-  bool ros2{false};                  ///< with the process that connects to ROS 2
-  int web_port{-1};                  ///< of the bridge; 0: any free one; -1: as its settings say
-  std::string record;                ///< file to record into; empty: none
+  int domain{0};                             ///< DDS domain, 0..230
+  std::string robot;                         ///< empty: the scenario's
+  std::string scenario{"give_mug"};          ///< name or file
+  std::uint64_t seed{1};                     ///< of the simulation
+  bool ros2{false};                          ///< with the process that connects to ROS 2
+  int web_port{-1};                          ///< of the bridge; 0: any free one; -1: as its settings say
+  std::string record;                        ///< file to record into; empty: none
   std::map<std::string, std::string> notes;  ///< of a study, for the record's metadata
   /// Of kProcesses, when the others run on another host; both empty: all.
   std::vector<std::string> only, without;
