@@ -126,7 +126,8 @@ void Node::gather(TimePoint now) {
   state->T_world_base = T_world_base_;
   if (!settings_.base_frame().empty()) {
     const auto place = tree_.find(settings_.base_frame(), settings_.world_frame());
-    if (!place) return;
+    base_known_ = place && now - place->arrival <= from_seconds(settings_.people_age());
+    if (!base_known_) return;
     state->T_world_base = place->T_root_frame;
   }
   robot_out_->publish(*state);
@@ -136,6 +137,8 @@ std::string Node::trouble() const {
   const TimePoint now = bus_.now();
   if (robot_out_ && robot_heard_)
     if (const std::string missing = joints_.missing(now); !missing.empty()) return "JointState does not tell of " + missing;
+  if (robot_out_ && robot_heard_ && !base_known_)
+    return "TF has no current transform from frame " + settings_.base_frame() + " to " + settings_.world_frame();
   if (!clash_.empty() && to_seconds(now - clash_at_) < kShown) return clash_;
   if (!refused_.empty() && to_seconds(now - refused_at_) < kShown) return "JointTrajectory " + refused_;
   return {};

@@ -51,6 +51,7 @@ class Node {
   TrajectoryDesk desk_;
   Pose T_world_base_{Pose::Identity()};
   bool robot_heard_{false};
+  bool base_known_{true};  // false: the base has no transform, or an old one
   /// Of the robot's links, when TF gets them: nobody else may send them.
   std::map<std::string, std::string> own_parents_;
   std::string clash_;  ///< of a frame from outside with one of them

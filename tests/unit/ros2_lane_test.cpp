@@ -9,6 +9,7 @@
 #include "common/messages/system.hpp"
 #include "common/wire/ros2.hpp"
 #include "components/ros2_lane/node.hpp"
+#include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::ros2_lane {
 namespace {
@@ -238,6 +239,36 @@ TEST_F(Lane, tells_joints_and_frames_of_our_robot) {
   EXPECT_TRUE(told->T_root_frame.isApprox(state.T_world_base * context.robot->link_pose(state.position, tool), 1e-9));
   ASSERT_TRUE(tree.find("object_mug", "world"));
   EXPECT_TRUE(tree.find("object_mug", "world")->T_root_frame.translation().isApprox(Vector3(0.7, -0.4, 0.8)));
+}
+
+TEST_F(Lane, sends_no_robot_state_while_the_place_of_the_base_is_old) {
+  const test::TemporaryFolder folder;
+  folder.write("ros2_lane.txtpb",
+               "world_frame: \"world\" tf: \"tf\" people: true people_source: \"ros2\" people_rate: 30 "
+               "people_age: 0.2 objects_rate: 30 joint_age: 0.1 start_tolerance: 0.05 check_step: 0.05 "
+               "joint_states_rate: 50 tf_rate: 30 robot_in: \"joints\" base_frame: \"base\"");
+  context.settings = folder.path();
+  const auto moving = std::make_shared<Node>(network.add("moving ros2_lane"), context);
+  int states = 0;
+  ours.subscribe<RobotState>([&](const RobotState&, const Receipt&) { ++states; });
+  const auto tf = write<ros2::Transforms>("tf");
+  const auto joints_out = write<ros2::JointState>("joints");
+  ros2::JointState joints;
+  for (const Axis& axis : context.robot->axes()) joints.names.push_back(axis.name);
+  joints.position = context.robot->rest_posture();
+  for (int i = 0; i < 50; ++i) {
+    joints.stamp = ros.stamp_now();
+    if (i < 20) tf->publish({{frame("world", "base", Vector3(1, 0, 0), joints.stamp)}});
+    joints_out->publish(joints);
+    run(0.02);
+    if (i == 19) {
+      EXPECT_GT(states, 15);
+      EXPECT_EQ(moving->trouble(), "");
+    }
+    if (i == 35) states = 0;
+  }
+  EXPECT_EQ(states, 0) << "a place from more than 0.2 s ago";
+  EXPECT_EQ(moving->trouble(), "TF has no current transform from frame base to world");
 }
 
 TEST(JointGatherer, gathers_axes_from_several_messages_and_says_what_is_missing) {
