@@ -13,6 +13,7 @@
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/bus/left_out.hpp"
+#include "common/bus/send_refusal.hpp"
 #include "common/messages/system.hpp"
 
 namespace handsel {
@@ -213,8 +214,7 @@ class LocalBus final : public Bus {
 
   void log(const std::string& what) const { std::fprintf(stderr, "%s: %s\n", component_.c_str(), what.c_str()); }
   void refused(const std::string& why) {
-    if (refusal_.empty()) log("refused to send: " + why);
-    refusal_ = why;
+    if (refusal_.note(why, now())) log(refusal_.text(now()));
   }
   WriterIdentity identity() const {
     return {.components = component_, .name = component_, .matches = true, .ended = [this] { return killed_; }};
@@ -226,7 +226,8 @@ class LocalBus final : public Bus {
   LocalNetwork::Impl& net_;
   std::string component_;
   bool metered_, killed_{false}, paused_{false}, isolated_{false};
-  std::string degraded_, refusal_;
+  std::string degraded_;
+  SendRefusal refusal_;
   LeftOutCounts left_out_;
   TimePoint worker_free_{};
   double cpu_{0};
@@ -440,7 +441,7 @@ void LocalBus::publish_health(TimePoint now) {
   }
   health.reason = others.reason();
   if (!degraded_.empty()) health.reason += (health.reason.empty() ? "" : "; ") + degraded_;
-  if (health.reason.empty() && !refusal_.empty()) health.reason = "refused to send: " + refusal_;
+  if (health.reason.empty()) health.reason = refusal_.text(now);
   health.state = health.reason.empty() ? HealthState::ok : HealthState::degraded;
   health.left_out = left_out_.counts();
   for (const auto& s : subscriptions_) {

@@ -115,6 +115,7 @@ void Node::look() {
 bool Node::read(std::size_t topic) {
   try {
     readers_[topic] = raw_->read_raw(message_type(topic));
+    bus_.set_degraded("");  // an earlier attempt may have failed
     return true;
   } catch (const MissingError& error) {
     bus_.set_degraded(error.what());

@@ -27,6 +27,7 @@
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/bus/left_out.hpp"
+#include "common/bus/send_refusal.hpp"
 #include "common/bus/writer_gate.hpp"
 #include "common/config/resources.hpp"
 #include "common/messages/system.hpp"
@@ -104,7 +105,8 @@ struct DdsBus::Impl {
   std::atomic<bool> discovery_news{false};
   std::uint64_t incarnation{};
   HealthState state{HealthState::starting};
-  std::string degraded, refusal, realtime_note;
+  std::string degraded, realtime_note;
+  SendRefusal refusal;
   double last_cpu{0};
   TimePoint last_health{};
   LeftOutCounts left_out;
@@ -186,8 +188,8 @@ class DdsPublisher final : public AnyPublisher {
 
  private:
   bool refuse(const std::string& why) {
-    if (bus_.refusal.empty()) bus_.log("refused to send: " + why);
-    bus_.refusal = why;
+    const TimePoint now = monotonic_now();
+    if (bus_.refusal.note(why, now)) bus_.log(bus_.refusal.text(now));
     return false;
   }
   bool enqueue() {
@@ -368,7 +370,7 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
   m.reason = m.job_silent ? "a job has given no sign of life for two seconds" : "";
   for (const std::string& reason : {others.reason(), degraded})
     if (!reason.empty()) m.reason += (m.reason.empty() ? "" : "; ") + reason;
-  if (m.reason.empty() && !refusal.empty()) m.reason = "refused to send: " + refusal;
+  if (m.reason.empty()) m.reason = refusal.text(wall);
   m.state = state != HealthState::ok ? state : m.reason.empty() ? HealthState::ok : HealthState::degraded;
   m.topics.clear();
   m.left_out = left_out.counts();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/bus/intake.hpp"
+#include "common/bus/send_refusal.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/robot.hpp"
@@ -88,6 +89,33 @@ TYPED_TEST(BusRules, refuses_to_send_a_malformed_message_and_says_so_in_its_heal
   bad.velocity[3] = std::nan("");
   EXPECT_FALSE(publisher->publish(bad));
   EXPECT_TRUE(this->stage.until([&] { return reason.find("RobotState.velocity[3] is nan") != std::string::npos; })) << reason;
+}
+
+TEST(SendRefusal, is_shown_for_ten_seconds_and_logged_once) {
+  SendRefusal refusal;
+  const TimePoint begin{from_seconds(100.0)};
+  EXPECT_EQ(refusal.text(begin), "");
+  EXPECT_TRUE(refusal.note("it is nan", begin));
+  EXPECT_FALSE(refusal.note("it is inf", begin + from_seconds(5.0)));
+  EXPECT_EQ(refusal.text(begin + from_seconds(14.0)), "refused to send: it is inf");
+  EXPECT_EQ(refusal.text(begin + from_seconds(16.0)), "") << "one bad message does not degrade a component for ever";
+  EXPECT_TRUE(refusal.note("it is nan", begin + from_seconds(17.0)));
+}
+
+/// The health of a component in virtual time becomes ok again.
+TEST(SendRefusal, leaves_the_health_of_its_component) {
+  test::LocalStage stage;
+  Bus &a = stage.add("sim"), &b = stage.add("b");
+  HealthState health{};
+  b.subscribe<ComponentHealth>([&](const ComponentHealth& m, const Receipt&) {
+    if (m.component == "sim") health = m.state;
+  });
+  RobotState bad = robot_state(1);
+  bad.velocity[3] = std::nan("");
+  const auto publisher = a.advertise<RobotState>();
+  EXPECT_FALSE(publisher->publish(bad));
+  EXPECT_TRUE(stage.until([&] { return health == HealthState::degraded; }));
+  EXPECT_TRUE(stage.until([&] { return health == HealthState::ok; }, 11.0));
 }
 
 TYPED_TEST(BusRules, state_keeps_the_last_sample_and_commands_the_last_eight) {
