@@ -253,7 +253,7 @@ std::filesystem::path lock_file(int domain) {
 }  // namespace
 
 bool domain_is_held(int domain) {
-  const int fd = open(lock_file(domain).c_str(), O_RDWR | O_CLOEXEC);
+  const int fd = open(lock_file(domain).c_str(), O_RDONLY | O_CLOEXEC);  // it may be another user's
   if (fd < 0) return false;
   const bool held = flock(fd, LOCK_SH | LOCK_NB) != 0;
   close(fd);
@@ -262,7 +262,8 @@ bool domain_is_held(int domain) {
 
 DomainLock::DomainLock(int domain) {
   const std::filesystem::path file = lock_file(domain);
-  fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  fd_ = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd_ < 0) fd_ = open(file.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644);
   if (fd_ < 0) throw MissingError("cannot open " + file.string() + ": " + std::strerror(errno));
   if (flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     close(fd_);

@@ -186,5 +186,16 @@ TEST_F(LauncherTest, a_domain_is_held_by_one_system_at_a_time) {
   EXPECT_NO_THROW(DomainLock third(domain));
 }
 
+TEST_F(LauncherTest, a_domain_held_by_another_user_is_held) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become another user";
+  constexpr int domain = 228;
+  const DomainLock held(domain);
+  const pid_t child = fork();
+  if (child == 0) _exit(setuid(65534) == 0 && domain_is_held(domain) ? 0 : 1);
+  int status = 1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+}
+
 }  // namespace
 }  // namespace handsel
