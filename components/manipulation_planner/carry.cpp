@@ -201,11 +201,8 @@ Routine<Outcome> ManipulationPlanner::run_to_end(const TrajectoryCommand& comman
         return execution_->trajectory != id || (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
       },
       kForever);
-  if (execution_->trajectory != id) co_return Outcome::failure("the trajectory controller lost the trajectory");
-  if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
-  if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);
-  co_await waiting_.until([this] { return at_rest(); }, 1.0);
-  co_return Outcome{};
+  Outcome end = co_await end_motion(id);
+  co_return end;
 }
 
 }  // namespace handsel::manipulation_planner

@@ -420,21 +420,36 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
       blocked.end = MotionEnd::late;
     else if (too_near_)
       blocked.end = MotionEnd::person_too_near;
-    TrajectoryCommand stop;
-    stop.id = ++commands_;
-    stop.epoch = execution_->epoch;
-    stop.robot = robot_->name();
-    for (int tries = 0; tries < 5 && execution_->trajectory != stop.id; ++tries) {
-      out_->trajectories.push_back(stop);
-      co_await waiting_.pause(0.3);
-    }
+    co_await stop_motion();
     if (room_made) co_return Outcome{};
     co_return blocked;
   }
-  if (execution_->trajectory != running.command) co_return Outcome::failure("the trajectory controller lost the trajectory");
+  Outcome end = co_await end_motion(running.command);
+  co_return end;
+}
+
+Routine<Outcome> ManipulationPlanner::end_motion(std::uint64_t command) {
+  if (execution_->trajectory != command) {
+    if (active_.trajectory != 0) co_await stop_motion();
+    co_return Outcome::failure("the trajectory controller lost the trajectory");
+  }
   if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
   if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);
   co_await waiting_.until([this] { return at_rest(); }, 1.0);
+  co_return Outcome{};
+}
+
+Routine<Outcome> ManipulationPlanner::stop_motion() {
+  constexpr int kMaxTries = 5;
+  constexpr double kPause = 0.3;  // [s] between tries
+  TrajectoryCommand stop;
+  stop.id = ++commands_;
+  stop.epoch = execution_->epoch;
+  stop.robot = robot_->name();
+  for (int tries = 0; tries < kMaxTries && execution_->trajectory != stop.id; ++tries) {
+    out_->trajectories.push_back(stop);
+    co_await waiting_.pause(kPause);
+  }
   co_return Outcome{};
 }
 

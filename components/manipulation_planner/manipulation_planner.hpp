@@ -330,6 +330,11 @@ class ManipulationPlanner {
   Routine<PlannedPath> plan_path(const Vector& start, const Motion& motion);
   Routine<Outcome> move(const Motion& motion);
   Routine<Outcome> execute(const std::vector<Vector>& nodes, Motion& motion);
+  /// Returns how the motion of `command` ended; a motion of another command that still runs is
+  /// stopped first, or it would go on while the next one is planned.
+  Routine<Outcome> end_motion(std::uint64_t command);
+  /// Ends whatever motion runs.
+  Routine<Outcome> stop_motion();
   Routine<Outcome> send(const TrajectoryCommand& command);
   Routine<Outcome> go_on(Running& running, const Motion& motion);
   Routine<Outcome> go_over(Running& running, const Motion& motion, const Leave& leave, const std::shared_ptr<Ways>& ways,

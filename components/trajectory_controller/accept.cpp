@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kAtRest = 1e-6;
 constexpr std::size_t kMostWaiting = 8;
-constexpr double kRefusalTold = 0.2;  // [s] while something else runs
+constexpr double kRefusalTold = 0.2;  // [s] while another path runs or is to be rejoined
 
 }  // namespace
 
@@ -97,7 +97,8 @@ std::string Controller::why_not_from_rest(const TrajectoryCommand& command) cons
 std::string Controller::refuse(const TrajectoryCommand& command, const std::string& reason) {
   refused_ = true;
   refused_trajectory_ = command.id;
-  refused_for_ = arm_ == Arm::running ? static_cast<int>(kRefusalTold / settings_.period) : 0;
+  const bool path_goes_on = arm_ == Arm::running || rejoin_;
+  refused_for_ = path_goes_on ? static_cast<int>(kRefusalTold / settings_.period) : 0;
   refusal_ = "trajectory " + std::to_string(command.id) + ": " + reason;
   return reason;
 }

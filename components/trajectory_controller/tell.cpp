@@ -49,6 +49,7 @@ ExecutionStatus Controller::status() const {
           ": " + robot_->axes()[static_cast<std::size_t>(off_axis_)].name + " was " + std::to_string(off_by_) + " from its set-point";
     if (latched_cause_ == Cause::contact || latched_cause_ == Cause::clamped)
       s.reason += ": felt by " + robot_->axes()[static_cast<std::size_t>(contact_.axis())].name;
+    if (latched_cause_ == Cause::forecast_collision && forecast_.collides) s.reason += ": " + forecast_.reason;
     if (latched_cause_ == Cause::blind && (verdict_.causes & bit(Cause::blind)) != 0) s.reason += ": " + why_blind();
     if ((verdict_.causes & bit(Cause::awaits_person)) != 0 && !why_no_go().empty()) s.reason += ": " + why_no_go();
   } else if (const Cause cause = gravest(verdict_.causes); cause != Cause::none) {

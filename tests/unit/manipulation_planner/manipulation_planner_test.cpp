@@ -165,6 +165,25 @@ TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_wh
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
 }
 
+TEST(ManipulationPlanner, a_motion_reported_under_another_number_is_stopped_before_the_next_attempt) {
+  Rig rig;
+  rig.people.people.clear();
+  rig.scene.boxes.clear();
+  rig.scene.objects.clear();
+  rig.moves = true;
+  rig.q[rig.robot->require_group("arm").axes[0]] += 1.0;
+  rig.start(ActionKind::go_to);
+  while (rig.commands.empty()) rig.cycle();
+  for (int k = 0; k < 20; ++k) rig.cycle();
+  rig.execution.trajectory = 999;  // and the arm moves on
+  rig.execution.motion = MotionState::refused;
+  const std::size_t before = rig.commands.size();
+  rig.run(30);
+  ASSERT_GT(rig.commands.size(), before);
+  EXPECT_TRUE(rig.commands[before].axes.empty()) << "a stop, before anything else";
+  EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
+}
+
 TEST(ManipulationPlanner, says_what_stood_in_the_way_and_what_it_tried) {
   Rig rig;
   rig.failing_paths = 1000;

@@ -238,6 +238,38 @@ TEST(Controller, refused_in_motion_with_the_reason_and_the_running_one_goes_on) 
   EXPECT_TRUE(b.core.set_point().position.head(3).isApprox(goal(), 1e-9));
 }
 
+TEST(Controller, refused_beside_the_path_and_the_path_to_be_rejoined_is_shown_again) {
+  int tried = 0;
+  for (int cycles = 1; cycles < 800 && tried < 3; ++cycles) {
+    ControllerBench b;
+    b.start();
+    const TrajectoryCommand good = b.command(ControllerBench::arm(1.5, 0.5, -0.5), 1);
+    ASSERT_EQ(b.send(good), "");
+    b.run(b.settings.period * cycles);
+    const TrajectoryCommand in_motion = planned_for_a_switch(b, good, 0.5, goal(), 2);
+    b.forecast.trajectory = 1;
+    b.forecast.collides = true;
+    b.core.on(b.forecast, b.now);
+    b.run(1.5);
+    ASSERT_TRUE(b.at_rest());
+    const bool left = b.core.active().trajectory == 0;  // on the path the stop would have taken longer
+    if (!left) continue;
+    ++tried;
+    EXPECT_THAT(b.send(in_motion, 0, 0.5), HasSubstr("does not start at rest"));
+    EXPECT_EQ(b.core.status().motion, MotionState::refused);
+    b.forecast.collides = false;
+    ++b.go.epoch;
+    b.run(0.5);
+    EXPECT_EQ(b.core.active().trajectory, 1u);
+    EXPECT_EQ(b.core.status().trajectory, 1u) << "the arm moves, and the refusal is still shown";
+    EXPECT_EQ(b.core.status().motion, MotionState::running);
+    b.run(6);
+    EXPECT_EQ(b.core.status().motion, MotionState::finished);
+    expect_smooth(b);
+  }
+  EXPECT_GT(tried, 0) << "no stop led off the path";
+}
+
 TEST(Controller, a_connecting_motion_never_leaves_the_bounds_of_an_axis) {
   ControllerBench b;
   b.start();
