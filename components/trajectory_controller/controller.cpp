@@ -92,7 +92,7 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   effort_ = Vector::Zero(n);
   next_ = set_point_;
   finger_speeds_ = full_velocity_ = full_acceleration_ = posture_ = Vector::Zero(n);
-  yield_from_ = away_ = Vector::Zero(n);
+  yield_from_ = away_ = measured_before_ = adopted_ = Vector::Zero(n);
   robot_->forward(posture_, links_);
   link_twists(*robot_, full_velocity_, links_, twists_);
 }
@@ -503,40 +503,53 @@ bool Controller::moves_nothing() const noexcept {
 void Controller::resync(TimePoint now) noexcept {
   using State = RobotReference::State;
   const bool stale = robot_seen_.age(now) > settings_.timeouts.robot_state;
-  if (stale) reference_.forget();
+  if (stale) reference_.set_stale();
   const bool due = cycles_ % RobotReference::kInterval == 0 && !stale;
   if (due) reference_.update(state_, set_point_.position, follows());
   const bool wanted = settings_.dry_run || apart();
-  if (!wanted) adopted_ = false;
+  if (!wanted) has_adopted_ = false;
   if (!wanted || !due || arm_ != Arm::standing || !at_rest()) return;
   // A robot side whose drives are enabled moves its reference to set-points that rest. Set-points
   // that rest at the reference move nothing; they stay while the reference moves. Where the
   // reference is not known, or follows under a fault, set-points are taken once to the posture the
   // robot came to rest in: if they followed a sagging arm or a bent finger, the robot would creep.
-  constexpr double kRests = 0.05, kDeadBand = 0.002, kExact = 1e-12;  // [rad/s], [rad], [rad]
+  constexpr double kRests = 0.05, kExact = 1e-12;     // [rad/s], [rad]
+  constexpr double kStill = 5e-4, kDeadBand = 0.002;  // [rad] between two evaluations; from the target
   const bool joins = state_.mode == DriveMode::enabled && !settings_.dry_run;
-  const bool has_velocity = state_.velocity.size() == state_.position.size();
-  const auto rests = [&](int axis) { return !has_velocity || std::abs(state_.velocity[axis]) < kRests; };
-  const auto reached = [&](int axis) {
-    const double target = movers_[static_cast<std::size_t>(axis)].target();
-    return std::abs(inside(axis, state_.position[axis]) - target) <= kDeadBand;
-  };
-  const bool may_adopt = joins && std::all_of(arm_axes_.begin(), arm_axes_.end(), rests);
-  adopted_ = may_adopt && (adopted_ || std::all_of(arm_axes_.begin(), arm_axes_.end(), reached));
-  const double dead_band = adopted_ ? RobotReference::kBent : kDeadBand;
   const bool at_reference = moves_nothing();
-  const auto go_there = [&](int axis) {
+  const bool has_velocity = state_.velocity.size() == state_.position.size();
+  const auto rests = [&](int axis) {
+    const bool still = std::abs(state_.position[axis] - measured_before_[axis]) < kStill;
+    return still && (!has_velocity || std::abs(state_.velocity[axis]) < kRests);
+  };
+  const auto far = [&](int axis) { return std::abs(state_.position[axis] - adopted_[axis]) > RobotReference::kBent; };
+  const bool arm_rests = std::all_of(arm_axes_.begin(), arm_axes_.end(), rests);
+  measured_before_ = state_.position;
+  const bool adopts = !has_adopted_ || std::any_of(arm_axes_.begin(), arm_axes_.end(), far);
+  if (joins && !at_reference && adopts && arm_rests && reference_.state() != State::moving) {
+    adopted_ = state_.position;
+    has_adopted_ = true;
+  }
+  const auto go_there = [&](int axis, double position, double dead_band) {
     AxisMover& mover = movers_[static_cast<std::size_t>(axis)];
-    const double target = inside(axis, at_reference ? state_.reference.position[axis] : state_.position[axis]);
-    if (std::abs(target - mover.target()) > (at_reference ? kExact : dead_band))
+    const double target = inside(axis, position);
+    if (std::abs(target - mover.target()) > dead_band)
       mover.go_to(target, limits_of(robot_->comfort_limits(), axis), limits_of(robot_->stop_limits(), axis));
   };
+  const auto resync_axis = [&](int axis) {
+    if (at_reference)
+      go_there(axis, state_.reference.position[axis], kExact);
+    else if (!joins)
+      go_there(axis, state_.position[axis], kDeadBand);
+    else if (has_adopted_)
+      go_there(axis, adopted_[axis], kExact);
+  };
   if (settings_.dry_run || reference_.state() != State::moving) {
-    for (int axis : arm_axes_) go_there(axis);
-    for (int axis : head_axes_) go_there(axis);
+    for (int axis : arm_axes_) resync_axis(axis);
+    for (int axis : head_axes_) resync_axis(axis);
   }
   // The fingers stay where they came to rest: what they hold bends them, and a person who holds it too moves them all the time.
-  for (Hand& hand : hands_) hand.executor.follow(state_.position, joins ? settings_.hand_rejoin : dead_band);
+  for (Hand& hand : hands_) hand.executor.follow(state_.position, joins ? settings_.hand_rejoin : kDeadBand);
 }
 
 AxisState Controller::sent(int axis) const noexcept {

@@ -258,7 +258,10 @@ class Controller {
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};
 
   // What is sent.
-  bool adopted_{};  // the measured configuration, since the robot side last followed
+  // Measured configuration that set-points were taken to since the robot side last followed;
+  // the measured one at the last evaluation of the reference. All axes [rad, m].
+  Vector adopted_, measured_before_;
+  bool has_adopted_{};
   bool ready_{}, asleep_{};
   TimePoint last_step_{TimePoint::max()};
   MotionState3 set_point_, next_;

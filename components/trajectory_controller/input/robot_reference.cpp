@@ -20,7 +20,11 @@ bool RobotReference::reported(const RobotState& state) const noexcept {
 
 void RobotReference::update(const RobotState& state, const Vector& set_point, bool follows) noexcept {
   constexpr double kApart = 0.01;  // [rad] no lag of a robot side that follows is as large at rest
-  if (!reported(state)) return forget();
+  stale_ = false;
+  if (!reported(state)) {
+    state_ = State::unknown;
+    return;
+  }
   const bool rests = seen_ == state.reference.position;
   seen_ = state.reference.position;
   if (!rests)

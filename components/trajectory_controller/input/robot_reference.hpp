@@ -25,10 +25,11 @@ class RobotReference {
 
   /// Evaluates the newest state, every `kInterval` cycles. `follows`: the robot side says so.
   void update(const RobotState& state, const Vector& set_point, bool follows) noexcept;
-  /// Forgets what was seen: the newest state is too old.
-  void forget() noexcept { state_ = State::unknown; }
+  /// Notes that the newest state is too old: unknown until the next evaluation. A reference that
+  /// is where it was before the gap counts as before.
+  void set_stale() noexcept { stale_ = true; }
   /// Result of the last evaluation.
-  State state() const noexcept { return state_; }
+  State state() const noexcept { return stale_ ? State::unknown : state_; }
   /// Returns whether the reference is reported and the measured arm may rest there.
   bool reported(const RobotState& state) const noexcept;
 
@@ -41,6 +42,7 @@ class RobotReference {
   std::vector<int> axes_;
   Vector seen_;
   State state_{State::unknown};
+  bool stale_{};
 };
 
 }  // namespace handsel::trajectory_controller

@@ -137,6 +137,41 @@ TEST(Overload, a_sagging_arm_that_has_stopped_without_saying_so_stays_where_it_i
   }
 }
 
+TEST(Overload, a_sagging_arm_stays_where_it_is_though_its_state_was_late_for_a_while) {
+  Loop l;
+  l.bend.head(3) = Vector3(0.004, -0.003, 0.003);
+  l.run(0.3);
+  ASSERT_EQ(l.bench.go_to(goal(), 1), "");
+  l.run(0.4);
+  l.side.stop(DriveMode::enabled);
+  for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
+  ASSERT_EQ(l.bench.core.mode(), Mode::fault);
+  l.run(2.0);
+  for (int gap = 0; gap < 4; ++gap) {
+    l.bench.robot_speaks = false;
+    l.run(3 * l.bench.settings.timeouts.robot_state);
+    l.bench.robot_speaks = true;
+    EXPECT_LT(l.creeps(1.0), 1e-9) << "gap " << gap;
+  }
+}
+
+TEST(Overload, a_sagging_arm_that_follows_under_a_fault_moves_at_most_once_by_its_sag) {
+  for (const double sag : {0.004, 0.03}) {
+    Loop l;
+    l.run(0.3);
+    ASSERT_EQ(l.bench.go_to(goal(), 1), "");
+    l.run(0.8);
+    l.bend[0] = -0.4;  // something holds the arm
+    for (int i = 0; i < 100 && l.bench.core.mode() != Mode::fault; ++i) l.run(0.05);
+    ASSERT_EQ(l.bench.core.mode(), Mode::fault);
+    l.bend[0] = -sag;  // and lets it go
+    l.run(1.0);
+    EXPECT_LT(l.creeps(4.0), 1.1 * sag) << "sag " << sag;
+    l.run(1.0);
+    EXPECT_LT(l.creeps(4.0), 1e-9) << "sag " << sag;
+  }
+}
+
 TEST(Overload, a_controller_that_is_started_anew_keeps_the_grip_and_allows_for_the_load) {
   ControllerBench bench;
   const int n = bench.robot->dof();
