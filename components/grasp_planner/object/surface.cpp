@@ -1,5 +1,4 @@
 #include "components/grasp_planner/object/surface.hpp"
-#include "components/grasp_planner/object/placement.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,8 @@
 #include <random>
 #include <set>
 #include <unordered_map>
+
+#include "common/geometry/placement.hpp"
 
 namespace handsel::grasp_planner {
 namespace {

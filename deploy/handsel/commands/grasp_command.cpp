@@ -7,8 +7,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "common/geometry/placement.hpp"
 #include "components/grasp_planner/list/epsilon.hpp"
-#include "components/grasp_planner/object/placement.hpp"
 #include "deploy/handsel/cli/above_zero.hpp"
 #include "deploy/handsel/cli/json_lines.hpp"
 #include "deploy/handsel/cli/terminal.hpp"

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "common/config/resources.hpp"
+#include "common/geometry/placement.hpp"
 #include "common/model/human/human_body.hpp"
-#include "components/grasp_planner/object/placement.hpp"
 
 namespace handsel {
 

@@ -1,4 +1,4 @@
-#include "components/grasp_planner/object/placement.hpp"
+#include "common/geometry/placement.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include <LinearMath/btConvexHullComputer.h>
 
-namespace handsel::grasp_planner {
+namespace handsel {
 namespace {
 
 constexpr double kSameNormal = 0.99985;  // cosine of a degree
@@ -93,7 +93,7 @@ MassProperties mass_properties(const TriangleMesh& mesh) {
   return out;
 }
 
-std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3& com, double least_tipping) {
+std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3& com, double min_tipping) {
   std::vector<Placement> out;
   std::vector<Face> faces = hull_faces(mesh);
   std::vector<bool> taken(faces.size(), false);
@@ -118,7 +118,7 @@ std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3
       placement.margin = std::min(placement.margin, along.x() * -a.y() - along.y() * -a.x());
     }
     placement.tipping = std::atan2(placement.margin, placement.height);
-    if (!(placement.tipping >= least_tipping)) continue;
+    if (!(placement.tipping >= min_tipping)) continue;
     placement.T_support_object.linear() = R;
     placement.T_support_object.translation() = Vector3(0, 0, placement.height) - R * com;
     out.push_back(placement);
@@ -127,4 +127,4 @@ std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3
   return out;
 }
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel

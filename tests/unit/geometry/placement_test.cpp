@@ -1,4 +1,4 @@
-#include "components/grasp_planner/object/placement.hpp"
+#include "common/geometry/placement.hpp"
 
 #include <cmath>
 #include <random>
@@ -7,7 +7,7 @@
 
 #include "common/model/object_model.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel {
 namespace {
 
 TriangleMesh box(const Vector3& size, const Vector3& at = Vector3::Zero()) {
@@ -105,4 +105,4 @@ TEST(Placements, the_mug_stands_upright) {
 }
 
 }  // namespace
-}  // namespace handsel::grasp_planner
+}  // namespace handsel

@@ -5,7 +5,7 @@
 
 #include "common/geometry/shape.hpp"
 
-namespace handsel::grasp_planner {
+namespace handsel {
 
 /// Of a closed surface filled evenly.
 struct MassProperties {
@@ -27,9 +27,9 @@ struct Placement {
   double area{};     ///< of the face [m^2]
 };
 
-/// Hardest to tip over first; at most one for each face, those that tip below `least_tipping` [rad]
+/// Hardest to tip over first; at most one for each face, those that tip below `min_tipping` [rad]
 /// left out. Faces whose normals differ by less than a degree are one. Empty for meshes without
 /// volume.
-std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3& com, double least_tipping = 0.1);
+std::vector<Placement> stable_placements(const TriangleMesh& mesh, const Vector3& com, double min_tipping = 0.1);
 
-}  // namespace handsel::grasp_planner
+}  // namespace handsel
