@@ -48,7 +48,7 @@ double Controller::held_payload() const noexcept {
 void Controller::prove_stop(TimePoint now) noexcept {
   if (unproven_shown_ > 0) --unproven_shown_;
   const double age = std::max(0.0, human_seen_.age(now));
-  const bool proven = proof_.check(next_, crowd_, state_.T_world_base, age, held_payload());
+  const bool proven = proof_.check(next_, person_capsules_, state_.T_world_base, age, held_payload());
   if (proven || moves_nothing()) return;
   ++unproven_;
   rejoins_in_vain_ = unproven_shown_ > 0 ? rejoins_in_vain_ + (arm_ == Arm::running ? 1 : 0) : 0;

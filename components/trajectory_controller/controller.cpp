@@ -143,7 +143,7 @@ void Controller::on(const HumanState& people, TimePoint sampled) {
     const Vector3 &torso = p.joints[body::torso].position, &left = p.joints[body::l_hand].position;
     points_.push_back({p.id, torso, left, p.joints[body::r_hand].position});
   }
-  refresh_crowd();
+  refresh_capsules();
 }
 
 Exception Controller::exception() const {
@@ -152,7 +152,7 @@ Exception Controller::exception() const {
   return e;
 }
 
-void Controller::refresh_crowd() { prepare(people_, exception(), settings_.guard.unknown_after, crowd_); }
+void Controller::refresh_capsules() { prepare(people_, exception(), settings_.guard.unknown_after, person_capsules_); }
 
 void Controller::on(const ActionStatus& action, TimePoint) {
   action_ = action;
@@ -161,7 +161,7 @@ void Controller::on(const ActionStatus& action, TimePoint) {
   if (person.empty() && people_.people.size() == 1) person = people_.people.front().id;
   if (person == exchanging_) return;
   exchanging_ = person;
-  refresh_crowd();
+  refresh_capsules();
 }
 
 void Controller::on(const Go& go, TimePoint sampled) {
@@ -294,7 +294,7 @@ ModeInputs Controller::mode_inputs(TimePoint now, bool late) noexcept {
   in.separation_stop = too_near_for_ > settings_.guard.stop_persistence;
   in.contact_stop = touch_ != Contact::none && !in.at_rest && !yielding_;  // at rest a short push does no harm
   in.clamped = touch_ == Contact::clamped;
-  in.human_unknown = human_seen_.ever && !crowd_.covered;
+  in.human_unknown = human_seen_.ever && !person_capsules_.covered;
   in.attention_slow = in.running && advice_seen_.ever && advice_.speed_factor < 0.999;
   in.cost_slow = in.running && cost_share() < 0.999;
   in.stop_unproven = unproven_shown_ > 0;
@@ -432,7 +432,7 @@ void Controller::limit_fingers(TimePoint now) noexcept {
   constexpr int kEvery = 10;  // cycles
   if (cycles_ % kEvery != 0) return;
   const double age = std::max(0.0, human_seen_.age(now));
-  const double limit = finger_limit_.factor(set_point_.position, state_.T_world_base, age, held_payload(), crowd_);
+  const double limit = finger_limit_.factor(set_point_.position, state_.T_world_base, age, held_payload(), person_capsules_);
   for (Hand& hand : hands_) hand.executor.limit_speed(limit);
 }
 

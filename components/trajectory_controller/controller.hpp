@@ -231,7 +231,7 @@ class Controller {
   bool at_rest() const noexcept { return set_point_.velocity.isZero(0.0) && set_point_.acceleration.isZero(0.0); }
   void write(int axis, const AxisState& s) noexcept;
   void resync(TimePoint now) noexcept;
-  void refresh_crowd();
+  void refresh_capsules();
   Exception exception() const;
 
   ControllerSettings settings_;
@@ -252,7 +252,7 @@ class Controller {
   ActionStatus action_;
   Seen robot_seen_, human_seen_, go_seen_, forecast_seen_, advice_seen_;
   bool new_state_{};
-  Crowd crowd_;
+  PersonCapsules person_capsules_;
   std::vector<PersonPoints> points_;
   std::string exchanging_;  // person exempt from separation (forearms, hands), until clear
   Vector3 gaze_aimed_{Vector3::Constant(1e9)};

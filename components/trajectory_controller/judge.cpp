@@ -20,7 +20,7 @@ void Controller::run_guard(TimePoint now) noexcept {
           std::abs(set_point_.velocity[axis]) + settings_.proof.robot_side_delay * std::abs(set_point_.acceleration[axis]);
   if (arm_ != Arm::running || runner_.finished()) {
     verdict_now_ = verdict_near_ = verdict_far_ = {};
-    verdict_now_.uncovered = human_seen_.ever && !crowd_.covered;
+    verdict_now_.uncovered = human_seen_.ever && !person_capsules_.covered;
     // At rest only the distance and the end of an exchange are of interest, and whether it may draw back.
     if (cycles_ % (retreating_ ? kYieldEvery : 50) != 0) {
       guard_verdict_ = verdict_now_;
@@ -46,7 +46,7 @@ void Controller::run_guard(TimePoint now) noexcept {
   retreat_share_ = guard_verdict_.forward;
   if (here && verdict_now_.exchange_clear && !action_.exchange_engaged && !exchanging_.empty()) {
     exchanging_.clear();
-    for (CrowdCapsule& capsule : crowd_.capsules) capsule.excepted = false;
+    for (PersonCapsule& capsule : person_capsules_.capsules) capsule.excepted = false;
   }
 }
 
@@ -90,17 +90,17 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
   const PathMotion motion{&full_velocity_, &full_acceleration_, &links_, &twists_};
   const StopTable stop = stop_table(motion, robot_->stop_limits());
   const double age = std::max(0.0, human_seen_.age(now));
-  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, stop, crowd_, settings_.walls, age, speed_factor());
+  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, stop, person_capsules_, settings_.walls, age, speed_factor());
   const ReachQuery query{posture_, full_velocity_, set_point_.acceleration, finger_speeds_, stop, state_.T_world_base, onward_ease(),
                          age,      held_payload()};
-  const double forward = reach_limit_.factor(query, crowd_, false);
+  const double forward = reach_limit_.factor(query, person_capsules_, false);
   verdict.separation = verdict.separation || forward < verdict.forward;
   verdict.forward = std::min(verdict.forward, forward);
   // Where the path is now is in the stop of the set-point itself.
   const bool leads_on = arm_ == Arm::running && ahead > 0.0;
   verdict.view = leads_on ? stop_space_.factor(posture_, full_velocity_, state_.T_world_base, age) : 1.0;
   if (advice_.speed_factor < 0.0 || speed_factor() < 0.0)
-    verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, crowd_, true));
+    verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, person_capsules_, true));
 }
 
 /// In which the stop limits take away the acceleration that still makes the arm faster [s].

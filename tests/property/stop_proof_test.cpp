@@ -23,7 +23,7 @@ int number(const char* variable, int otherwise) {
 
 /// The part moves with a random acceleration at each instant, its speed and acceleration bounded.
 struct Wanderer {
-  CrowdCapsule part;
+  PersonCapsule part;
   RegionMotion bounds;
   Vector3 velocity{Vector3::Zero()}, offset{Vector3::Zero()};
   void step(double dt, const Vector3& wish) {
@@ -87,7 +87,7 @@ TEST_F(StopProofStories, whoever_touches_a_stopping_arm_touches_it_at_rest_or_wi
     person.part.joints = 1;
     person.part.velocities[0] = person.velocity;
     person.part.measured = true;
-    Crowd people;
+    PersonCapsules people;
     people.capsules = {person.part};
     people.revision = static_cast<std::uint64_t>(done) + 1;
     const double age = 0.05 * unit(random);
@@ -159,8 +159,8 @@ TEST_F(StopProofStories, a_fast_arm_beside_a_head_is_refused_and_a_slow_one_is_n
   MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
   std::vector<Pose> links;
   robot_.forward(state.position, links);
-  Crowd people;
-  CrowdCapsule head{};
+  PersonCapsules people;
+  PersonCapsule head{};
   const Vector3 beside = links[static_cast<std::size_t>(robot_.tool_link())].translation() + Vector3(0.35, 0, 0);
   head.a = beside;
   head.b = beside;
@@ -183,12 +183,12 @@ TEST_F(StopProofStories, a_turning_head_takes_nothing_from_the_speed_of_the_arm)
   MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
   std::vector<Pose> links;
   robot_.forward(state.position, links);
-  CrowdCapsule face{};
+  PersonCapsule face{};
   face.a = face.b = face.centre = links[static_cast<std::size_t>(robot_.tool_link())].translation() + Vector3(0.6, 0, 0);
   face.radius = face.reach = 0.12;
   face.region = BodyRegion::head;
   face.measured = true;
-  Crowd people;
+  PersonCapsules people;
   people.capsules.push_back(face);
   const int shoulder = robot_.require_group("arm").axes.front();
   const auto fastest = [&] {

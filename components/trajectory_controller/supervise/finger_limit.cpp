@@ -24,7 +24,8 @@ FingerLimit::FingerLimit(const StopProof& proof, const RobotModel& robot)
       }
 }
 
-double FingerLimit::factor(const Vector& position, const Pose& T_world_base, double age, double payload, const Crowd& people) noexcept {
+double FingerLimit::factor(const Vector& position, const Pose& T_world_base, double age, double payload,
+                           const PersonCapsules& people) noexcept {
   const StopProofSettings& s = proof_.settings();
   double limit = 1.0;
   if (!s.enabled || people.capsules.empty() || stop_time_ == 0.0) return limit;
@@ -35,7 +36,7 @@ double FingerLimit::factor(const Vector& position, const Pose& T_world_base, dou
     const double speed = hand.inner_bound(comfort_speeds_);
     const FrameMotion& frame = motions_[static_cast<std::size_t>(hand.frame)];
     const Vector3 a = T_world_base * (frame.p + frame.R * hand.a), b = T_world_base * (frame.p + frame.R * hand.b);
-    for (const CrowdCapsule& part : people.capsules) {
+    for (const PersonCapsule& part : people.capsules) {
       const double fits =
           s.finger_ratio * proof_.max_speed_at(part.region, payload) / (proof_.finger_ratio_at(part.region, payload) * speed);
       if (fits >= limit) continue;

@@ -14,11 +14,11 @@ constexpr double kAway = 0.5;       // likewise
 constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not closing
 
 /// No direction gives more.
-double fastest(const CrowdCapsule& c, const GuardSettings& s) noexcept {
+double fastest(const PersonCapsule& c, const GuardSettings& s) noexcept {
   return c.joints == 0 ? s.speed_unknown : std::clamp(c.fastest + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
-double directed_speed(const CrowdCapsule& c, const Vector3& toward_robot, const GuardSettings& s) noexcept {
+double directed_speed(const PersonCapsule& c, const Vector3& toward_robot, const GuardSettings& s) noexcept {
   if (c.joints == 0) return s.speed_unknown;
   double v = -s.speed_max;
   for (int j = 0; j < c.joints; ++j) v = std::max(v, c.velocities[static_cast<std::size_t>(j)].dot(toward_robot));
@@ -34,7 +34,8 @@ double reference_speed(double separation, double v_h, double reaction, double de
 }
 
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const StopTable& stop, const Crowd& crowd, const std::vector<Wall>& walls, double age, double factor) noexcept {
+                   const StopTable& stop, const PersonCapsules& people, const std::vector<Wall>& walls, double age,
+                   double factor) noexcept {
   GuardVerdict verdict;
   double forward = 1.0, backward = 1.0;
 
@@ -61,7 +62,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
   const int present = std::clamp(static_cast<int>(std::ceil(std::abs(factor) * kStopGrid - 1e-9)), 0, kStopGrid);
   int high = kStopGrid;  // of the factors still in question
   double quickest_person = 0.0, oldest = 0.0;
-  for (const CrowdCapsule& part : crowd.capsules) {
+  for (const PersonCapsule& part : people.capsules) {
     quickest_person = std::max(quickest_person, fastest(part, settings));
     oldest = std::max(oldest, part.age);
   }
@@ -72,7 +73,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
     const double quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
     const double farthest =
         std::max(settings.exchange_range, needed(quickest_person, quickest, high, reaction + oldest, margin)) + reach;  // that may matter
-    for (const CrowdCapsule& part : crowd.capsules) {
+    for (const PersonCapsule& part : people.capsules) {
       // What is farther than this changes nothing: rough first, then exactly.
       const double apart2 = (part.centre - centre).squaredNorm(), far = std::max(farthest, verdict.distance + reach) + part.reach;
       if (apart2 > far * far) continue;
@@ -131,7 +132,7 @@ GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>
       }
     }
   }
-  if (!crowd.covered) {
+  if (!people.covered) {
     verdict.uncovered = true;
     forward = std::min(forward, settings.uncovered_factor);
     backward = std::min(backward, settings.uncovered_factor);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/trajectory/trajectory.hpp"
-#include "components/trajectory_controller/input/crowd.hpp"
+#include "components/trajectory_controller/input/person_capsules.hpp"
 #include "components/trajectory_controller/supervise/path_motion.hpp"
 
 namespace handsel::trajectory_controller {
@@ -56,7 +56,7 @@ struct GuardVerdict {
 /// `stop`: of `motion`. `factor`: speed factor in force. `age`: of the human data [s]. Allocates
 /// nothing.
 GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const StopTable& stop, const Crowd& crowd, const std::vector<Wall>& walls, double age, double factor) noexcept;
+                   const StopTable& stop, const PersonCapsules& people, const std::vector<Wall>& walls, double age, double factor) noexcept;
 
 /// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not
 /// the rule used [m/s].

@@ -34,7 +34,7 @@ ReachLimit::ReachLimit(const StopProof& proof)
       gain_(Vector::Zero(static_cast<Eigen::Index>(proof.chain().sliding().size()))),
       finger_speeds_(proof.chain().sliding().size()) {}
 
-double ReachLimit::factor(const ReachQuery& query, const Crowd& people, bool backward) noexcept {
+double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people, bool backward) noexcept {
   const StopProofSettings& s = proof_.settings();
   if (!s.enabled || people.capsules.empty()) return 1.0;
   const StopTable& stop = query.stop;
@@ -68,7 +68,7 @@ double ReachLimit::factor(const ReachQuery& query, const Crowd& people, bool bac
     const double size = 0.5 * (b - a).norm() + link.radius;
     const double travel = (limit * speed + inner) * (reaction + 0.5 * stop.time[kStopGrid]) + margin + size;
     for (std::size_t p = 0; p < reach.count; ++p) {
-      const CrowdCapsule& part = people.capsules[p];
+      const PersonCapsule& part = people.capsules[p];
       const double rough = travel + part.reach + reach.distance[p];
       if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       const auto region = static_cast<std::size_t>(part.region);

@@ -34,7 +34,7 @@ class ReachLimit {
   /// Returns the largest speed factor in [0, 1] at which each link is slow enough for a contact
   /// with each part of a person before that part can be there, moving as StopProofSettings::people
   /// allow. `backward`: the path is run back.
-  double factor(const ReachQuery& query, const Crowd& people, bool backward) noexcept;
+  double factor(const ReachQuery& query, const PersonCapsules& people, bool backward) noexcept;
 
  private:
   const StopProof& proof_;

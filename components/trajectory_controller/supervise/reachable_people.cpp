@@ -12,14 +12,14 @@ double reach_after(double time, double speed, const RegionMotion& bounds) noexce
   return (speed + 0.5 * bounds.acceleration * until_fastest) * until_fastest + bounds.speed * (time - until_fastest);
 }
 
-double start_speed(const CrowdCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept {
+double start_speed(const PersonCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept {
   return part.measured ? part.fastest + uncertainty : std::max(part.fastest, bounds.speed);
 }
 
-void reach_of_parts(const Crowd& people, double time, double uncertainty, const RegionMotions& bounds, PartReaches& out) noexcept {
+void reach_of_parts(const PersonCapsules& people, double time, double uncertainty, const RegionMotions& bounds, PartReaches& out) noexcept {
   out.count = std::min(people.capsules.size(), out.distance.size());
   for (std::size_t p = 0; p < out.count; ++p) {
-    const CrowdCapsule& part = people.capsules[p];
+    const PersonCapsule& part = people.capsules[p];
     const RegionMotion& region = bounds[static_cast<std::size_t>(part.region)];
     out.distance[p] = reach_after(time + part.age, start_speed(part, uncertainty, region), region);
   }

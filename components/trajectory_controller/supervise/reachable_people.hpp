@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "components/trajectory_controller/input/crowd.hpp"
+#include "components/trajectory_controller/input/person_capsules.hpp"
 #include "components/trajectory_controller/supervise/contact_budget.hpp"
 
 namespace handsel::trajectory_controller {
@@ -22,16 +22,16 @@ double reach_after(double time, double speed, const RegionMotion& bounds) noexce
 
 /// Returns the speed from which a part starts: as measured with `uncertainty` [m/s] added, or the
 /// largest of its region when it was not measured just now [m/s].
-double start_speed(const CrowdCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept;
+double start_speed(const PersonCapsule& part, double uncertainty, const RegionMotion& bounds) noexcept;
 
 /// How far each part of everybody can be from where it was measured. HumanState carries at most 16
 /// people.
 struct PartReaches {
   std::array<double, 16 * kBodyCapsules> distance;  ///< [m], the first `count`
-  std::size_t count{};                              ///< number of capsules in Crowd
+  std::size_t count{};                              ///< number of capsules in PersonCapsules
 };
 
 /// Computes the reaches `time` [s] after now. Allocates nothing.
-void reach_of_parts(const Crowd& people, double time, double uncertainty, const RegionMotions& bounds, PartReaches& out) noexcept;
+void reach_of_parts(const PersonCapsules& people, double time, double uncertainty, const RegionMotions& bounds, PartReaches& out) noexcept;
 
 }  // namespace handsel::trajectory_controller

@@ -274,7 +274,7 @@ bool StopProof::far_from_everybody(const MotionState3& state, double duration) n
 
 /// Collects the links and parts that could touch faster than allowed, and measures the room of every capsule; false when there are too many
 /// to check.
-bool StopProof::find_pairs(const Crowd& people, const Pose& T_world_base, double duration) noexcept {
+bool StopProof::find_pairs(const PersonCapsules& people, const Pose& T_world_base, double duration) noexcept {
   pairs_.clear();
   std::fill(paired_.begin(), paired_.end(), 0);
   std::fill(needed_frames_.begin(), needed_frames_.end(), 0);
@@ -283,7 +283,7 @@ bool StopProof::find_pairs(const Crowd& people, const Pose& T_world_base, double
   reach_of_parts(people, duration, settings_.speed_error, settings_.people, reach);
   max_person_speed_ = 0.0;
   for (const RegionMotion& region : settings_.people) max_person_speed_ = std::max(max_person_speed_, region.speed);
-  for (const CrowdCapsule& part : people.capsules) max_person_speed_ = std::max(max_person_speed_, part.fastest + settings_.speed_error);
+  for (const PersonCapsule& part : people.capsules) max_person_speed_ = std::max(max_person_speed_, part.fastest + settings_.speed_error);
   for (std::size_t c = 0; c < paired_.size(); ++c) {
     const ChainCapsule& capsule = chain_.capsules()[c];
     const Sample at = placed(capsule, T_world_base);
@@ -291,7 +291,7 @@ bool StopProof::find_pairs(const Crowd& people, const Pose& T_world_base, double
     const double size = 0.5 * (at.b - at.a).norm() + capsule.radius, travel = max_travel_[c];
     double room = std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < reach.count; ++p) {
-      const CrowdCapsule& part = people.capsules[p];
+      const PersonCapsule& part = people.capsules[p];
       const double reached = margin + reach.distance[p];
       const double free = (part.centre - centre).norm() - reached - size - part.reach;
       room = std::min(room, free);
@@ -314,7 +314,8 @@ bool StopProof::find_pairs(const Crowd& people, const Pose& T_world_base, double
 /// Samples both until everything in a pair is at rest. Between two samples a link moves no faster than the faster of them, but for how much
 /// speeds and levers may bend within the interval; nor faster than the largest speeds of its axes there at their levers, which says more
 /// where axes come to rest.
-bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd& people, const Pose& T_world_base, double age) noexcept {
+bool StopProof::check_stop(const Stop& stop, const Vector& position, const PersonCapsules& people, const Pose& T_world_base,
+                           double age) noexcept {
   const double until_rest = time_until_rest(stop);
   if (until_rest == 0.0) return true;
   const double interval = until_rest / kIntervals;
@@ -344,7 +345,7 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
       inner_bend =
           link.inner_bound(jerk_) * interval * interval / 8.0 + link.inner_bound(speed_) * (turning + inner_turning) * interval / 2.0;
     }
-    const CrowdCapsule& part = people.capsules[pair.part];
+    const PersonCapsule& part = people.capsules[pair.part];
     const auto region = static_cast<std::size_t>(part.region);
     const RegionMotion& bounds = settings_.people[region];
     const double from = start_speed(part, settings_.speed_error, bounds);
@@ -378,7 +379,8 @@ bool StopProof::check_stop(const Stop& stop, const Vector& position, const Crowd
   return true;
 }
 
-bool StopProof::check(const MotionState3& state, const Crowd& people, const Pose& T_world_base, double age, double payload) noexcept {
+bool StopProof::check(const MotionState3& state, const PersonCapsules& people, const Pose& T_world_base, double age,
+                      double payload) noexcept {
   plan(state, 0.0, at_once_);
   if (at_once_.count == 0) return true;
   plan(state, settings_.robot_side_delay, robot_side_);

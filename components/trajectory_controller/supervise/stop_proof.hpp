@@ -15,7 +15,7 @@
 
 #include "common/model/robot_capsules.hpp"
 #include "common/trajectory/min_time.hpp"
-#include "components/trajectory_controller/input/crowd.hpp"
+#include "components/trajectory_controller/input/person_capsules.hpp"
 #include "components/trajectory_controller/supervise/contact_budget.hpp"
 #include "components/trajectory_controller/supervise/moving_chain.hpp"
 #include "components/trajectory_controller/supervise/reachable_people.hpp"
@@ -74,7 +74,7 @@ class StopProof {
 
   /// Returns whether both stops from `state` (all axes) are harmless to `people`, whose data are
   /// `age` old [s]. `payload`: mass held [kg].
-  bool check(const MotionState3& state, const Crowd& people, const Pose& T_world_base, double age, double payload) noexcept;
+  bool check(const MotionState3& state, const PersonCapsules& people, const Pose& T_world_base, double age, double payload) noexcept;
   /// Reason of the last check that failed.
   const StopRefutation& refutation() const noexcept { return refutation_; }
   /// Kinematics that the proof uses, for the indices of capsules.
@@ -140,10 +140,10 @@ class StopProof {
   bool ends_inside(int axis, double start, double end) const noexcept;
   void bound_motion() noexcept;
   bool far_from_everybody(const MotionState3& state, double duration) noexcept;
-  bool find_pairs(const Crowd& people, const Pose& T_world_base, double duration) noexcept;
+  bool find_pairs(const PersonCapsules& people, const Pose& T_world_base, double duration) noexcept;
   void set_speeds(const ChainCapsule& capsule, Sample& sample) const noexcept;
   double contact_speed(double carried, double inner, std::size_t region) const noexcept;
-  bool check_stop(const Stop& stop, const Vector& position, const Crowd& people, const Pose& T_world_base, double age) noexcept;
+  bool check_stop(const Stop& stop, const Vector& position, const PersonCapsules& people, const Pose& T_world_base, double age) noexcept;
   void sample(const Stop& stop, double time, const Pose& T_world_base, int slot) noexcept;
   double time_until_rest(const Stop& stop) noexcept;
   const std::vector<double>& speeds_between(const Stop& stop, int slot, double interval) noexcept;

@@ -46,7 +46,7 @@ class GuardTest : public testing::Test {
   std::vector<Wall> walls_;
   Vector q_, dq_, ddq_;
   GuardSettings settings_;
-  Crowd crowd_;
+  PersonCapsules crowd_;
 };
 
 TEST(SeparationReference, vectors_of_the_constant_deceleration_form) {
@@ -259,10 +259,10 @@ TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) 
   EXPECT_EQ(judge(p).forward, 1.0) << "what does not move is not slowed";
   robot_->forward(q_, links_);
   const Vector3 there = links_[static_cast<std::size_t>(upper)] * Vector3(0.4, 0, 0);
-  Crowd point;
+  PersonCapsules point;
   point.covered = true;
   point.capsules.emplace_back();
-  CrowdCapsule& c = point.capsules.back();
+  PersonCapsule& c = point.capsules.back();
   c.a = there;
   c.b = there;
   c.centre = there;

@@ -13,7 +13,7 @@
 namespace handsel::trajectory_controller {
 
 /// One capsule of a person.
-struct CrowdCapsule {
+struct PersonCapsule {
   Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
   double radius{};                                 ///< [m]
   Vector3 centre{Vector3::Zero()};                 ///< between a and b
@@ -28,14 +28,14 @@ struct CrowdCapsule {
 };
 
 /// The people of one HumanState sample.
-struct Crowd {
-  std::vector<CrowdCapsule> capsules;  ///< of all people, one person after the other
-  bool covered{};                      ///< the reach of the robot is observed: "nobody" is a fact
-  std::uint64_t revision{};            ///< grows with every change
+struct PersonCapsules {
+  std::vector<PersonCapsule> capsules;  ///< of all people, one person after the other
+  bool covered{};                       ///< the reach of the robot is observed: "nobody" is a fact
+  std::uint64_t revision{};             ///< grows with every change
 };
 
 /// `exception` as in common/model; a person not seen for longer than `unknown_after` [s] has no
 /// known velocity. May allocate.
-void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out);
+void prepare(const HumanState& people, const Exception& exception, double unknown_after, PersonCapsules& out);
 
 }  // namespace handsel::trajectory_controller

@@ -1,4 +1,4 @@
-#include "components/trajectory_controller/input/crowd.hpp"
+#include "components/trajectory_controller/input/person_capsules.hpp"
 
 #include <algorithm>
 
@@ -6,7 +6,7 @@
 
 namespace handsel::trajectory_controller {
 
-void prepare(const HumanState& people, const Exception& exception, double unknown_after, Crowd& out) {
+void prepare(const HumanState& people, const Exception& exception, double unknown_after, PersonCapsules& out) {
   out.capsules.clear();
   out.covered = people.covered;
   ++out.revision;
@@ -16,7 +16,7 @@ void prepare(const HumanState& people, const Exception& exception, double unknow
     const BodyCapsule* before = nullptr;
     const std::vector<BodyCapsule> body_parts = body_capsules(person);
     for (const BodyCapsule& body : body_parts) {
-      CrowdCapsule c;
+      PersonCapsule c;
       c.a = body.a;
       c.b = body.b;
       c.radius = body.radius;
