@@ -90,7 +90,8 @@ void Controller::judge_path(double ahead, GuardVerdict& verdict, TimePoint now) 
   const PathMotion motion{&full_velocity_, &full_acceleration_, &links_, &twists_};
   const StopTable stop = stop_table(motion, robot_->stop_limits());
   const double age = std::max(0.0, human_seen_.age(now));
-  verdict = guard(settings_.guard, capsules_, motion, state_.T_world_base, stop, person_capsules_, settings_.walls, age, speed_factor());
+  verdict = guard(settings_.guard,
+                  {capsules_, motion, stop, state_.T_world_base, person_capsules_, settings_.walls, age, speed_factor()});
   const ReachQuery query{posture_, full_velocity_, set_point_.acceleration, finger_speeds_, stop, state_.T_world_base, onward_ease(),
                          age,      held_payload()};
   const double forward = reach_limit_.factor(query, person_capsules_, false);

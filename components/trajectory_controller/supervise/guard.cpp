@@ -9,8 +9,8 @@ namespace handsel::trajectory_controller {
 
 namespace {
 
-constexpr double kSideways = 0.05;  // share of a link's speed
-constexpr double kAway = 0.5;       // likewise
+constexpr double kSideways = 0.05;  // ratio to a link's speed
+constexpr double kAway = 0.5;       // ratio to a link's speed
 constexpr double kStill = 1e-4;     // [m/s] closing more slowly counts as not closing
 
 /// No direction gives more.
@@ -25,6 +25,189 @@ double directed_speed(const PersonCapsule& c, const Vector3& toward_robot, const
   return std::clamp(v + s.speed_uncertainty, s.speed_floor, s.speed_max);
 }
 
+/// Smallest step of a StopTable whose factor is at least `factor`.
+int step_above(double factor) noexcept { return static_cast<int>(std::ceil(factor * kStopGrid - 1e-9)); }
+
+/// One evaluation of guard(): the limits so far, while links are compared with people and walls.
+class Evaluation {
+ public:
+  Evaluation(const GuardSettings& settings, const GuardQuery& query) noexcept
+      : settings_(settings),
+        query_(query),
+        reaction_(settings.reaction + std::max(0.0, query.age)),
+        margin_(settings.intrusion + settings.uncertainty_human + settings.uncertainty_robot),
+        present_(std::clamp(step_above(std::abs(query.factor)), 0, kStopGrid)) {
+    for (const PersonCapsule& part : query.people.capsules) {
+      quickest_person_ = std::max(quickest_person_, fastest(part, settings));
+      oldest_ = std::max(oldest_, part.age);
+    }
+  }
+
+  GuardVerdict run() noexcept {
+    for (const LinkCapsule& link : query_.robot) check_link(link);
+    verdict_.separation = forward_ < 1.0 || backward_ < 1.0;
+    for (const Wall& wall : query_.walls) check_wall(wall);
+    if (!query_.people.covered) {
+      verdict_.uncovered = true;
+      forward_ = std::min(forward_, settings_.uncovered_factor);
+      backward_ = std::min(backward_, settings_.uncovered_factor);
+    }
+    verdict_.forward = forward_;
+    verdict_.backward = -backward_;
+    return verdict_;
+  }
+
+ private:
+  /// A link that is compared.
+  struct Link {
+    int index{};
+    MovingCapsule capsule;
+    Vector3 axis, centre;
+    double length2{};
+    double reach{};     // half the length and the radius [m]
+    double quickest{};  // largest speed of an end [m/s]
+  };
+  /// A link and a part of a person, where they are nearest to each other.
+  struct Approach {
+    Vector3 toward{Vector3::UnitZ()};  // from the link to the person, unit
+    double distance{};                 // [m]
+    double closing{};                  // speed of the link toward the person at factor 1 [m/s]
+  };
+
+  /// Distance that a stop from step `g` of the factors needs [m].
+  double needed(double v_h, double closing, int g, double T_r, double extra) const noexcept {
+    const auto k = static_cast<std::size_t>(g);
+    const double v_r = closing * g / kStopGrid;
+    return v_h * (T_r + query_.stop.time[k]) + v_r * (T_r + query_.stop.way[k]) + extra;
+  }
+
+  /// Largest factor whose need fits into the distance; exact on the grid, linear between.
+  double allowed(double distance, double v_h, double closing, double extra, double best) const noexcept {
+    const auto need = [&](int g) { return needed(v_h, closing, g, reaction_, extra); };
+    int low = 0, high = step_above(best);
+    if (need(high) <= distance) return best;
+    if (need(0) >= distance) return 0.0;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (need(middle) <= distance ? low : high) = middle;
+    }
+    const double n0 = need(low), n1 = need(high);
+    return std::min(best, (low + (distance - n0) / (n1 - n0)) / kStopGrid);
+  }
+
+  void check_link(const LinkCapsule& link) noexcept {
+    Link l;
+    l.index = link.link;
+    l.capsule = placed(link, query_.motion, query_.T_world_base);
+    const MovingCapsule& r = l.capsule;
+    l.axis = r.b - r.a;
+    l.centre = 0.5 * (r.a + r.b);
+    l.length2 = l.axis.squaredNorm();
+    l.reach = 0.5 * std::sqrt(l.length2) + r.radius;
+    l.quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
+    const double need = needed(quickest_person_, l.quickest, high_, reaction_ + oldest_, margin_);
+    const double farthest = std::max(settings_.exchange_range, need) + l.reach;  // that may matter
+    for (const PersonCapsule& part : query_.people.capsules) check_part(l, farthest, part);
+  }
+
+  /// What is farther than `farthest` changes nothing: rough first, then exactly.
+  void check_part(const Link& link, double farthest, const PersonCapsule& part) noexcept {
+    const double apart2 = (part.centre - link.centre).squaredNorm();
+    const double far = std::max(farthest, verdict_.distance + link.reach) + part.reach;
+    if (apart2 > far * far) return;
+    const double matters = range(link, part);
+    const double near = part.excepted ? matters : std::max(matters, verdict_.distance);
+    const double rough = near + link.reach + part.reach;
+    if (apart2 > rough * rough) return;
+    const MovingCapsule& r = link.capsule;
+    Vector3 on_robot, on_person;
+    const double axes_apart = std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
+    Approach at;
+    at.distance = axes_apart - r.radius - part.radius;
+    const bool nearest = !part.excepted && at.distance < verdict_.distance;
+    if (!nearest && at.distance >= matters) return;
+    if (axes_apart > 1e-9) at.toward = (on_person - on_robot) / axes_apart;
+    const double place = (on_robot - r.a).dot(link.axis) / link.length2;
+    const double ratio = link.length2 > 1e-12 ? std::clamp(place, 0.0, 1.0) : 0.0;
+    at.closing = (r.va + ratio * (r.vb - r.va)).dot(at.toward);
+    if (nearest) {
+      note_nearest(link, part, at);
+      verdict_.on_robot = on_robot;
+      verdict_.on_person = on_person;
+    }
+    if (at.distance >= matters) return;
+    if (part.excepted)
+      limit_exempt(at);
+    else if (link.quickest >= kStill)
+      limit_separation(link, part, at);
+  }
+
+  /// Distance within which the part matters to the link [m].
+  double range(const Link& link, const PersonCapsule& part) const noexcept {
+    if (part.excepted) return settings_.exchange_range;
+    if (link.quickest < kStill) return 0.0;
+    const double v_h = fastest(part, settings_);
+    return needed(v_h, link.quickest, high_, reaction_ + part.age, margin_);
+  }
+
+  void note_nearest(const Link& link, const PersonCapsule& part, const Approach& at) noexcept {
+    const double v_h = directed_speed(part, -at.toward, settings_);
+    const double closing = std::max(0.0, std::copysign(at.closing, at.closing * query_.factor));
+    verdict_.distance = at.distance;
+    verdict_.link = link.index;
+    verdict_.needed = needed(v_h, closing, present_, reaction_ + part.age, margin_);
+  }
+
+  /// Limits the speed toward an exempt part.
+  void limit_exempt(const Approach& at) noexcept {
+    verdict_.exchange_clear = false;
+    double& best = at.closing > 0 ? forward_ : backward_;
+    const double closing = std::abs(at.closing);
+    if (closing > settings_.exchange_speed) best = std::min(best, settings_.exchange_speed / closing);
+  }
+
+  /// Limits the speed so that a stop fits into the distance.
+  void limit_separation(const Link& link, const PersonCapsule& part, const Approach& at) noexcept {
+    const double v_h = directed_speed(part, -at.toward, settings_), closing = at.closing;
+    // The person may have come that much nearer since.
+    const double left = at.distance - v_h * part.age;
+    // What does not clearly lead away counts as closing both ways: until they meet the direction
+    // between them may turn.
+    const double sideways = std::max(kStill, kSideways * link.quickest);
+    const double away = kAway * link.quickest;
+    if (closing > -away) forward_ = allowed(left, v_h, std::max(closing, sideways), margin_, forward_);
+    if (closing < away) backward_ = allowed(left, v_h, std::max(-closing, sideways), margin_, backward_);
+    high_ = std::max(present_, step_above(std::max(forward_, backward_)));
+    if (!(closing * query_.factor > 0.05)) return;
+    const double need = needed(v_h, std::abs(closing), present_, 0.0, settings_.uncertainty_human);
+    if (need > left) verdict_.too_near = true;
+  }
+
+  void check_wall(const Wall& wall) noexcept {
+    for (const LinkCapsule& link : query_.robot) {
+      const MovingCapsule r = placed(link, query_.motion, query_.T_world_base);
+      for (const bool first : {true, false}) {
+        const double closing = -wall.normal.dot(first ? r.va : r.vb);
+        const double distance = wall.normal.dot(first ? r.a : r.b) - wall.offset - r.radius;
+        if (std::abs(closing) < kStill) continue;
+        double& best = closing > 0 ? forward_ : backward_;
+        const double before = best;
+        best = allowed(distance, 0.0, std::abs(closing), settings_.uncertainty_robot, best);
+        if (best < before) verdict_.wall = true;
+      }
+    }
+  }
+
+  const GuardSettings& settings_;
+  const GuardQuery& query_;
+  double reaction_, margin_;             // [s], [m]
+  int present_;                          // step of the factor in force
+  int high_{kStopGrid};                  // largest step still in question
+  double quickest_person_{}, oldest_{};  // [m/s], [s]
+  double forward_{1.0}, backward_{1.0};  // largest factors so far
+  GuardVerdict verdict_;
+};
+
 }  // namespace
 
 double reference_speed(double separation, double v_h, double reaction, double deceleration, double margin) noexcept {
@@ -33,113 +216,6 @@ double reference_speed(double separation, double v_h, double reaction, double de
   return root <= 0.0 ? 0.0 : std::max(0.0, std::sqrt(root) - at - v_h);
 }
 
-GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const StopTable& stop, const PersonCapsules& people, const std::vector<Wall>& walls, double age,
-                   double factor) noexcept {
-  GuardVerdict verdict;
-  double forward = 1.0, backward = 1.0;
-
-  const double reaction = settings.reaction + std::max(0.0, age);
-  const double margin = settings.intrusion + settings.uncertainty_human + settings.uncertainty_robot;
-  const auto needed = [&](double v_h, double closing, int g, double T_r, double extra) {
-    const auto k = static_cast<std::size_t>(g);
-    const double v_r = closing * g / kStopGrid;
-    return v_h * (T_r + stop.time[k]) + v_r * (T_r + stop.way[k]) + extra;
-  };
-  // Largest factor whose need fits into the distance; exact on the grid, linear between.
-  const auto allowed = [&](double distance, double v_h, double closing, double extra, double best) {
-    int low = 0, high = static_cast<int>(std::ceil(best * kStopGrid - 1e-9));
-    if (needed(v_h, closing, high, reaction, extra) <= distance) return best;
-    if (needed(v_h, closing, 0, reaction, extra) >= distance) return 0.0;
-    while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      (needed(v_h, closing, middle, reaction, extra) <= distance ? low : high) = middle;
-    }
-    const double n0 = needed(v_h, closing, low, reaction, extra), n1 = needed(v_h, closing, high, reaction, extra);
-    return std::min(best, (low + (distance - n0) / (n1 - n0)) / kStopGrid);
-  };
-
-  const int present = std::clamp(static_cast<int>(std::ceil(std::abs(factor) * kStopGrid - 1e-9)), 0, kStopGrid);
-  int high = kStopGrid;  // of the factors still in question
-  double quickest_person = 0.0, oldest = 0.0;
-  for (const PersonCapsule& part : people.capsules) {
-    quickest_person = std::max(quickest_person, fastest(part, settings));
-    oldest = std::max(oldest, part.age);
-  }
-  for (const LinkCapsule& link : robot) {
-    const MovingCapsule r = placed(link, motion, T_world_base);
-    const Vector3 way = r.b - r.a, centre = 0.5 * (r.a + r.b);
-    const double length2 = way.squaredNorm(), reach = 0.5 * std::sqrt(length2) + r.radius;
-    const double quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
-    const double farthest =
-        std::max(settings.exchange_range, needed(quickest_person, quickest, high, reaction + oldest, margin)) + reach;  // that may matter
-    for (const PersonCapsule& part : people.capsules) {
-      // What is farther than this changes nothing: rough first, then exactly.
-      const double apart2 = (part.centre - centre).squaredNorm(), far = std::max(farthest, verdict.distance + reach) + part.reach;
-      if (apart2 > far * far) continue;
-      const double matters = part.excepted       ? settings.exchange_range
-                             : quickest < kStill ? 0.0
-                                                 : needed(fastest(part, settings), quickest, high, reaction + part.age, margin);
-      const double rough = (part.excepted ? matters : std::max(matters, verdict.distance)) + reach + part.reach;
-      if (apart2 > rough * rough) continue;
-      Vector3 on_robot, on_person;
-      const double axes_apart = std::sqrt(nearest_points(r.a, r.b, part.a, part.b, on_robot, on_person));
-      const double distance = axes_apart - r.radius - part.radius;
-      const bool nearest = !part.excepted && distance < verdict.distance;
-      if (!nearest && distance >= matters) continue;
-      const Vector3 toward = axes_apart > 1e-9 ? Vector3((on_person - on_robot) / axes_apart) : Vector3(Vector3::UnitZ());
-      const double share = length2 > 1e-12 ? std::clamp((on_robot - r.a).dot(way) / length2, 0.0, 1.0) : 0.0;
-      const double closing = (r.va + share * (r.vb - r.va)).dot(toward);  // at factor 1; backwards it is the negative
-      if (nearest) {
-        verdict.distance = distance;
-        verdict.link = link.link;
-        verdict.on_robot = on_robot;
-        verdict.on_person = on_person;
-        verdict.needed = needed(directed_speed(part, -toward, settings), std::max(0.0, std::copysign(closing, closing * factor)), present,
-                                reaction + part.age, margin);
-      }
-      if (distance >= matters) continue;
-      if (part.excepted) {
-        verdict.exchange_clear = false;
-        double& best = closing > 0 ? forward : backward;
-        if (std::abs(closing) > settings.exchange_speed) best = std::min(best, settings.exchange_speed / std::abs(closing));
-        continue;
-      }
-      if (quickest < kStill) continue;
-      const double v_h = directed_speed(part, -toward, settings);
-      const double left = distance - v_h * part.age;  // the person may have come that much nearer since
-      // What does not clearly lead away counts as closing both ways: until they meet the direction between them may turn.
-      const double sideways = std::max(kStill, kSideways * quickest), away = kAway * quickest;
-      if (closing > -away) forward = allowed(left, v_h, std::max(closing, sideways), margin, forward);
-      if (closing < away) backward = allowed(left, v_h, std::max(-closing, sideways), margin, backward);
-      high = std::max(present, static_cast<int>(std::ceil(std::max(forward, backward) * kStopGrid - 1e-9)));
-      const bool closes_now = closing * factor > 0.05;
-      if (closes_now && needed(v_h, std::abs(closing), present, 0.0, settings.uncertainty_human) > left) verdict.too_near = true;
-    }
-  }
-  verdict.separation = forward < 1.0 || backward < 1.0;
-  for (const Wall& wall : walls) {
-    for (const LinkCapsule& link : robot) {
-      const MovingCapsule r = placed(link, motion, T_world_base);
-      for (const bool first : {true, false}) {
-        const double closing = -wall.normal.dot(first ? r.va : r.vb);
-        const double distance = wall.normal.dot(first ? r.a : r.b) - wall.offset - r.radius;
-        if (std::abs(closing) < kStill) continue;
-        double& best = closing > 0 ? forward : backward;
-        const double before = best;
-        best = allowed(distance, 0.0, std::abs(closing), settings.uncertainty_robot, best);
-        if (best < before) verdict.wall = true;
-      }
-    }
-  }
-  if (!people.covered) {
-    verdict.uncovered = true;
-    forward = std::min(forward, settings.uncovered_factor);
-    backward = std::min(backward, settings.uncovered_factor);
-  }
-  verdict.forward = forward;
-  verdict.backward = -backward;
-  return verdict;
-}
+GuardVerdict guard(const GuardSettings& settings, const GuardQuery& query) noexcept { return Evaluation(settings, query).run(); }
 
 }  // namespace handsel::trajectory_controller

@@ -52,11 +52,21 @@ struct GuardVerdict {
   bool exchange_clear{true};  ///< no exempt part within exchange_range
 };
 
+/// What guard() compares.
+struct GuardQuery {
+  const std::vector<LinkCapsule>& robot;  ///< capsules of the robot
+  const PathMotion& motion;               ///< of the robot, at full speed
+  const StopTable& stop;                  ///< of `motion`
+  const Pose& T_world_base;               ///< base of the robot in the world
+  const PersonCapsules& people;           ///< around the robot
+  const std::vector<Wall>& walls;         ///< never passed
+  double age{};                           ///< of the human data [s]
+  double factor{1.0};                     ///< speed factor in force, [-1, 1]
+};
+
 /// Returns the limits of speed and separation monitoring (SSM, ISO 10218-2:2025) and of the walls.
-/// `stop`: of `motion`. `factor`: speed factor in force. `age`: of the human data [s]. Allocates
-/// nothing.
-GuardVerdict guard(const GuardSettings& settings, const std::vector<LinkCapsule>& robot, const PathMotion& motion, const Pose& T_world_base,
-                   const StopTable& stop, const PersonCapsules& people, const std::vector<Wall>& walls, double age, double factor) noexcept;
+/// Allocates nothing.
+GuardVerdict guard(const GuardSettings& settings, const GuardQuery& query) noexcept;
 
 /// Permitted robot speed with constant deceleration, the textbook form: a reference for tests, not
 /// the rule used [m/s].

@@ -25,7 +25,12 @@ class GuardTest : public testing::Test {
     robot_->forward(q_, links_);
     link_twists(*robot_, dq_, links_, twists_);
     const PathMotion motion{&dq_, &ddq_, &links_, &twists_};
-    return guard(settings_, capsules_, motion, Pose::Identity(), stop_table(motion, robot_->stop_limits()), crowd_, walls_, age, factor);
+    return guard(motion, crowd_, age, factor);
+  }
+  GuardVerdict guard(const PathMotion& motion, const PersonCapsules& people, double age, double factor) {
+    const StopTable stop = stop_table(motion, robot_->stop_limits());
+    const Pose base = Pose::Identity();
+    return trajectory_controller::guard(settings_, {capsules_, motion, stop, base, people, walls_, age, factor});
   }
   GuardVerdict judge(const Person& person, double age = 0.0, double factor = 1.0, const Exception& exception = {}) {
     return judge(HumanState{0, {person}, true}, age, factor, exception);
@@ -272,8 +277,7 @@ TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) 
   dq_[1] = -0.5;
   link_twists(*robot_, dq_, links_, twists_);
   const PathMotion motion{&dq_, &ddq_, &links_, &twists_};
-  const GuardVerdict same =
-      guard(settings_, capsules_, motion, Pose::Identity(), stop_table(motion, robot_->stop_limits()), point, walls_, 0.0, 1.0);
+  const GuardVerdict same = guard(motion, point, 0.0, 1.0);
   EXPECT_EQ(same.forward, 0.0) << "the nearest points coincide: up is taken as the way, and up it goes";
 }
 
