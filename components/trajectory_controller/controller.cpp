@@ -17,19 +17,18 @@ constexpr double kStopSlack = 0.05;   // [s] after detection and the fastest sto
 constexpr double kRobotGone = 0.5;    // [s] without a sample: what comes then may be another robot side, somewhere else
 constexpr double kGuardSlack = 0.02;  // [s] likewise when the guard asks for less speed: the rest is the person's
 
-HandExecutor make_hand(const HandSettings& settings, const RobotModel& robot, const Group* fingers) {
-  std::vector<int> axes;
-  std::vector<double> lower, upper;
-  std::vector<char> sliding;
-  if (fingers != nullptr)
-    for (int axis : fingers->axes) {
-      axes.push_back(axis);
-      lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
-      upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
-      sliding.push_back(robot.joints()[static_cast<std::size_t>(robot.axes()[static_cast<std::size_t>(axis)].joint)].kind ==
-                        JointKind::prismatic);
-    }
-  return {settings, axes, lower, upper, robot.comfort_limits(), robot.stop_limits(), sliding};
+HandAxes axes_of(const RobotModel& robot, const Group* fingers) {
+  HandAxes hand;
+  if (fingers == nullptr) return hand;
+  for (int axis : fingers->axes) {
+    const Axis& bounds = robot.axes()[static_cast<std::size_t>(axis)];
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(bounds.joint)];
+    hand.axes.push_back(axis);
+    hand.lower.push_back(bounds.lower);
+    hand.upper.push_back(bounds.upper);
+    hand.sliding.push_back(joint.kind == JointKind::prismatic);
+  }
+  return hand;
 }
 
 /// All axes but those of hands and head.
@@ -81,7 +80,8 @@ Controller::Controller(const ControllerSettings& settings, std::shared_ptr<const
   };
   for (const Manipulator& hand : hands_of(*robot_)) {
     mark(hand.fingers, Part::hand);
-    hands_.push_back({hand.fingers != nullptr ? hand.fingers->name : "hand", hand.palm, make_hand(settings.hand, *robot_, hand.fingers)});
+    HandExecutor executor(settings.hand, axes_of(*robot_, hand.fingers), robot_->comfort_limits(), robot_->stop_limits());
+    hands_.push_back({hand.fingers != nullptr ? hand.fingers->name : "hand", hand.palm, std::move(executor)});
   }
   other_payloads_ = Vector::Zero(hands_.empty() ? 0 : static_cast<Eigen::Index>(hands_.size()) - 1);
   mark(robot_->group("head"), Part::head);

@@ -230,8 +230,8 @@ TEST(Release, the_load_s_share_falls_as_the_person_s_rises) {
   for (int k = 0; k < 1000; ++k) {
     const double borne = std::clamp((k - 300) / 300.0, 0.0, 1.0);
     watch.update({Vector3(0, 0, -3.0 * (1.0 - borne)), Vector3::UnitX(), true, true}, TimePoint(from_seconds(0.002 * k)));
-    EXPECT_LE(watch.load_share(), share + 1e-9);
-    share = watch.load_share();
+    EXPECT_LE(watch.load_ratio(), share + 1e-9);
+    share = watch.load_ratio();
   }
   EXPECT_NEAR(share, 0.0, 0.01);
   EXPECT_EQ(watch.grip(), Grip::open) << "who bears the whole load has it";

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <memory>
-#include <vector>
+#include <utility>
 
 #include "common/model/robot_model.hpp"
 #include "components/trajectory_controller/hand/hand_executor.hpp"
@@ -11,12 +11,12 @@ namespace handsel::test {
 
 /// At rest in `posture`, all axes [rad].
 inline std::unique_ptr<trajectory_controller::HandExecutor> fingers_of(const RobotModel& robot, const Group& hand, const Vector& posture) {
-  std::vector<double> lower, upper;
+  trajectory_controller::HandAxes axes{hand.axes, {}, {}, {}};
   for (const int axis : hand.axes) {
-    lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
-    upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
+    axes.lower.push_back(robot.axes()[static_cast<std::size_t>(axis)].lower);
+    axes.upper.push_back(robot.axes()[static_cast<std::size_t>(axis)].upper);
   }
-  auto fingers = std::make_unique<trajectory_controller::HandExecutor>(trajectory_controller::HandSettings{}, hand.axes, lower, upper,
+  auto fingers = std::make_unique<trajectory_controller::HandExecutor>(trajectory_controller::HandSettings{}, std::move(axes),
                                                                        robot.comfort_limits(), robot.stop_limits());
   fingers->reset(posture);
   return fingers;

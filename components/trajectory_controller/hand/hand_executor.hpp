@@ -7,7 +7,7 @@
 
 #include "common/messages/execution.hpp"
 #include "common/messages/robot.hpp"
-#include "components/trajectory_controller/arm/axis_mover.hpp"
+#include "components/trajectory_controller/hand/fingers.hpp"
 #include "components/trajectory_controller/hand/release_watch.hpp"
 
 namespace handsel::trajectory_controller {
@@ -53,13 +53,11 @@ struct HandInputs {
 
 class HandExecutor {
  public:
-  /// `axes`: robot axes of the hand; `lower`, `upper` their bounds; `sliding`: which of them are
-  /// prismatic (none when empty). Limits of all robot axes.
-  HandExecutor(const HandSettings& settings, std::vector<int> axes, std::vector<double> lower, std::vector<double> upper,
-               const KinematicLimits& comfort, const KinematicLimits& stop, std::vector<char> sliding = {});
+  /// `comfort`, `stop`: limits of all axes of the robot.
+  HandExecutor(const HandSettings& settings, HandAxes hand, const KinematicLimits& comfort, const KinematicLimits& stop);
 
   /// Number of axes of the hand.
-  int size() const { return static_cast<int>(axes_.size()); }
+  int size() const { return static_cast<int>(fingers_.size()); }
   /// Begins at rest at these positions, pressing with these efforts (all axes of the robot; or
   /// empty).
   void reset(const Vector& robot_position, const Vector& robot_effort = {}) noexcept;
@@ -79,7 +77,7 @@ class HandExecutor {
   /// What hand axis `i` gives besides following its set-point [Nm].
   double effort(int i) const { return level_ * fingers_[static_cast<std::size_t>(i)].effort; }
   /// Robot axes of the hand, in the order of effort().
-  const std::vector<int>& axes() const { return axes_; }
+  const std::vector<int>& axes() const { return fingers_.axes(); }
   /// State for the status: idle, moving, or the outcome of the last command.
   HandState state() const { return state_; }
   /// Force on the hand beyond the load's own [N]; 0 unless a release by pull is armed.
@@ -87,7 +85,7 @@ class HandExecutor {
   /// Number of times the load came back and the hand closed again.
   std::uint64_t regrips() const { return release_.regrips(); }
   /// Returns whether the set-points of all axes are at rest.
-  bool at_rest() const;
+  bool at_rest() const { return fingers_.at_rest(); }
   /// The set-points before the last step were `from`: every axis stops from there as fast as it
   /// can.
   void stop_from(const MotionState3& from) noexcept;
@@ -96,42 +94,21 @@ class HandExecutor {
   void follow(const Vector& robot_position, double dead_band) noexcept;
 
  private:
-  enum class Phase { hold, moving, closing, seeking, squeezing, loosened, releasing, regripping };
-  struct Finger {  // one axis of the hand
-    AxisMover mover;
-    double target{};       // wanted now
-    double final{};        // of the command, clamped to the bounds
-    double direction{};    // of closing: -1, 0, +1
-    double effort{};       // of the grip force [Nm]
-    double held{};         // set-point that holds the object
-    double opened{};       // set-point where the last closing began
-    double grip{};         // direction it presses in while the object is held
-    double share{1.0};     // travel relative to the longest of all axes, (0, 1]; scales the speed
-    double pressed_for{};  // [s]
-    bool contact{};
-    double lever{1.0};  // what an angle of the settings is multiplied with, an effort divided by
-  };
-  AxisLimits limits(std::size_t i, const KinematicLimits& of, double share) const;
+  enum class Phase { hold, moving, closing, seeking, gripping, loosened, releasing, regripping };
+
   void start(Phase phase);
-  void free_person() noexcept;
   void retarget(std::size_t i, double target) noexcept;
-  double pressed(const RobotState& robot, std::size_t i) const noexcept;
   void watch_contacts(const RobotState& robot, double dt) noexcept;
   void seek(const RobotState& robot, double dt) noexcept;
-  void squeeze(const RobotState& robot, double dt) noexcept;
-  void keep_grip() noexcept;
+  void grip(const RobotState& robot, double dt) noexcept;
   void change_level(double dt) noexcept;
-  void give_way(const RobotState& robot, double dt) noexcept;
-  void judge(const RobotState& robot, double payload, double dt) noexcept;
-  int pressing(const RobotState& robot) const noexcept;
-  bool pushes(const RobotState& robot) const noexcept;
+  void comply(const RobotState& robot, double dt) noexcept;
+  void check_outcome(const RobotState& robot, double payload, double dt) noexcept;
+  bool presses(const RobotState& robot) const noexcept;
   void watch_release(const HandInputs& in, TimePoint now) noexcept;
 
   HandSettings settings_;
-  std::vector<int> axes_;
-  std::vector<double> lower_, upper_;
-  KinematicLimits comfort_, stop_;
-  std::vector<Finger> fingers_;
+  Fingers fingers_;
   Phase phase_{Phase::hold};
   HandState state_{HandState::idle};
   bool paused_{}, payload_felt_{}, person_near_{};
@@ -139,7 +116,7 @@ class HandExecutor {
   bool freeing_{};           // it opens for a person who is clamped
   double speed_limit_{1.0};  // fraction of the comfort velocity
   double settled_for_{}, lost_for_{};
-  double level_{}, most_effort_{};  // fraction of the grip force in effect; largest effort
+  double level_{}, max_effort_{};  // fraction of the grip force in effect; largest effort
   Vector release_to_;
   ReleaseWatch release_;
 };

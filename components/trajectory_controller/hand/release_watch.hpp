@@ -8,6 +8,7 @@
 
 #include "common/base/time.hpp"
 #include "common/geometry/pose.hpp"
+#include "components/trajectory_controller/hand/pull_filter.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -40,7 +41,8 @@ struct Felt {
 
 class ReleaseWatch {
  public:
-  explicit ReleaseWatch(const PullSettings& settings) : settings_(settings) {}
+  explicit ReleaseWatch(const PullSettings& settings)
+      : settings_(settings), filter_({settings.baseline_time, settings.filter_time, settings.quick_time}) {}
 
   /// Starts over: the load's own force is measured from the samples that follow. threshold: least
   /// pull that counts [N].
@@ -50,9 +52,9 @@ class ReleaseWatch {
   /// One sample of the load's own force while no person's hand is near, before arming. With this
   /// force, a person who holds the load already when the watch is armed is distinguished from the
   /// load.
-  void bear(const Vector3& force, TimePoint now) noexcept;
+  void bear(const Vector3& force, TimePoint now) noexcept { filter_.bear(force, now); }
   /// The hand takes hold of something else.
-  void forget_load() noexcept { load_known_ = false; }
+  void forget_load() noexcept { filter_.forget_load(); }
   /// Returns whether arm() was called last, not disarm().
   bool armed() const { return armed_; }
 
@@ -62,25 +64,25 @@ class ReleaseWatch {
   /// Result of the last update(); hold after arm().
   Grip grip() const { return grip_; }
 
-  double pull() const { return pull_; }               ///< filtered force beyond the load's own [N]
-  double load_share() const { return share_; }        ///< fraction of the load still felt, 1: all
+  /// Filtered force beyond the load's own [N].
+  double pull() const { return filter_.pull(); }
+  /// Fraction of the load still felt; 1: all.
+  double load_ratio() const { return filter_.load_ratio(); }
   double threshold() const { return threshold_; }     ///< smallest pull that counts [N]
   std::uint64_t regrips() const { return regrips_; }  ///< times the load came back
 
  private:
-  void filter(const Vector3& force, double dt) noexcept;
   bool strong(const Vector3& toward, TimePoint now) noexcept;
   void close_again() noexcept;
 
   PullSettings settings_;
-  bool armed_{}, started_{}, above_{}, load_known_{}, baseline_checked_{};
+  PullFilter filter_;
+  bool armed_{}, started_{}, above_{};
   Grip grip_{Grip::hold};
-  double threshold_{}, pull_{}, share_{1.0}, impulse_{}, slack_for_{}, lost_for_{}, loose_for_{};
-  int baseline_samples_{};
+  double threshold_{}, impulse_{}, slack_for_{}, lost_for_{}, loose_for_{};
   std::uint64_t regrips_{};
-  TimePoint first_{}, last_{}, above_since_{}, load_felt_{};
-  Vector3 load_{Vector3::Zero()};  // averaged while no person's hand was near
-  Vector3 baseline_{Vector3::Zero()}, filtered_{Vector3::Zero()}, quick_{Vector3::Zero()}, mean_{Vector3::Zero()};
+  TimePoint first_{}, last_{}, above_since_{};
+  Vector3 mean_{Vector3::Zero()};  // sum of the directions of the pull
 };
 
 }  // namespace handsel::trajectory_controller

@@ -22,7 +22,7 @@ KinematicLimits limits(int n, double v, double a, double j) {
 class HandTest : public testing::Test {
  protected:
   HandTest()
-      : hand_(HandSettings{}, {0, 1, 2, 3}, {-0.2, -0.2, -0.2, -0.2}, {1.4, 1.4, 1.4, 1.4}, limits(4, 2.5, 12, 90),
+      : hand_(HandSettings{}, {{0, 1, 2, 3}, {-0.2, -0.2, -0.2, -0.2}, {1.4, 1.4, 1.4, 1.4}, {}}, limits(4, 2.5, 12, 90),
               limits(4, 2.8, 14, 100)) {
     out_ = rest_state(Vector::Zero(4));
     robot_.position = robot_.velocity = robot_.effort = Vector::Zero(4);
@@ -120,7 +120,7 @@ TEST_F(HandTest, once_it_has_released_a_finger_gives_way_to_what_is_drawn_past_i
 /// One axis that slides, as a parallel gripper has: the same settings, at the lever of a finger.
 TEST(SlidingHand, closes_until_it_presses_and_tells_metres) {
   const HandSettings settings;
-  HandExecutor hand(settings, {0}, {0.0}, {0.04}, limits(1, 0.08, 0.5, 5), limits(1, 0.1, 0.8, 10), {1});
+  HandExecutor hand(settings, {{0}, {0.0}, {0.04}, {1}}, limits(1, 0.08, 0.5, 5), limits(1, 0.1, 0.8, 10));
   constexpr double kSpring = 1.4e4, kObject = 0.021;  // [N/m], [m]
   MotionState3 out = rest_state(Vector::Constant(1, 0.04));
   RobotState robot;
