@@ -25,8 +25,8 @@
 #include "components/trajectory_controller/supervise/guard.hpp"
 #include "components/trajectory_controller/supervise/mode_machine.hpp"
 #include "components/trajectory_controller/supervise/reach_limit.hpp"
-#include "components/trajectory_controller/supervise/stop_proof.hpp"
-#include "components/trajectory_controller/supervise/stop_space.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_proof.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_space.hpp"
 
 namespace handsel::trajectory_controller {
 

@@ -1,6 +1,6 @@
 // People move at random within their bounds, from anywhere: whoever touches the arm during a stop that was found harmless touches a link at
 // rest or slow enough for the contact. The oracle samples both stops and the people finely and knows nothing of how the proof bounds them.
-#include "components/trajectory_controller/supervise/stop_proof.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_proof.hpp"
 
 #include <gtest/gtest.h>
 

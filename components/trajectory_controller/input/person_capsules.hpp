@@ -8,7 +8,7 @@
 
 #include "common/messages/world.hpp"
 #include "common/model/robot_capsules.hpp"
-#include "components/trajectory_controller/supervise/contact_budget.hpp"
+#include "components/trajectory_controller/supervise/stop/contact_budget.hpp"
 
 namespace handsel::trajectory_controller {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "components/trajectory_controller/supervise/path_motion.hpp"
-#include "components/trajectory_controller/supervise/stop_proof.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_proof.hpp"
 
 namespace handsel::trajectory_controller {
 

@@ -1,4 +1,4 @@
-#include "components/trajectory_controller/supervise/reachable_people.hpp"
+#include "components/trajectory_controller/supervise/stop/reachable_people.hpp"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "components/trajectory_controller/input/observed_space.hpp"
-#include "components/trajectory_controller/supervise/stop_proof.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_proof.hpp"
 
 namespace handsel::trajectory_controller {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "components/trajectory_controller/input/person_capsules.hpp"
-#include "components/trajectory_controller/supervise/contact_budget.hpp"
+#include "components/trajectory_controller/supervise/stop/contact_budget.hpp"
 
 namespace handsel::trajectory_controller {
 

@@ -1,4 +1,4 @@
-#include "components/trajectory_controller/supervise/contact_budget.hpp"
+#include "components/trajectory_controller/supervise/stop/contact_budget.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "components/trajectory_controller/supervise/stop_space.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_space.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -16,9 +16,9 @@
 #include "common/model/robot_capsules.hpp"
 #include "common/trajectory/min_time.hpp"
 #include "components/trajectory_controller/input/person_capsules.hpp"
-#include "components/trajectory_controller/supervise/contact_budget.hpp"
-#include "components/trajectory_controller/supervise/moving_chain.hpp"
-#include "components/trajectory_controller/supervise/reachable_people.hpp"
+#include "components/trajectory_controller/supervise/stop/contact_budget.hpp"
+#include "components/trajectory_controller/supervise/stop/moving_chain.hpp"
+#include "components/trajectory_controller/supervise/stop/reachable_people.hpp"
 
 namespace handsel::trajectory_controller {
 

@@ -1,4 +1,4 @@
-#include "components/trajectory_controller/supervise/moving_chain.hpp"
+#include "components/trajectory_controller/supervise/stop/moving_chain.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "components/trajectory_controller/supervise/stop_proof.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_proof.hpp"
 
 #include <algorithm>
 #include <cmath>
