@@ -132,7 +132,7 @@ TEST_F(StopProofStories, whoever_touches_a_stopping_arm_touches_it_at_rest_or_wi
             c.radius - person.part.radius;
         if (d > 0.0) continue;
         touches = true;
-        const double v = speed(c, before, after, kStep), allowed = proof_.max_speed_at(person.part.region, 0.0);
+        const double v = speed(c, before, after, kStep), allowed = proof_.contact_speeds().max_speed_at(person.part.region, 0.0);
         was_moving = was_moving || v > 1e-6;
         worst = std::max(worst, v / allowed);
         ASSERT_LE(v, allowed * (1.0 + 1e-6)) << "motion " << done << ", link " << robot_.links()[static_cast<std::size_t>(c.link)].name

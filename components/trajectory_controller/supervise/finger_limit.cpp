@@ -37,8 +37,8 @@ double FingerLimit::factor(const Vector& position, const Pose& T_world_base, dou
     const FrameMotion& frame = motions_[static_cast<std::size_t>(hand.frame)];
     const Vector3 a = T_world_base * (frame.p + frame.R * hand.a), b = T_world_base * (frame.p + frame.R * hand.b);
     for (const PersonCapsule& part : people.capsules) {
-      const double fits =
-          s.finger_ratio * proof_.max_speed_at(part.region, payload) / (proof_.finger_ratio_at(part.region, payload) * speed);
+      const double fits = s.finger_ratio * proof_.contact_speeds().max_speed_at(part.region, payload) /
+                          (proof_.contact_speeds().finger_ratio_at(part.region, payload) * speed);
       if (fits >= limit) continue;
       const RegionMotion& bounds = s.people[static_cast<std::size_t>(part.region)];
       const double reached = reach_after(reaction + part.age + stop_time_, start_speed(part, s.speed_error, bounds), bounds) +

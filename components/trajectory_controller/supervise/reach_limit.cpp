@@ -40,7 +40,7 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
   const StopTable& stop = query.stop;
   std::array<double, kBodyRegions> contact{};
   for (std::size_t r = 0; r < kBodyRegions; ++r)
-    contact[r] = s.limit_ratio * proof_.max_speed_at(static_cast<BodyRegion>(r), query.payload);
+    contact[r] = s.limit_ratio * proof_.contact_speeds().max_speed_at(static_cast<BodyRegion>(r), query.payload);
   const double min_contact = *std::min_element(contact.begin(), contact.end());
   const double reaction = s.latency + s.robot_side_delay + query.ease, margin = s.tracker_error + s.robot_error + s.limit_margin;
   PartReaches reach;  // by the time the whole motion has stopped
@@ -73,7 +73,7 @@ double ReachLimit::factor(const ReachQuery& query, const PersonCapsules& people,
       if ((part.centre - centre).squaredNorm() > rough * rough) continue;
       const auto region = static_cast<std::size_t>(part.region);
       // What the fingers leave of a contact's energy is the arm's.
-      const double of_fingers = inner == 0.0 ? 0.0 : inner * proof_.finger_ratio_at(part.region, query.payload);
+      const double of_fingers = inner == 0.0 ? 0.0 : inner * proof_.contact_speeds().finger_ratio_at(part.region, query.payload);
       const double of_arm = std::sqrt(std::max(0.0, contact[region] * contact[region] - of_fingers * of_fingers));
       if (speed * limit + gain <= of_arm) continue;
       const RegionMotion& bounds = s.people[region];

@@ -9,7 +9,6 @@
 // those of StopProofSettings, and that people are where HumanState says within `tracker_error`.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -17,8 +16,13 @@
 #include "common/trajectory/min_time.hpp"
 #include "components/trajectory_controller/input/person_capsules.hpp"
 #include "components/trajectory_controller/supervise/stop/contact_budget.hpp"
+#include "components/trajectory_controller/supervise/stop/contact_speeds.hpp"
+#include "components/trajectory_controller/supervise/stop/free_space.hpp"
 #include "components/trajectory_controller/supervise/stop/moving_chain.hpp"
 #include "components/trajectory_controller/supervise/stop/reachable_people.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_bounds.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_plan.hpp"
+#include "components/trajectory_controller/supervise/stop/stop_samples.hpp"
 
 namespace handsel::trajectory_controller {
 
@@ -71,6 +75,8 @@ struct StopRefutation {
 class StopProof {
  public:
   StopProof(const StopProofSettings& settings, const RobotModel& robot, const std::vector<LinkCapsule>& capsules);
+  StopProof(const StopProof&) = delete;
+  StopProof& operator=(const StopProof&) = delete;
 
   /// Returns whether both stops from `state` (all axes) are harmless to `people`, whose data are
   /// `age` old [s]. `payload`: mass held [kg].
@@ -82,106 +88,52 @@ class StopProof {
 
   // Of the set-point checked last.
   /// Whether any axis moves; if not, there is no stop.
-  bool moving() const noexcept { return at_once_.count > 0; }
+  bool moving() const noexcept { return at_once_.count() > 0; }
   /// Bound of the travel of a capsule of chain() in either stop [m]; 0 when no axis moves.
-  double max_travel(std::size_t capsule) const noexcept { return moving() ? max_travel_[capsule] : 0.0; }
+  double max_travel(std::size_t capsule) const noexcept { return moving() ? bounds_.travel(capsule) : 0.0; }
   /// Bound of the speed of a capsule of chain() in either stop, fingers included [m/s].
-  double max_speed(std::size_t capsule) const noexcept { return moving() ? max_carried_[capsule] + max_inner_[capsule] : 0.0; }
-  /// How long the stop takes, the robot side's or the controller's own [s].
-  double duration(bool robot_side) const noexcept { return (robot_side ? robot_side_ : at_once_).duration; }
-  /// Where the axes are `time` after the set-point [s]; of axes that stand, `position` keeps what
-  /// it has.
-  void position_at(bool robot_side, double time, Vector& position) const noexcept;
-  /// Returns the largest contact speed of a region for the robot holding `payload` [m/s].
-  double max_speed_at(BodyRegion region, double payload) const noexcept;
-  /// Returns the speed of the arm whose contact with the region has the energy of a finger's at 1
-  /// m/s [-].
-  double finger_ratio_at(BodyRegion region, double payload) const noexcept;
+  double max_speed(std::size_t capsule) const noexcept { return moving() ? bounds_.carried(capsule) + bounds_.inner(capsule) : 0.0; }
+  /// The stop: the robot side's or the controller's own.
+  const StopPlan& stop(bool robot_side) const noexcept { return robot_side ? robot_side_ : at_once_; }
+  /// Largest contact speeds.
+  const ContactSpeeds& contact_speeds() const noexcept { return contact_; }
   /// Assumptions and limits of the proof, as given to the constructor.
   const StopProofSettings& settings() const noexcept { return settings_; }
 
  private:
-  static constexpr int kMaxAxes = 64;
   static constexpr int kMaxPairs = 1024;
-  static constexpr int kIntervals = 6;
 
-  /// One axis from now until rest.
-  struct AxisStop {
-    int axis{};
-    bool sliding{};
-    AxisState start;
-    AxisProfile profile;
-    double delay{}, duration{};
-    double travel{};     ///< of all its motion, there and back [rad, m]
-    double max_speed{};  ///< [rad/s, m/s]
-    AxisState at(double t) const noexcept;
-    double max_speed_between(double from, double to) const noexcept;
-  };
-  /// All axes that move.
-  struct Stop {
-    std::array<AxisStop, kMaxAxes> axes;
-    int count{};
-    double duration{};  ///< until all are at rest [s]
-    bool inside{true};  ///< all come to rest inside their bounds
-  };
   /// A link and a part of a person that could touch during the stop.
   struct Pair {
     std::uint16_t capsule{}, part{};
   };
-  /// A link's capsule at one instant of the stop, with its largest speeds.
-  struct Sample {
-    Vector3 a{Vector3::Zero()}, b{Vector3::Zero()};  ///< world [m]
-    double carried{};                                ///< surface speed, fingers at rest [m/s]
-    double inner{};                                  ///< finger speed in the hand [m/s]
+  /// By how much a link may be faster between two samples than at both.
+  struct Bend {
+    double carried{}, inner{};  // [m/s]
+    double inner_travel{};      // of its fingers, whose sphere is that of the start [m]
   };
 
-  void plan(const MotionState3& state, double delay, Stop& stop) const noexcept;
-  void need(int frame) noexcept;
-  bool ends_inside(int axis, double start, double end) const noexcept;
-  void bound_motion() noexcept;
-  bool far_from_everybody(const MotionState3& state, double duration) noexcept;
   bool find_pairs(const PersonCapsules& people, const Pose& T_world_base, double duration) noexcept;
-  void set_speeds(const ChainCapsule& capsule, Sample& sample) const noexcept;
-  double contact_speed(double carried, double inner, std::size_t region) const noexcept;
-  bool check_stop(const Stop& stop, const Vector& position, const PersonCapsules& people, const Pose& T_world_base, double age) noexcept;
-  void sample(const Stop& stop, double time, const Pose& T_world_base, int slot) noexcept;
-  double time_until_rest(const Stop& stop) noexcept;
-  const std::vector<double>& speeds_between(const Stop& stop, int slot, double interval) noexcept;
-  Sample placed(const ChainCapsule& capsule, const Pose& T_world_base) const noexcept;
+  bool check_stop(const StopPlan& stop, const Vector& position, const PersonCapsules& people, const Pose& T_world_base,
+                  double age) noexcept;
+  Bend bend_of(std::size_t capsule) const noexcept;
+  bool check_pair(const StopPlan& stop, const Pair& pair, const Bend& bend, const PersonCapsule& part, double age) noexcept;
+  bool is_within(const CapsuleSample& link, double radius, const PersonCapsule& part, double needed) noexcept;
 
   StopProofSettings settings_;
-  KinematicLimits limits_;             // of the stops
-  std::vector<double> lower_, upper_;  // bounds of the axes
+  KinematicLimits limits_;  // of the stops
   MovingChain chain_;
-  double finger_mass_{};  // of the heaviest finger [kg]
-  double moving_mass_{};  // half of what the axes carry [kg]
-  std::array<double, kBodyRegions> max_contact_speed_{};
-
-  Stop at_once_, robot_side_;
+  ContactSpeeds contact_;
+  StopPlan at_once_, robot_side_;
+  StopBounds bounds_;
+  FreeSpace free_space_;
+  StopSamples samples_;
   std::vector<Pair> pairs_;
-  std::vector<char> paired_;  // capsules that are in a pair
-  // Marks for the chain: all frames; those that carry a paired capsule.
-  std::vector<char> all_frames_, needed_frames_;
-  std::array<std::vector<Sample>, kIntervals + 1> samples_;  // of every capsule
-  // Largest of each axis between a sample and the next.
-  std::array<std::vector<double>, kIntervals> speeds_;
-  std::array<bool, kIntervals> speeds_known_{};
-  Vector position_, velocity_;
-  std::vector<FrameMotion> motions_;  // of each frame
-  // By axis: during the two stops, of the stop that is checked, since rooms were measured, at the
-  // sample; until when it moves.
-  std::vector<double> travel_, other_travel_, speed_, turning_, jerk_, moved_, now_, time_;
-  // Of each capsule during both stops [m, m/s].
-  std::vector<double> max_travel_, max_carried_, max_inner_;
-  // Of a contact of the fingers to one of the arm, see finger_ratio_at().
-  std::array<double, kBodyRegions> finger_ratio_{};
-  double min_contact_speed_{}, max_person_speed_{};
-  // Rooms: how far each capsule could move at a moment before anybody could reach it [m].
-  std::vector<double> room_;
-  std::uint64_t room_of_{};  // revision of the people
-  Vector room_position_;
-  Pose room_base_{Pose::Identity()};
-  double room_duration_{};
+  std::vector<char> all_frames_;      // marks for the chain
+  std::vector<FrameMotion> motions_;  // of each frame, at the set-point
+  Vector at_rest_;                    // of all axes
+  // By axis, of the stop that is checked: largest speed, the same as turning, jerk.
+  std::vector<double> speed_, turning_, jerk_;
   StopRefutation refutation_;
 };
 

@@ -57,10 +57,10 @@ bool StopSpace::observes_stops(const Vector& position, const Pose& T_world_base,
 
 /// A capsule is no farther from where it is at one of the instants than it can travel in half an interval.
 bool StopSpace::inside_during(bool robot_side, const Pose& T_world_base, double since) noexcept {
-  const double interval = proof_.duration(robot_side) / kIntervals;
+  const double interval = proof_.stop(robot_side).duration() / kIntervals;
   for (std::size_t c = 0; c < travel_.size(); ++c) travel_[c] = proof_.max_speed(c) * interval / 2.0;
   for (int k = 0; k <= kIntervals; ++k) {
-    proof_.position_at(robot_side, k * interval, position_);
+    proof_.stop(robot_side).position_at(k * interval, position_);
     if (!inside(position_, settings_.margin, T_world_base, since)) return false;
   }
   return true;
