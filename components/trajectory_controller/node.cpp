@@ -49,9 +49,9 @@ void Node::tick(TimePoint now) {
     command_.position = core_.set_point().position;
     command_.velocity = core_.set_point().velocity;
     command_.acceleration = core_.set_point().acceleration;
-    command_.effort = core_.effort();
-    command_.payload = core_.payload();
-    command_.other_payloads = core_.other_payloads();
+    command_.effort = core_.hands().effort();
+    command_.payload = core_.hands().payload();
+    command_.other_payloads = core_.hands().other_payloads();
     command_out_->publish(command_);
   }
   late_before_ = late;

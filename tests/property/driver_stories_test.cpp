@@ -45,7 +45,7 @@ class Stage {
     c.position = bench.core.set_point().position;
     c.velocity = bench.core.set_point().velocity;
     c.acceleration = bench.core.set_point().acceleration;
-    c.payload = bench.core.payload();
+    c.payload = bench.core.hands().payload();
     c.sequence = ++sequence;
     if (late > 0) {
       --late;

@@ -38,6 +38,8 @@ class ContactWatch {
   double push(std::size_t i) const noexcept { return pushes_[i]; }
   /// Returns whether an axis was pushed by more than yield_torque in the last sample.
   bool pushed() const noexcept { return pushed_for_ > 0.0; }
+  /// Result of the last sample.
+  Contact contact() const noexcept { return contact_; }
   int axis() const noexcept { return axis_; }         ///< where it was felt most
   double torque() const noexcept { return torque_; }  ///< beyond the usual, there [Nm]
 

@@ -182,8 +182,8 @@ TEST(Overload, a_controller_that_is_started_anew_keeps_the_grip_and_allows_for_t
   bench.measured[0] -= 0.003;  // it sags
   bench.run(0.5);
   EXPECT_EQ(bench.core.set_point().position, bench.reference.position);
-  EXPECT_EQ(bench.core.effort(), bench.reference.effort);
-  EXPECT_EQ(bench.core.payload(), 0.35);
+  EXPECT_EQ(bench.core.hands().effort(), bench.reference.effort);
+  EXPECT_EQ(bench.core.hands().payload(), 0.35);
 }
 
 TEST(Overload, an_arm_that_a_fault_finds_pressed_against_something_no_longer_presses) {

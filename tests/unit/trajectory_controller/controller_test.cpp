@@ -344,7 +344,7 @@ TEST(Controller, a_person_standing_by_does_not_slow_and_one_in_the_way_does) {
   b.run(4.0);
   EXPECT_LT(b.core.speed_factor(), 0.2);
   EXPECT_TRUE(has(b, Cause::separation));
-  EXPECT_GT(b.core.guard_verdict().distance, 0.0);
+  EXPECT_GT(b.core.status().separation, 0.0);
   const ExecutionStatus near = b.core.status();
   EXPECT_GT(near.separation, 0.0);
   EXPECT_LT(near.separation, 0.75);
@@ -458,7 +458,7 @@ TEST(Controller, hand_and_head_stop_with_the_arm_and_keep_the_same_limits) {
 TEST(Controller, the_payload_is_told_from_grasp_to_release) {
   ControllerBench b;
   b.start();
-  EXPECT_EQ(b.core.payload(), 0.0);
+  EXPECT_EQ(b.core.hands().payload(), 0.0);
   HandCommand c;
   c.robot = "small";
   c.id = 1;
@@ -475,16 +475,16 @@ TEST(Controller, the_payload_is_told_from_grasp_to_release) {
   b.external_torque.segment(3, 2).setConstant(-0.5);  // something is between the fingers
   run();
   ASSERT_EQ(b.core.status().hand, HandState::grasped);
-  EXPECT_EQ(b.core.payload(), 0.35);
+  EXPECT_EQ(b.core.hands().payload(), 0.35);
   c.payload = 0.0;  // tighter, by who does not know what it is
   run();
-  EXPECT_EQ(b.core.payload(), 0.35);
+  EXPECT_EQ(b.core.hands().payload(), 0.35);
   b.external_torque.setZero();
   c.action = HandAction::release;
   c.position = Vector::Zero(2);
   run();
   EXPECT_EQ(b.core.status().hand, HandState::released);
-  EXPECT_EQ(b.core.payload(), 0.0);
+  EXPECT_EQ(b.core.hands().payload(), 0.0);
 }
 
 TEST(Controller, hand_commands_are_judged_like_trajectories) {

@@ -1,0 +1,36 @@
+#include "components/trajectory_controller/arm/axis_movers.hpp"
+
+namespace handsel::trajectory_controller {
+
+void AxisMovers::reset(const Vector& position) noexcept {
+  for (int axis : axes_) reset(axis, position[axis]);
+}
+
+void AxisMovers::stop_from(const MotionState3& from) noexcept {
+  for (int axis : axes_) {
+    const AxisState state{from.position[axis], from.velocity[axis], from.acceleration[axis]};
+    at(axis).take_over(state, limits_of(robot_.stop_limits(), axis));
+  }
+}
+
+void AxisMovers::stop(int axis) noexcept { at(axis).stop(limits_of(robot_.stop_limits(), axis)); }
+
+void AxisMovers::go_to(int axis, double target) noexcept { go_to(axis, target, limits_of(robot_.comfort_limits(), axis)); }
+
+void AxisMovers::go_to(int axis, double target, const AxisLimits& limits) noexcept {
+  at(axis).go_to(target, limits, limits_of(robot_.stop_limits(), axis));
+}
+
+bool AxisMovers::step(int axis, double dt, MotionState3& set_point) noexcept {
+  const AxisState& state = at(axis).step(dt);
+  set_point.position[axis] = state.position;
+  set_point.velocity[axis] = state.velocity;
+  set_point.acceleration[axis] = state.acceleration;
+  return at(axis).at_rest();
+}
+
+void AxisMovers::step(double dt, MotionState3& set_point) noexcept {
+  for (int axis : axes_) step(axis, dt, set_point);
+}
+
+}  // namespace handsel::trajectory_controller

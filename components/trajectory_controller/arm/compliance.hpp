@@ -1,0 +1,74 @@
+// The arm at rest: complies with pushes, and retreats from people who come too near. Pure, no heap
+// after construction.
+#pragma once
+
+#include <vector>
+
+#include "components/trajectory_controller/arm/arm_motion.hpp"
+#include "components/trajectory_controller/input/contact_watch.hpp"
+#include "components/trajectory_controller/input/inputs.hpp"
+#include "components/trajectory_controller/supervise/guard.hpp"
+#include "components/trajectory_controller/supervise/link_motion.hpp"
+#include "components/trajectory_controller/supervise/mode_machine.hpp"
+
+namespace handsel::trajectory_controller {
+
+/// How the arm complies and retreats.
+struct ComplianceSettings {
+  double speed{0.2};           ///< largest speed of an axis [rad/s]; 0: never
+  double reach{0.3};           ///< largest travel of each axis while complying [rad]
+  double retreat_reach{0.15};  ///< largest travel of each axis in a retreat; 0: never [rad]
+  double torque{15.0};         ///< an axis pushed by more than this complies [Nm]
+};
+
+/// Inputs of one step.
+struct ComplianceInputs {
+  const Inputs& inputs;         ///< newest samples
+  const ContactWatch& contact;  ///< of the arm
+  const SetPoints& set_points;  ///< sent last
+  const ModeVerdict& verdict;   ///< of this cycle
+  const GuardVerdict& nearest;  ///< of where the arm is
+  double retreat_factor{};      ///< of the speed of a retreat that is allowed, [0, 1]
+  bool allowed{};               ///< the arm may move by itself where it is at rest
+  bool recoils{};               ///< attention asks for a recoil
+  std::uint64_t cycle{};        ///< number of the cycle
+};
+
+class Compliance {
+ public:
+  /// Keeps references to the robot and the arm.
+  Compliance(const ComplianceSettings& settings, const RobotModel& robot, ArmMotion& arm);
+
+  /// Moves the axes of an arm at rest.
+  void step(const ComplianceInputs& in) noexcept;
+  /// Returns whether the arm moves, or is still to come to rest, because of a push or a retreat.
+  bool moving() const noexcept { return moving_; }
+  /// Returns whether it does so because of a push.
+  bool complying() const noexcept { return moving_ && wish_ != Wish::retreat; }
+  /// Velocity of a retreat that is wished for, all axes [rad/s]; nullptr: none is.
+  const Vector* retreat() const noexcept { return wish_ == Wish::retreat ? &retreat_velocity_ : nullptr; }
+
+ private:
+  enum class Wish : char { none, comply, retreat };
+
+  Wish find_wish(const ComplianceInputs& in) noexcept;
+  bool waits_for_rest(const ComplianceInputs& in) noexcept;
+  void aim_away(const ComplianceInputs& in) noexcept;
+  void move(int axis, double ratio, double reach) noexcept;
+
+  ComplianceSettings settings_;
+  const RobotModel& robot_;
+  ArmMotion& arm_;
+  Wish wish_{Wish::none};
+  bool moving_{};
+  bool waits_for_rest_{};
+  std::uint32_t demands_{};  // for rest, of the last cycle
+  Vector from_;              // where the motion began, all axes
+  Vector away_;              // motion away from the nearest person, largest 1
+  Vector retreat_velocity_;  // [rad/s]
+  Vector one_axis_;          // scratch of aim_away()
+  std::vector<Pose> links_;
+  std::vector<LinkTwist> twists_;
+};
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,31 @@
+#include "components/trajectory_controller/axis_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/manipulator.hpp"
+
+namespace handsel::trajectory_controller {
+
+AxisGroups::AxisGroups(const RobotModel& robot) : robot_(robot), parts_(static_cast<std::size_t>(robot.dof()), Part::arm) {
+  const auto mark = [&](const Group* group, Part part) {
+    if (group == nullptr) return;
+    for (int axis : group->axes) parts_[static_cast<std::size_t>(axis)] = part;
+  };
+  for (const Manipulator& hand : hands_of(robot)) mark(hand.fingers, Part::hand);
+  mark(robot.group("head"), Part::head);
+  for (int axis = 0; axis < robot.dof(); ++axis)
+    if (part(axis) == Part::arm) arm_.push_back(axis);
+  if (const Group* head = robot.group("head")) head_ = head->axes;
+}
+
+double AxisGroups::inside(int axis, double position) const noexcept {
+  constexpr double kNoise = 0.02, kBent = 0.05;  // [rad, m]
+  const Axis& bounds = robot_.axes()[static_cast<std::size_t>(axis)];
+  if (!(bounds.lower < bounds.upper)) return position;
+  const double within = std::clamp(position, bounds.lower, bounds.upper);
+  const double allowed = part(axis) == Part::hand ? kBent : kNoise;
+  return std::abs(within - position) <= allowed ? within : position;
+}
+
+}  // namespace handsel::trajectory_controller

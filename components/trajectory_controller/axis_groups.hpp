@@ -1,0 +1,37 @@
+// Which part of the robot each axis belongs to. Pure.
+#pragma once
+
+#include <vector>
+
+#include "common/model/robot_model.hpp"
+
+namespace handsel::trajectory_controller {
+
+/// Part of the robot.
+enum class Part : char { arm, hand, head };
+
+/// Robot groups "hand" and "head" may be missing; all other axes are moved by trajectories.
+class AxisGroups {
+ public:
+  /// Keeps a reference to the robot.
+  explicit AxisGroups(const RobotModel& robot);
+
+  /// Axes that trajectories move, in increasing order.
+  const std::vector<int>& arm() const noexcept { return arm_; }
+  /// Axes of the head, in the order of its group.
+  const std::vector<int>& head() const noexcept { return head_; }
+  /// Returns the part an axis belongs to; `axis` is not checked.
+  Part part(int axis) const noexcept { return parts_[static_cast<std::size_t>(axis)]; }
+  /// Returns the number of axes of the robot.
+  int size() const noexcept { return static_cast<int>(parts_.size()); }
+  /// Returns a measured position as one inside the axis' bounds, unless it is outside by more than
+  /// noise, or of a finger by more than what presses on it may bend it [rad, m].
+  double inside(int axis, double position) const noexcept;
+
+ private:
+  const RobotModel& robot_;
+  std::vector<Part> parts_;  // of each axis
+  std::vector<int> arm_, head_;
+};
+
+}  // namespace handsel::trajectory_controller

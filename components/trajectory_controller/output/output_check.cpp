@@ -1,0 +1,88 @@
+#include "components/trajectory_controller/output/output_check.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace handsel::trajectory_controller {
+
+namespace {
+
+/// Parts that are stopped.
+struct Stops {
+  bool arm{}, hand{}, head{};
+};
+
+/// The parts named come to rest, each axis by itself, from what was sent last.
+void stop(Stops stops, MovingParts parts, double period, SetPoints& set_points) noexcept {
+  const MotionState3& sent = set_points.sent();
+  if (stops.arm) {
+    parts.arm.stop_from(sent);
+    parts.arm.movers().step(period, set_points.next());
+  }
+  if (stops.hand) parts.hands.stop_from(sent, set_points.next());
+  if (stops.head) {
+    parts.head.stop_from(sent);
+    parts.head.step(period, set_points.next());
+  }
+}
+
+}  // namespace
+
+OutputCheck::OutputCheck(const OutputCheckSettings& settings, const RobotModel& robot, const AxisGroups& groups, StopProof& proof,
+                         StopSpace& stop_space)
+    : settings_(settings), robot_(robot), groups_(groups), proof_(proof), stop_space_(stop_space) {}
+
+void OutputCheck::step(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept {
+  check_limits(parts, set_points);
+  // A stop that is sent instead was observed with the set-point before.
+  if (check_stop(in, parts, set_points)) check_observed(in, parts, set_points);
+}
+
+void OutputCheck::check_limits(MovingParts parts, SetPoints& set_points) noexcept {
+  Stops stops;
+  const MotionState3 &sent = set_points.sent(), &next = set_points.next();
+  for (Eigen::Index i = 0; i < next.position.size(); ++i) {
+    if (acceptable(sent, next, i, robot_.guard_limits(), settings_.period)) continue;
+    const Part part = groups_.part(static_cast<int>(i));
+    (part == Part::arm ? stops.arm : part == Part::hand ? stops.hand : stops.head) = true;
+  }
+  if (!stops.arm && !stops.hand && !stops.head) return;
+  limit_violation_ = true;
+  if (stops.arm && parts.arm.active()) parts.arm.interrupt_path(false);
+  stop(stops, parts, settings_.period, set_points);
+}
+
+/// No set-point that moves the robot leaves without a checked stop behind it: otherwise the next one
+/// of the stop checked before is sent. Returns whether none is.
+bool OutputCheck::check_stop(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept {
+  if (shown_cycles_ > 0) --shown_cycles_;
+  const bool proven = proof_.check(set_points.next(), in.people, in.T_world_base, in.age, in.payload);
+  if (proven || in.moves_nothing) return true;
+  ++unproven_;
+  const bool running = parts.arm.running();
+  failed_rejoins_ = shown_cycles_ > 0 ? failed_rejoins_ + (running ? 1 : 0) : 0;
+  shown_cycles_ = static_cast<int>(settings_.shown_time / settings_.period);
+  if (running && failed_rejoins_ > settings_.max_rejoins)
+    parts.arm.interrupt_path(false);  // the planner finds another
+  else if (running)
+    parts.arm.interrupt_path(true);
+  const Stops stops{set_points.any_moves(groups_.arm()), set_points.any_moves(parts.hands.axes()), set_points.any_moves(groups_.head())};
+  stop(stops, parts, settings_.period, set_points);
+  return false;
+}
+
+/// No set-point leaves from which a stop would lead where no live source observes. Complying with a
+/// push is allowed: whoever pushes is there. The fingers alone are no reason: Hold stops them.
+void OutputCheck::check_observed(const OutputCheckInputs& in, MovingParts parts, SetPoints& set_points) noexcept {
+  constexpr int kEvery = 10;  // [cycles] at rest
+  if (!proof_.moving() && in.cycle % kEvery != 0) return;
+  const Vector& position = set_points.next().position;
+  blind_ = !stop_space_.observes_stops(position, in.T_world_base, in.age);
+  if (!blind_ || !in.follows || in.moves_nothing || settings_.dry_run) return;
+  if (in.complying) return;
+  const Stops stops{set_points.any_moves(groups_.arm()), false, set_points.any_moves(groups_.head())};
+  if (stops.arm && parts.arm.running()) parts.arm.interrupt_path(true);
+  stop(stops, parts, settings_.period, set_points);
+}
+
+}  // namespace handsel::trajectory_controller

@@ -1,0 +1,139 @@
+#include "components/trajectory_controller/supervise/lookahead.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/trajectory/edit.hpp"
+
+namespace handsel::trajectory_controller {
+
+namespace {
+
+constexpr double kMinFactor = 0.6;  // lowest speed factor that the lookahead assumes
+constexpr double kBackward = 0.02;  // the path runs back
+constexpr int kEvery = 50;          // [cycles] at rest
+constexpr int kEveryRetreat = 10;   // [cycles] in a retreat
+
+}  // namespace
+
+Lookahead::Lookahead(const LookaheadSettings& settings, const RobotModel& robot, const StopProof& proof, StopSpace& stop_space,
+                     const std::vector<int>& finger_axes)
+    : settings_(settings),
+      robot_(robot),
+      proof_(proof),
+      stop_space_(stop_space),
+      finger_axes_(finger_axes),
+      capsules_(robot_capsules(robot)),
+      reach_limit_(proof),
+      motion_(rest_state(Vector::Zero(robot.dof()))),
+      finger_speeds_(motion_.position) {
+  robot_.forward(motion_.position, links_);
+  link_twists(robot_, motion_.velocity, links_, twists_);
+}
+
+bool Lookahead::step(const LookaheadInputs& in, std::uint64_t cycle) noexcept {
+  set_finger_speeds(in.set_point);
+  const bool running = in.arm.running();
+  if (!running || in.arm.path().finished()) {
+    now_ = near_ = far_ = {};
+    now_.uncovered = in.uncovered;
+    // At rest only the distance, the end of a handover and a possible retreat are of interest.
+    if (cycle % (in.retreat != nullptr ? kEveryRetreat : kEvery) != 0) {
+      verdict_ = now_;
+      if (in.retreat != nullptr) verdict_.forward = retreat_factor_;
+      return false;
+    }
+    motion_.velocity.setZero();
+    motion_.acceleration.setZero();
+    if (in.retreat != nullptr) motion_.velocity = *in.retreat;
+  }
+  // In turn where the path is and where it will be a little later, the one or the other; where it
+  // is as soon as people have just been seen.
+  turn_ = new_people_ || !running ? 0 : (turn_ + 1) % 4;
+  const bool here = turn_ % 2 == 0;
+  if (here)
+    evaluate(0.0, in, now_);
+  else if (turn_ == 1)
+    evaluate(settings_.look_ahead, in, near_);
+  else
+    evaluate(settings_.look_far_ahead, in, far_);
+  if (here) nearest_ = now_;
+  new_people_ = false;
+  merge();
+  retreat_factor_ = verdict_.forward;
+  return here;
+}
+
+void Lookahead::evaluate_all(const LookaheadInputs& in) noexcept {
+  evaluate(0.0, in, now_);
+  evaluate(settings_.look_ahead, in, near_);
+  evaluate(settings_.look_far_ahead, in, far_);
+  merge();
+}
+
+void Lookahead::forbid_all() noexcept {
+  now_ = near_ = far_ = {};
+  now_.forward = near_.forward = far_.forward = 0.0;
+  merge();
+}
+
+void Lookahead::set_finger_speeds(const MotionState3& set_point) noexcept {
+  const double delay = proof_.settings().robot_side_delay;
+  for (int axis : finger_axes_) finger_speeds_[axis] = std::abs(set_point.velocity[axis]) + delay * std::abs(set_point.acceleration[axis]);
+}
+
+void Lookahead::merge() noexcept {
+  verdict_ = now_;
+  for (const GuardVerdict* ahead : {&near_, &far_}) {
+    verdict_.forward = std::min(verdict_.forward, ahead->forward);
+    verdict_.backward = std::max(verdict_.backward, ahead->backward);
+    verdict_.separation = verdict_.separation || ahead->separation;
+    verdict_.wall = verdict_.wall || ahead->wall;
+    verdict_.view = std::min(verdict_.view, ahead->view);
+  }
+}
+
+/// The motion along the path `ahead` [s] of where it is; at rest, that which was set before.
+void Lookahead::set_motion(double ahead, const LookaheadInputs& in) noexcept {
+  motion_.position = in.set_point.position;
+  if (!in.arm.running()) return;
+  motion_.velocity.setZero();
+  motion_.acceleration.setZero();
+  const double factor = in.arm.path().factor(), speed = std::max(std::abs(factor), kMinFactor);
+  const double time = in.arm.path().time() + ahead * (factor < -kBackward ? -speed : speed);
+  const MotionState3& at = in.arm.path_at(time);
+  for (std::size_t i = 0; i < in.arm.path_axes().size(); ++i) {
+    const auto axis = static_cast<Eigen::Index>(in.arm.path_axes()[i]);
+    const auto k = static_cast<Eigen::Index>(i);
+    motion_.position[axis] = at.position[k];
+    motion_.velocity[axis] = at.velocity[k];
+    motion_.acceleration[axis] = at.acceleration[k];
+  }
+}
+
+void Lookahead::evaluate(double ahead, const LookaheadInputs& in, GuardVerdict& verdict) noexcept {
+  set_motion(ahead, in);
+  robot_.forward(motion_.position, links_);
+  link_twists(robot_, motion_.velocity, links_, twists_);
+  const PathMotion motion{&motion_.velocity, &motion_.acceleration, &links_, &twists_};
+  const StopTable stop = stop_table(motion, robot_.stop_limits());
+  const double factor = in.arm.speed_factor();
+  verdict = guard(settings_.guard, {capsules_, motion, stop, in.T_world_base, in.people, settings_.walls, in.age, factor});
+  const ReachQuery query{motion_.position, motion_.velocity, in.set_point.acceleration, finger_speeds_, stop, in.T_world_base, in.ease,
+                         in.age,           in.payload};
+  const double forward = reach_limit_.factor(query, in.people, false);
+  verdict.separation = verdict.separation || forward < verdict.forward;
+  verdict.forward = std::min(verdict.forward, forward);
+  // Where the path is now is in the stop of the set-point itself.
+  verdict.view = 1.0;
+  if (in.arm.running() && ahead > 0.0) verdict.view = stop_space_.factor(motion_.position, motion_.velocity, in.T_world_base, in.age);
+  if (in.may_run_back) verdict.backward = std::max(verdict.backward, -reach_limit_.factor(query, in.people, true));
+}
+
+bool Lookahead::is_too_fast(double factor) const noexcept {
+  constexpr double kLag = 1.1, kMin = 0.02;
+  const double allowed = factor < 0.0 ? -std::max(now_.backward, near_.backward) : std::min(now_.forward, near_.forward);
+  return std::abs(factor) > kLag * allowed + kMin;
+}
+
+}  // namespace handsel::trajectory_controller
