@@ -6,6 +6,9 @@ handsel_test(controller SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_overload_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_blind_test.cpp
              ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/observed_space_test.cpp ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/path_runner_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/mode_machine_test.cpp LINK handsel_trajectory_controller_core handsel_robot_side LABEL unit)
+# Each part of the controller alone.
+handsel_test(controller_parts SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_inputs_test.cpp
+             ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/controller_arm_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(finger_limit SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/finger_limit_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 handsel_test(go_gate SOURCES ${CMAKE_CURRENT_LIST_DIR}/trajectory_controller/go_gate_test.cpp LINK handsel_trajectory_controller_core LABEL unit)
 # Latches over supervisor and controller.
