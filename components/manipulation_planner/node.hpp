@@ -5,7 +5,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 

@@ -9,7 +9,7 @@
 #include "common/config/resources.hpp"
 #include "common/model/object_model.hpp"
 #include "common/trajectory/switch.hpp"
-#include "components/manipulation_planner/exchange.hpp"
+#include "components/manipulation_planner/handover/otp_search.hpp"
 #include "components/path_planner/live_path.hpp"
 #include "components/trajectory_planner/trajectory_planner.hpp"
 #include "tests/support/processes/thread_times.hpp"

@@ -8,7 +8,7 @@
 #include "common/model/human/human_body.hpp"
 #include "common/trajectory/edit.hpp"
 #include "common/trajectory/path/smooth.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner::rig {
 

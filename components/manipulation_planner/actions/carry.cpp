@@ -3,7 +3,7 @@
 
 #include "common/messages/names.hpp"
 #include "common/model/srs_arm.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 

@@ -24,10 +24,10 @@
 #include "common/model/manipulator.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/switch.hpp"
-#include "components/manipulation_planner/exchange.hpp"
-#include "components/manipulation_planner/placing.hpp"
+#include "components/manipulation_planner/handover/otp_search.hpp"
+#include "components/manipulation_planner/motion/retreat_planner.hpp"
+#include "components/manipulation_planner/placing/place_search.hpp"
 #include "components/manipulation_planner/routine.hpp"
-#include "components/manipulation_planner/way_out.hpp"
 
 namespace handsel::manipulation_planner {
 
@@ -272,7 +272,7 @@ class ManipulationPlanner {
   std::optional<Vector3> follow_offer(Motion& motion);
   Routine<Outcome> go_to_rest();
 
-  // Two hands (two_hands.cpp).
+  // Two hands (actions/regrasp.cpp).
   struct RegraspSteps {
     Outcome outcome;
     std::vector<RegraspStep> steps;
@@ -296,7 +296,7 @@ class ManipulationPlanner {
   Routine<Outcome> take_over(const std::string& object, const Grasp& grasp);
   Routine<Outcome> make_room();
   Vector3 p_world_shoulder() const;  // of the arm in use
-  /// Both hands on it, up, over and down in a closed chain (carry.cpp).
+  /// Both hands on it, up, over and down in a closed chain (actions/carry.cpp).
   Routine<Outcome> carry(const ActionGoal& goal);
   Routine<Outcome> take_together(const std::string& object, const RegraspStep& first, const RegraspStep& second);
   Routine<Outcome> grip(const Grasp& grasp, double share_of_mass);

@@ -1,4 +1,4 @@
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 #include <algorithm>
 #include <cmath>

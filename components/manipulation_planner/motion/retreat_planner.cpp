@@ -1,4 +1,4 @@
-#include "components/manipulation_planner/way_out.hpp"
+#include "components/manipulation_planner/motion/retreat_planner.hpp"
 
 #include <algorithm>
 #include <limits>

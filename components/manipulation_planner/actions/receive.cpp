@@ -5,7 +5,7 @@
 
 #include "common/model/human/holding_hand.hpp"
 #include "common/model/human/human_body.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 

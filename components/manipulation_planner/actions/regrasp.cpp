@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/model/object_extent.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 

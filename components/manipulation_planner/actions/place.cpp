@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "components/manipulation_planner/manipulation_planner.hpp"
-#include "components/manipulation_planner/placing.hpp"
+#include "components/manipulation_planner/planner.hpp"
+#include "components/manipulation_planner/placing/place_search.hpp"
 
 namespace handsel::manipulation_planner {
 

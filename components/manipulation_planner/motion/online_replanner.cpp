@@ -7,7 +7,7 @@
 #include "common/collision/margins.hpp"
 #include "common/model/human/human_body.hpp"
 #include "common/trajectory/path/broken_line.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {

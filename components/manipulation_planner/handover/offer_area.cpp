@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "common/model/human/human_body.hpp"
-#include "components/manipulation_planner/manipulation_planner.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 

@@ -1,4 +1,4 @@
-#include "components/manipulation_planner/exchange.hpp"
+#include "components/manipulation_planner/handover/otp_search.hpp"
 
 #include <algorithm>
 #include <cmath>

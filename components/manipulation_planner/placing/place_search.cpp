@@ -1,4 +1,4 @@
-#include "components/manipulation_planner/placing.hpp"
+#include "components/manipulation_planner/placing/place_search.hpp"
 
 #include <algorithm>
 #include <cmath>
