@@ -27,7 +27,6 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
                                          ObjectLibrary objects, std::uint64_t client, CostSettings cost)
     : settings_(settings),
       robot_(std::move(robot)),
-      objects_(std::move(objects)),
       hands_(hands_of(*robot_)),
       arm_(robot_->require_group("arm")),
       palm_(robot_->tool_link()),
@@ -35,6 +34,7 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
       live_pace_(settings.live_period(), settings.live_longest(), 0.0),
       client_(client),
       commands_(client),
+      snapshot_(std::move(objects)),
       cost_(std::make_shared<HumanCost>(*robot_, cost)) {
   if (const Group* fingers = robot_->group("hand")) fingers_ = *fingers;
 }
@@ -65,7 +65,7 @@ void ManipulationPlanner::on(const ActionGoal& goal) {
 
 /// What it has asked for is wanted no more.
 void ManipulationPlanner::drop_action() {
-  if (action_ && active_.trajectory != 0) {
+  if (action_ && snapshot_.active().trajectory != 0) {
     halt_.emplace();
     halt_->id = ++commands_;
     halt_->robot = robot_->name();
@@ -76,14 +76,6 @@ void ManipulationPlanner::drop_action() {
   at_offer_ = false;
   waiting_.clear();
   drop_path_ = path_awaited_;
-}
-
-void ManipulationPlanner::on(const ExecutionStatus& status) { execution_ = status; }
-
-void ManipulationPlanner::on(const ActiveTrajectory& active) {
-  set_point_ = active.position;
-  set_point_velocity_ = active.velocity;
-  active_ = active;
 }
 
 void ManipulationPlanner::on(const GraspReply& reply) {
@@ -104,9 +96,10 @@ void ManipulationPlanner::on(const TrajectoryReply& reply) {
 
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   out_ = &out;
-  too_near_ = execution_ && (execution_->causes & kTooNear) != 0 && active_.trajectory != 0 && std::abs(active_.speed_factor) < kCreeping;
+  too_near_ = snapshot_.execution() && (snapshot_.execution()->causes & kTooNear) != 0 && snapshot_.active().trajectory != 0 &&
+              std::abs(snapshot_.active().speed_factor) < kCreeping;
   // An arm that stands has no collision ahead: it starts, and is held back again.
-  if (execution_ && (execution_->causes & kBlocked) != 0) held_back_at_ = now;
+  if (snapshot_.execution() && (snapshot_.execution()->causes & kBlocked) != 0) held_back_at_ = now;
   const bool held_back = to_seconds(now - held_back_at_) <= settings_.blocked_pause();
   if (!too_near_ && !held_back) free_at_ = now;
   blocked_for_ = to_seconds(now - free_at_);
@@ -146,17 +139,19 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
 bool ManipulationPlanner::in_hand(const SceneObject& held) const {
   const int hand = hand_index(hands_, attachment_.hand);
   if (hand < 0 || attachment_.object != held.id) return false;
-  const Pose T_world_palm = scene_.T_world_base * robot_->link_pose(set_point_, hands_[static_cast<std::size_t>(hand)].palm);
+  const Pose T_world_palm =
+      snapshot_.T_world_base() * robot_->link_pose(snapshot_.set_point(), hands_[static_cast<std::size_t>(hand)].palm);
   return (held.T_world_object.translation() - T_world_palm * attachment_.T_tool_object.translation()).norm() < kSlipped;
 }
 
 /// What a hand holds has left it, and no person has it.
 bool ManipulationPlanner::slipped() const {
-  const SceneObject* held = attachment_.object.empty() ? nullptr : object(attachment_.object);
-  if (held == nullptr || held->holder == Holder::robot || held->holder == Holder::human || set_point_.size() != robot_->dof()) return false;
+  const SceneObject* held = attachment_.object.empty() ? nullptr : snapshot_.object(attachment_.object);
+  if (held == nullptr || held->holder == Holder::robot || held->holder == Holder::human || snapshot_.set_point().size() != robot_->dof())
+    return false;
   if (in_hand(*held)) return false;
   const Vector3& p = held->T_world_object.translation();
-  return std::none_of(people_.people.begin(), people_.people.end(), [&](const Person& who) {
+  return std::none_of(snapshot_.people().people.begin(), snapshot_.people().people.end(), [&](const Person& who) {
     return std::any_of(std::begin(kHands), std::end(kHands), [&](const char* name) {
       return (who.joints[static_cast<std::size_t>(body_joint_index(name))].position - p).norm() < 2 * kAtHand;
     });
@@ -167,11 +162,12 @@ bool ManipulationPlanner::slipped() const {
 void ManipulationPlanner::halt(Outbox& out) {
   constexpr double kAgain = 0.1;  // [s]
   if (!halt_) return;
-  const bool heard = execution_ && execution_->trajectory == halt_->id && execution_->motion != MotionState::refused;
-  if (heard || active_.trajectory == 0) return halt_.reset();
+  const bool heard =
+      snapshot_.execution() && snapshot_.execution()->trajectory == halt_->id && snapshot_.execution()->motion != MotionState::refused;
+  if (heard || snapshot_.active().trajectory == 0) return halt_.reset();
   if (to_seconds(waiting_.now() - halted_at_) < kAgain) return;
   halted_at_ = waiting_.now();
-  halt_->epoch = execution_ ? execution_->epoch : 0;
+  halt_->epoch = snapshot_.execution() ? snapshot_.execution()->epoch : 0;
   out.trajectories.push_back(*halt_);
 }
 
@@ -199,57 +195,36 @@ double ManipulationPlanner::time_to_exchange() const {
   if (receives && phase == ActionPhase::grasp) return kClose;
   const bool carries = gives && phase == ActionPhase::carry, reaches = phase == ActionPhase::reaching_object;
   const bool on_the_way = carries || (receives && (phase == ActionPhase::approach || reaches));
-  if (!on_the_way || !execution_ || execution_->motion != MotionState::running || active_.trajectory != execution_->trajectory)
+  if (!on_the_way || !snapshot_.execution() || snapshot_.execution()->motion != MotionState::running ||
+      snapshot_.active().trajectory != snapshot_.execution()->trajectory)
     return kNever;
-  const double left = std::max(0.0, active_.rest.duration() - active_.time) / std::clamp(active_.speed_factor, kSlowest, 1.0);
+  const double left = std::max(0.0, snapshot_.active().rest.duration() - snapshot_.active().time) /
+                      std::clamp(snapshot_.active().speed_factor, kSlowest, 1.0);
   return left + (phase == ActionPhase::approach ? kReachIn : 0.0) + (receives ? kClose : 0.0);
 }
 
-bool ManipulationPlanner::at_rest() const { return set_point_.size() == robot_->dof() && set_point_velocity_(arm_.axes).norm() < 1e-9; }
+bool ManipulationPlanner::at_rest() const {
+  return snapshot_.set_point().size() == robot_->dof() && snapshot_.active().velocity(arm_.axes).norm() < 1e-9;
+}
 
 Vector ManipulationPlanner::posture() const {
-  Vector q = scene_.robot_position;
-  for (const int axis : arm_.axes) q[axis] = set_point_[axis];
+  Vector q = snapshot_.scene().robot_position;
+  for (const int axis : arm_.axes) q[axis] = snapshot_.set_point()[axis];
   for (const Manipulator& other : hands_)
     if (other.arm != nullptr)
-      for (const int axis : other.arm->axes) q[axis] = set_point_[axis];
-  const bool opens = opens_to_ && execution_ && hand_state() == HandState::moving;
+      for (const int axis : other.arm->axes) q[axis] = snapshot_.set_point()[axis];
+  const bool opens = opens_to_ && snapshot_.execution() && hand_state() == HandState::moving;
   return opens ? RobotModel::with(q, fingers_, *opens_to_) : q;
 }
 
-bool ManipulationPlanner::may_move() const { return !halt_ && execution_ && execution_->mode < Mode::hold; }
+bool ManipulationPlanner::may_move() const { return !halt_ && snapshot_.execution() && snapshot_.execution()->mode < Mode::hold; }
 
-const ObjectModel* ManipulationPlanner::model_of(const std::string& id) const {
-  const SceneObject* seen = object(id);
-  return seen != nullptr && objects_ ? objects_(seen->model) : nullptr;
-}
-
-const SceneObject* ManipulationPlanner::object(const std::string& id) const {
-  const auto it = std::find_if(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& o) { return o.id == id; });
-  return it == scene_.objects.end() ? nullptr : &*it;
-}
-
-const Person* ManipulationPlanner::person(const std::string& id) const {
-  const Person* best = nullptr;
-  double nearest = 0;
-  for (const auto& candidate : people_.people) {
-    if (!id.empty() && candidate.id != id) continue;
-    const Vector3 torso = candidate.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-    const double distance = (torso - scene_.T_world_base.translation()).norm();
-    if (best == nullptr || distance < nearest) {
-      best = &candidate;
-      nearest = distance;
-    }
-  }
-  return best;
-}
-
-Pose ManipulationPlanner::T_world_tool() const { return scene_.T_world_base * robot_->link_pose(set_point_, palm_); }
+Pose ManipulationPlanner::T_world_tool() const { return snapshot_.T_world_base() * robot_->link_pose(snapshot_.set_point(), palm_); }
 
 std::optional<Vector> ManipulationPlanner::reach(const Pose& T_world_tool) const {
   IkOptions options;
   options.restarts = 0;
-  return robot_->inverse(arm_, scene_.T_world_base.inverse() * T_world_tool, set_point_, options);
+  return robot_->inverse(arm_, snapshot_.T_world_base().inverse() * T_world_tool, snapshot_.set_point(), options);
 }
 
 void ManipulationPlanner::hold(const SceneObject& held) {
@@ -281,7 +256,7 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const st
   GraspRequest request;
   request.id = next_request();
   request.object = object_id;
-  request.start = set_point_;
+  request.start = snapshot_.set_point();
   request.for_human = for_human;
   request.max_grasps = most;
   request.seed = goal_.id;
@@ -348,7 +323,7 @@ TrajectoryRequest ManipulationPlanner::trajectory_request(const std::vector<Vect
 TrajectoryCommand ManipulationPlanner::command_for(const Trajectory& trajectory, const Motion& motion) {
   TrajectoryCommand command;
   command.id = ++commands_;
-  command.epoch = execution_->epoch;
+  command.epoch = snapshot_.execution()->epoch;
   command.robot = robot_->name();
   for (const int axis : arm_.axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
   command.trajectory = trajectory;
@@ -363,7 +338,7 @@ Routine<Outcome> ManipulationPlanner::send(const TrajectoryCommand& command) {
   const std::uint64_t id = command.id;
   for (int tries = 0; tries < 5; ++tries) {
     out_->trajectories.push_back(command);
-    const bool heard = co_await waiting_.until([this, id] { return execution_->trajectory == id; }, 0.3);
+    const bool heard = co_await waiting_.until([this, id] { return snapshot_.execution()->trajectory == id; }, 0.3);
     if (heard) co_return Outcome{};
   }
   co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
@@ -385,8 +360,8 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
   Running running{command.id, command.trajectory.duration(), nodes, trajectory_reply_->speeds};
   const Running* now = &running;
   const auto ended = [this, now] {
-    return execution_->trajectory != now->command ||
-           (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
+    return snapshot_.execution()->trajectory != now->command ||
+           (snapshot_.execution()->motion != MotionState::running && snapshot_.execution()->motion != MotionState::idle);
   };
   const Motion* moving = &motion;
   const TimePoint began = waiting_.now();
@@ -411,7 +386,7 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
     const bool taken = takes_hold(motion.yields_to), room_made = room_is_made(motion);
     Outcome blocked = Outcome::failure(taken             ? motion.yields_to + " takes hold of " + attachment_.object
                                        : strayed(motion) ? motion.aims_at + " was moved away"
-                                                         : "the way is blocked: " + execution_->reason);
+                                                         : "the way is blocked: " + snapshot_.execution()->reason);
     if (taken)
       blocked.end = MotionEnd::taken;
     else if (strayed(motion))
@@ -429,12 +404,14 @@ Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, 
 }
 
 Routine<Outcome> ManipulationPlanner::end_motion(std::uint64_t command) {
-  if (execution_->trajectory != command) {
-    if (active_.trajectory != 0) co_await stop_motion();
+  if (snapshot_.execution()->trajectory != command) {
+    if (snapshot_.active().trajectory != 0) co_await stop_motion();
     co_return Outcome::failure("the trajectory controller lost the trajectory");
   }
-  if (execution_->motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + execution_->reason);
-  if (execution_->motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + execution_->reason);
+  if (snapshot_.execution()->motion == MotionState::refused)
+    co_return Outcome::failure("trajectory refused: " + snapshot_.execution()->reason);
+  if (snapshot_.execution()->motion != MotionState::finished)
+    co_return Outcome::failure("stopped on the way: " + snapshot_.execution()->reason);
   co_await waiting_.until([this] { return at_rest(); }, 1.0);
   co_return Outcome{};
 }
@@ -444,9 +421,9 @@ Routine<Outcome> ManipulationPlanner::stop_motion() {
   constexpr double kPause = 0.3;  // [s] between tries
   TrajectoryCommand stop;
   stop.id = ++commands_;
-  stop.epoch = execution_->epoch;
+  stop.epoch = snapshot_.execution()->epoch;
   stop.robot = robot_->name();
-  for (int tries = 0; tries < kMaxTries && execution_->trajectory != stop.id; ++tries) {
+  for (int tries = 0; tries < kMaxTries && snapshot_.execution()->trajectory != stop.id; ++tries) {
     out_->trajectories.push_back(stop);
     co_await waiting_.pause(kPause);
   }
@@ -454,7 +431,7 @@ Routine<Outcome> ManipulationPlanner::stop_motion() {
 }
 
 Outcome ManipulationPlanner::not_permitted() const {
-  const std::string why = execution_ ? execution_->reason : "the controller is silent";
+  const std::string why = snapshot_.execution() ? snapshot_.execution()->reason : "the controller is silent";
   return Outcome::failure("no permission to move: " + why, ActionFailure::not_permitted);
 }
 
@@ -470,7 +447,7 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
     if (planned.outcome.good) {
       last = co_await execute(planned.nodes, motion);
       if (last.good || last.is_final()) co_return last;
-      const Person* in_the_way = last.end == MotionEnd::person_too_near ? person("") : nullptr;
+      const Person* in_the_way = last.end == MotionEnd::person_too_near ? snapshot_.person("") : nullptr;
       if (in_the_way != nullptr) {
         refuse(text_of(motion.phase), last.reason);
         const std::string who = in_the_way->id;
@@ -480,10 +457,10 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
       }
     } else {
       last = planned.outcome;
-      if (lost(planned.start_touches)) {
+      if (snapshot_.is_lost(planned.start_touches)) {
         refuse(text_of(motion.phase), last.reason);
         const std::string who = planned.start_touches;
-        co_await waiting_.until([this, &who] { return !lost(who); }, settings_.permission_timeout());
+        co_await waiting_.until([this, &who] { return !snapshot_.is_lost(who); }, settings_.permission_timeout());
         continue;
       }
       if (!planned.start_touches.empty()) {
@@ -500,8 +477,8 @@ Routine<Outcome> ManipulationPlanner::move(const Motion& asked) {
 }
 
 bool ManipulationPlanner::at_hand_of(const std::string& who, const std::string& object_id) const {
-  const SceneObject* thing = object(object_id);
-  const Person* them = person(who);
+  const SceneObject* thing = snapshot_.object(object_id);
+  const Person* them = snapshot_.person(who);
   return thing != nullptr && them != nullptr && std::any_of(std::begin(kHands), std::end(kHands), [&](const char* hand) {
            const Vector3& p = them->joints[static_cast<std::size_t>(body_joint_index(hand))].position;
            return (p - thing->T_world_object.translation()).norm() < kAtHand;
@@ -509,25 +486,21 @@ bool ManipulationPlanner::at_hand_of(const std::string& who, const std::string& 
 }
 
 bool ManipulationPlanner::takes_hold(const std::string& who) const {
-  const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : object(attachment_.object);
+  const SceneObject* held = who.empty() || attachment_.object.empty() ? nullptr : snapshot_.object(attachment_.object);
   return held != nullptr && held->holder != Holder::surface && at_hand_of(who, held->id);
-}
-
-bool ManipulationPlanner::lost(const std::string& id) const {
-  return std::any_of(people_.people.begin(), people_.people.end(), [&](const Person& p) { return p.id == id && p.inflation > 0; });
 }
 
 std::vector<Vector3> ManipulationPlanner::ways_out(const std::string& touched) const {
   const Pose T_tool = T_world_tool();
   const Vector3 p_tool = T_tool.translation();
   Vector3 from = p_tool + T_tool.linear().col(2);
-  if (const Person* who = person(touched))
+  if (const Person* who = snapshot_.person(touched))
     from = who->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  else if (const SceneObject* thing = object(touched))
+  else if (const SceneObject* thing = snapshot_.object(touched))
     from = thing->T_world_object.translation();
   Vector3 level = p_tool - from;
   level.z() = 0;
-  if (level.norm() < 1e-3) level = scene_.T_world_base.translation() - p_tool;
+  if (level.norm() < 1e-3) level = snapshot_.T_world_base().translation() - p_tool;
   level.z() = 0;
   level.normalize();
   const Vector3 up = Vector3::UnitZ(), aside = up.cross(level), hand_back = -T_tool.linear().col(2);
@@ -548,7 +521,7 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
   out.allowed = next.allowed;
   out.allowed.push_back(touched);
   const Vector start = posture();
-  std::vector<Vector> goals = way_out_.steps_away(start, scene_.T_world_base, people_, 1.5 * settings_.retreat_distance());
+  std::vector<Vector> goals = way_out_.steps_away(start, snapshot_.T_world_base(), snapshot_.people(), 1.5 * settings_.retreat_distance());
   std::reverse(goals.begin(), goals.end());
   for (const double share : {0.5, 1.0, 1.5}) {
     for (const Vector3& way : ways_out(touched)) {
@@ -558,7 +531,7 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
     }
   }
   std::stable_partition(goals.begin(), goals.end(), [&](const Vector& goal) {
-    return way_out_.leads_away(start, RobotModel::with(start, arm_, goal), scene_.T_world_base, people_);
+    return way_out_.leads_away(start, RobotModel::with(start, arm_, goal), snapshot_.T_world_base(), snapshot_.people());
   });
   for (const Vector& goal : goals) {
     const Vector clear = RobotModel::with(start, arm_, goal);
@@ -583,20 +556,23 @@ Routine<Outcome> ManipulationPlanner::tell_hand(HandAction action, const Vector&
   command.position = position;
   if (effort != nullptr) command.effort = *effort;
   command.pull_force = settings_.pull_force();
-  if (const ObjectModel* grasped = model_of(status_.object); action == HandAction::grasp && grasped != nullptr)
+  if (const ObjectModel* grasped = snapshot_.model_of(status_.object); action == HandAction::grasp && grasped != nullptr)
     command.payload = share_of_mass * grasped->mass;
   const std::uint64_t id = command.id;
   bool heard = false;
   for (int tries = 0; tries < 20 && !heard; ++tries) {
     const bool ready = co_await waiting_.until([this] { return may_move(); }, settings_.permission_timeout());
     if (!ready) break;
-    command.epoch = execution_->epoch;
+    command.epoch = snapshot_.execution()->epoch;
     out_->hand_commands.push_back(command);
-    heard = co_await waiting_.until([this, id] { return execution_->hand_command == id && hand_state() != HandState::refused; }, 0.3);
+    heard = co_await waiting_.until([this, id] { return snapshot_.execution()->hand_command == id && hand_state() != HandState::refused; },
+                                    0.3);
   }
   opens_to_.reset();
   if (heard && action == HandAction::move) opens_to_ = position;
-  if (!heard) co_return Outcome::failure("hand command not accepted: " + (execution_ ? execution_->reason : "the controller is silent"));
+  if (!heard)
+    co_return Outcome::failure("hand command not accepted: " +
+                               (snapshot_.execution() ? snapshot_.execution()->reason : "the controller is silent"));
   co_return Outcome{};
 }
 
@@ -610,13 +586,14 @@ Routine<ManipulationPlanner::HandResult> ManipulationPlanner::hand(HandAction ac
   HandResult result;
   result.outcome = co_await tell_hand(action, position, effort, share_of_mass);
   if (!result.outcome.good) co_return result;
-  const std::uint64_t id = execution_->hand_command;
-  const bool ended =
-      co_await waiting_.until([this, id] { return execution_->hand_command != id || hand_state() != HandState::moving; }, timeout);
+  const std::uint64_t id = snapshot_.execution()->hand_command;
+  const bool ended = co_await waiting_.until(
+      [this, id] { return snapshot_.execution()->hand_command != id || hand_state() != HandState::moving; }, timeout);
   const bool waits_for_pull = action == HandAction::release_on_pull;
   if (ended && waits_for_pull)
-    co_await waiting_.until([this, id] { return execution_->hand_command != id || hand_state() == HandState::released; }, timeout);
-  if (execution_->hand_command != id) result.outcome = Outcome::failure("the controller lost the hand command");
+    co_await waiting_.until([this, id] { return snapshot_.execution()->hand_command != id || hand_state() == HandState::released; },
+                            timeout);
+  if (snapshot_.execution()->hand_command != id) result.outcome = Outcome::failure("the controller lost the hand command");
   if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
   result.state = hand_state();
   co_return result;
@@ -626,10 +603,10 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
   const Pose T_now = T_world_tool();
   Vector3 back = -Vector3::UnitZ();  // tool frame
   if (grasp_) {
-    const Pose T_root_grasp = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->arm_joints), palm_);
-    const Pose T_root_standoff = robot_->link_pose(RobotModel::with(set_point_, arm_, grasp_->approach_joints), palm_);
+    const Pose T_root_grasp = robot_->link_pose(RobotModel::with(snapshot_.set_point(), arm_, grasp_->arm_joints), palm_);
+    const Pose T_root_standoff = robot_->link_pose(RobotModel::with(snapshot_.set_point(), arm_, grasp_->approach_joints), palm_);
     back = (T_root_grasp.inverse() * T_root_standoff).translation();
-  } else if (const SceneObject* left = object(object_id)) {
+  } else if (const SceneObject* left = snapshot_.object(object_id)) {
     back = -(T_now.inverse() * left->T_world_object.translation());
   }
   const Vector3 away = T_now.linear() * back.normalized();
@@ -642,7 +619,7 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
   for (const double share : {1.0, 0.75, 0.5, 0.3}) {
     Pose T = T_now;
     T.translation() += share * settings_.retreat_distance() * away;
-    if (auto joints = reach(T); joints && (*joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() < kStraight) {
+    if (auto joints = reach(T); joints && (*joints - RobotModel::part(snapshot_.set_point(), arm_)).cwiseAbs().maxCoeff() < kStraight) {
       motion.goals = {*joints};
       Outcome outcome = co_await move(motion);
       if (outcome.good) co_return outcome;
@@ -654,14 +631,14 @@ Routine<Outcome> ManipulationPlanner::retreat(const std::string& allowed_person,
 
 Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
   status_.phase = ActionPhase::waiting_for_scene;
-  const bool known =
-      co_await waiting_.until([this] { return scene_.robot_known && execution_ && set_point_.size() == robot_->dof(); }, 10.0);
+  const bool known = co_await waiting_.until(
+      [this] { return snapshot_.scene().robot_known && snapshot_.execution() && snapshot_.set_point().size() == robot_->dof(); }, 10.0);
   if (!known) co_return Outcome::failure("no scene or no controller state has come");
-  if (const SceneObject* held = object(goal.object); held != nullptr && held->holder == Holder::robot) {
+  if (const SceneObject* held = snapshot_.object(goal.object); held != nullptr && held->holder == Holder::robot) {
     const int by = hand_index(hands_, held->holder_id);
     Outcome ready = co_await use_arm(by < 0 ? arm_.name : hands_[static_cast<std::size_t>(by)].name);
     if (!ready.good) co_return ready;
-    held = object(goal.object);
+    held = snapshot_.object(goal.object);
     if (held == nullptr) co_return Outcome::failure("object " + goal.object + " left the scene");
     if (attachment_.object != held->id) {
       grasp_.reset();

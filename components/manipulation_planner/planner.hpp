@@ -28,6 +28,7 @@
 #include "components/manipulation_planner/motion/retreat_planner.hpp"
 #include "components/manipulation_planner/placing/place_search.hpp"
 #include "components/manipulation_planner/routine.hpp"
+#include "components/manipulation_planner/snapshot.hpp"
 
 namespace handsel::manipulation_planner {
 
@@ -88,13 +89,13 @@ class ManipulationPlanner {
   /// the id of the last action changes nothing.
   void on(const ActionGoal& goal);
   /// Takes the newest scene; objects, boxes and base of the robot in the world frame.
-  void on(const Scene& scene) { scene_ = scene; }
+  void on(const Scene& scene) { snapshot_.on(scene); }
   /// Takes the newest people, joints in the world frame.
-  void on(const HumanState& people) { people_ = people; }
+  void on(const HumanState& people) { snapshot_.on(people); }
   /// Takes the facts that hold now; they replace all before.
-  void on(const Facts& facts) { facts_ = facts; }
+  void on(const Facts& facts) { snapshot_.on(facts); }
   /// `sent`: when its writer sent the layer.
-  void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
+  void on(const Costmap& layer, TimePoint sent, TimePoint now) { snapshot_.on(layer, sent, now); }
   /// Takes the advised period of replanning and the gain of the human-aware cost; both hold for a
   /// moment only.
   void on(const AttentionAdvice& advice, TimePoint now) {
@@ -103,9 +104,9 @@ class ManipulationPlanner {
   }
   /// Takes the newest report of the controller: what holds the robot back, and how its command
   /// goes.
-  void on(const ExecutionStatus& status);
+  void on(const ExecutionStatus& status) { snapshot_.on(status); }
   /// Takes what the controller runs, and its set point: the joints as commanded.
-  void on(const ActiveTrajectory& active);
+  void on(const ActiveTrajectory& active) { snapshot_.on(active); }
   /// Takes a reply; ignored unless it answers the newest request.
   void on(const GraspReply& reply);
   /// Takes a reply; ignored unless it answers the newest request.
@@ -133,7 +134,7 @@ class ManipulationPlanner {
   /// Returns the state of the action that runs or ran last, as of the last step().
   const ActionStatus& status() const { return status_; }
   /// Returns which cost layer was left out and why, one sentence; empty: none was.
-  std::string complaint(TimePoint now) { return layers_.complaint(now); }
+  std::string complaint(TimePoint now) { return snapshot_.complaint(now); }
 
  private:
   static constexpr double kAnyLength = 1e9;
@@ -392,14 +393,6 @@ class ManipulationPlanner {
   // the arm as commanded, hand and head as measured: gripping fingers are commanded beyond what
   // they touch
   Vector posture() const;
-  const SceneObject* object(const std::string& id) const;
-  // null: no box of that name on which things can stand
-  const SceneBox* surface(const std::string& id) const;
-  // of an object of the scene; null: unknown
-  const ObjectModel* model_of(const std::string& id) const;
-  const Person* person(const std::string& id) const;  // empty id: the nearest
-  // whether this person is out of sight and may be near their last place
-  bool lost(const std::string& id) const;
   void hold(const SceneObject& object);
   void release_object();
   void drop_action();
@@ -413,7 +406,6 @@ class ManipulationPlanner {
 
   config::ManipulationPlannerSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
-  ObjectLibrary objects_;
   std::vector<Manipulator> hands_;  // of the robot; the one in use:
   std::size_t hand_{0};
   Group arm_, fingers_;
@@ -436,13 +428,7 @@ class ManipulationPlanner {
   ActionStatus status_;
   Outbox* out_{nullptr};
 
-  Scene scene_;
-  HumanState people_;
-  Facts facts_;
-  CostLayers layers_;
-  std::optional<ExecutionStatus> execution_;
-  Vector set_point_, set_point_velocity_;
-  ActiveTrajectory active_;
+  Snapshot snapshot_;
   TimePoint free_at_{}, held_back_at_{}, held_at_{}, offered_at_{};
   // how long the forecast, or a person too near, has held the robot back [s]
   double blocked_for_{0};

@@ -26,7 +26,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
 
   RegraspSteps plan;
   plan.outcome = Outcome::failure("there is no free place on a surface called " + goal.surface);
-  const std::vector<Pose> places = places_for(goal, *object(object_id), *model_of(object_id));
+  const std::vector<Pose> places = places_for(goal, *snapshot_.object(object_id), *snapshot_.model_of(object_id));
   for (const Pose& place : places) {
     plan = co_await ask_regrasp(object_id, place, true);
     if (plan.outcome.good) break;
@@ -63,7 +63,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
     T.translation().z() += by;
     return T;
   };
-  const Pose T_start = object(object_id)->T_world_object;
+  const Pose T_start = snapshot_.object(object_id)->T_world_object;
   std::vector<Pose> up{raised(T_start, settings_.lift_height())};
   done = co_await move_together(object_id, second.to, up);
   if (done.good) {
@@ -72,7 +72,7 @@ Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
     done = co_await move_together(object_id, second.to, over);
   }
   // Where it cannot go up or over it goes back down; hands that cannot bring it down keep it.
-  const SceneObject* now = object(object_id);
+  const SceneObject* now = snapshot_.object(object_id);
   const bool off_the_ground = now == nullptr || now->T_world_object.translation().z() > T_start.translation().z() + kSame;
   if (!done.good && off_the_ground) {
     refuse(text_of(status_.phase), done.reason);
@@ -109,7 +109,7 @@ Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id
     Outcome done = co_await use_arm(step->to);
     if (!done.good) co_return done;
     std::optional<Grasp> grasp = aimed(object_id, step->grasp);
-    const SceneObject* thing = object(object_id);
+    const SceneObject* thing = snapshot_.object(object_id);
     const bool as_planned = thing != nullptr && (thing->T_world_object.translation() - step->T_world_object.translation()).norm() < kSame;
     if (!grasp && as_planned) grasp = step->grasp;  // at the end of a joint's range only the place as it was seen then is reached
     if (!grasp) co_return Outcome::failure(step->to + " does not reach " + object_id + " where it stands now");
@@ -138,7 +138,7 @@ Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id
   co_await waiting_.pause(settings_.settle_time());
   Outcome done = co_await use_arm(first.to);
   if (!done.good) co_return done;
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
   grasp_ = first.grasp;
@@ -198,7 +198,8 @@ Routine<Outcome> ManipulationPlanner::run_to_end(const TrajectoryCommand& comman
   const std::uint64_t id = command.id;
   co_await waiting_.until(
       [this, id] {
-        return execution_->trajectory != id || (execution_->motion != MotionState::running && execution_->motion != MotionState::idle);
+        return snapshot_.execution()->trajectory != id ||
+               (snapshot_.execution()->motion != MotionState::running && snapshot_.execution()->motion != MotionState::idle);
       },
       kForever);
   Outcome end = co_await end_motion(id);

@@ -15,7 +15,8 @@ constexpr double kLookAgain = 0.5;  // [s]
 Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const std::string& for_human, const std::string& onto) {
   if (status_.holding && attachment_.object == object_id) co_return Outcome{};
   status_.phase = ActionPhase::looking_for_object;
-  const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
+  const bool seen =
+      co_await waiting_.until([this, &object_id] { return snapshot_.object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
   Outcome last;
   const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
@@ -29,7 +30,7 @@ Routine<Outcome> ManipulationPlanner::pick(const std::string& object_id, const s
       last = list.outcome;
       continue;
     }
-    if (person(for_human) != nullptr && !for_human.empty()) {
+    if (snapshot_.person(for_human) != nullptr && !for_human.empty()) {
       last = co_await keep_givable(list.grasps, object_id, for_human, patience);
       if (!last.good) continue;
     }
@@ -56,11 +57,12 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
     Refusals refused;
   };
   auto result = std::make_shared<Result>();
-  while (person(human) != nullptr && object(object_id) != nullptr) {
+  while (snapshot_.person(human) != nullptr && snapshot_.object(object_id) != nullptr) {
     status_.phase = ActionPhase::looking_ahead;
     *result = {};
-    const std::function<void()> job = [this, result, grasps, scene = scene_, layers = layers_.at(waiting_.now()), who = *person(human),
-                                       q = set_point_, T_world_object = object(object_id)->T_world_object] {
+    const std::function<void()> job = [this, result, grasps, scene = snapshot_.scene(), layers = snapshot_.layers(waiting_.now()),
+                                       who = *snapshot_.person(human), q = snapshot_.set_point(),
+                                       T_world_object = snapshot_.object(object_id)->T_world_object] {
       auto settings = settings_;
       settings.set_exchange_goals(1);
       for (std::size_t i = 0; i < grasps.size(); ++i) {
@@ -106,7 +108,7 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   reach_object.allowed = {object_id};
   reach_object.speed = settings_.approach_speed();
 
-  Vector opened = set_point_;
+  Vector opened = snapshot_.set_point();
   if (!fingers_.axes.empty()) opened = RobotModel::with(opened, fingers_, grasp.pregrasp_joints);
   Vector before = RobotModel::with(opened, arm_, grasp.approach_joints);
   PlannedPath last_part = co_await plan_path(before, reach_object);
@@ -136,20 +138,20 @@ Routine<Outcome> ManipulationPlanner::try_grasp(const std::string& object_id, co
   }
   grasp_ = grasp;
   // Where the fingers have pushed it to: as soon as it is seen to be still.
-  const Stamp seen = scene_.stamp;
+  const Stamp seen = snapshot_.scene().stamp;
   const auto still = [this, &object_id, seen] {
-    const SceneObject* thing = object(object_id);
-    return scene_.stamp != seen && thing != nullptr && thing->velocity.norm() < settings_.offer_still();
+    const SceneObject* thing = snapshot_.object(object_id);
+    return snapshot_.scene().stamp != seen && thing != nullptr && thing->velocity.norm() < settings_.offer_still();
   };
   co_await waiting_.until(still, settings_.settle_time());
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
   Outcome lifted = co_await lift(object_id, for_human);
   if (lifted.end == MotionEnd::taken) co_return Outcome{};
   if (!lifted.good) co_return lifted;
   const auto came = [this, &object_id] {
-    const SceneObject* taken = object(object_id);
+    const SceneObject* taken = snapshot_.object(object_id);
     return taken != nullptr && taken->holder == Holder::robot;
   };
   const bool carried = co_await waiting_.until(came, settings_.settle_time());
@@ -180,15 +182,16 @@ Routine<Outcome> ManipulationPlanner::lift(const std::string& object_id, const s
 
 Routine<ManipulationPlanner::ExchangeChoice> ManipulationPlanner::choose_exchange(const std::string& receiver, const Pose* T_world_object) {
   auto choice = std::make_shared<ExchangeChoice>();
-  const Person* whom = person(receiver);
+  const Person* whom = snapshot_.person(receiver);
   if (whom == nullptr) {
     choice->outcome = Outcome::out_of_sight("person " + receiver);
     co_return *choice;
   }
   const Pose T_kept = T_world_object != nullptr ? *T_world_object : Pose::Identity();
   const bool asks = T_world_object != nullptr;
-  const std::function<void()> job = [this, choice, asks, T_kept, scene = scene_, layers = layers_.at(waiting_.now()), who = *whom,
-                                     q = set_point_, T = attachment_.T_tool_object, T_now = T_world_tool() * attachment_.T_tool_object,
+  const std::function<void()> job = [this, choice, asks, T_kept, scene = snapshot_.scene(), layers = snapshot_.layers(waiting_.now()),
+                                     who = *whom, q = snapshot_.set_point(), T = attachment_.T_tool_object,
+                                     T_now = T_world_tool() * attachment_.T_tool_object,
                                      barred = grasp_ ? barred_ways(*grasp_) : std::vector<Vector3>{}] {
     choice->search = find_exchange(*robot_, scene, who, layers, q, T_now, T, settings_, barred);
     if (asks) choice->kept = exchange_cost(scene, who, layers, T_kept, T_now, T, settings_, barred);
@@ -205,25 +208,26 @@ void ManipulationPlanner::lead_to(const ExchangeSearch& search, const Person& re
 }
 
 Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const std::string& human) {
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " is not in the scene");
   if (held->holder == Holder::human && !in_hand(*held)) co_return Outcome{};
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
   status_.phase = ActionPhase::choosing_exchange_point;
-  const bool seen = co_await waiting_.until([this, &human] { return person(human) != nullptr; }, settings_.sight_timeout());
+  const bool seen = co_await waiting_.until([this, &human] { return snapshot_.person(human) != nullptr; }, settings_.sight_timeout());
   if (!seen)
     co_return human.empty() ? Outcome::failure("nobody is in sight")
                             : Outcome::failure("person " + human + " is not in sight", ActionFailure::not_visible);
-  const std::string receiver = person(human)->id;
+  const std::string receiver = snapshot_.person(human)->id;
   status_.human = receiver;
 
   Outcome last;
   // In the hand, yet not borne by it: somebody has hold of it already.
-  bool at_exchange = takes_hold(receiver) || (object(object_id) != nullptr && object(object_id)->holder != Holder::robot);
+  bool at_exchange =
+      takes_hold(receiver) || (snapshot_.object(object_id) != nullptr && snapshot_.object(object_id)->holder != Holder::robot);
   const TimePoint patience = waiting_.now() + from_seconds(settings_.reach_timeout());
   for (std::uint32_t attempt = 0; attempt < settings_.motion_attempts() && !at_exchange;) {
     status_.phase = ActionPhase::choosing_exchange_point;
-    const Person* whom = person(receiver);
+    const Person* whom = snapshot_.person(receiver);
     if (whom == nullptr) co_return Outcome::out_of_sight("person " + receiver);
     ExchangeChoice choice = co_await choose_exchange(receiver, nullptr);
     const ExchangeSearch& search = choice.search;
@@ -245,7 +249,7 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
     carry.speed = settings_.carry_speed();
     carry.allowed = {object_id};
     carry.yields_to = receiver;
-    whom = person(receiver);
+    whom = snapshot_.person(receiver);
     if (whom == nullptr) co_return Outcome::out_of_sight("person " + receiver);
     lead_to(search, *whom, carry);
     status_.exchange_point = search.poses.front().T_world_object.translation();
@@ -266,7 +270,7 @@ Routine<Outcome> ManipulationPlanner::give(const std::string& object_id, const s
   HandResult released = co_await hand(HandAction::release_on_pull, opening, settings_.offer_timeout());
   if (!released.outcome.good || released.state != HandState::released) {
     status_.exchange_engaged = false;
-    const Vector grip = RobotModel::part(set_point_, fingers_);
+    const Vector grip = RobotModel::part(snapshot_.set_point(), fingers_);
     HandResult kept = co_await hand(HandAction::grasp, grip, settings_.hand_timeout());
     if (!kept.outcome.good) refuse("keeping the object", kept.outcome.reason);
     if (!released.outcome.good) co_return released.outcome;

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <numbers>
 
-#include "components/manipulation_planner/planner.hpp"
 #include "components/manipulation_planner/placing/place_search.hpp"
+#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
 
@@ -13,28 +13,24 @@ constexpr std::size_t kPostures = 6;  // that motions are planned to
 constexpr double kPatience = 3.0;     // [s] with a person at the hand
 }  // namespace
 
-const SceneBox* ManipulationPlanner::surface(const std::string& id) const {
-  const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == id && b.supports; });
-  return box == scene_.boxes.end() ? nullptr : &*box;
-}
-
 Routine<ManipulationPlanner::Serving> ManipulationPlanner::serving(const std::string& object_id, const std::string& onto,
                                                                    const std::vector<Grasp>& grasps, std::size_t most, std::size_t places) {
   auto found = std::make_shared<Serving>();
-  const SceneObject* thing = object(object_id);
+  const SceneObject* thing = snapshot_.object(object_id);
   std::vector<SceneBox> surfaces;
-  for (const SceneBox& box : scene_.boxes)
+  for (const SceneBox& box : snapshot_.scene().boxes)
     if (box.supports && (onto.empty() || box.id == onto)) surfaces.push_back(box);
   if (thing == nullptr || surfaces.empty()) co_return *found;
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-  const std::function<void()> job = [this, found, world = world_, scene = scene_, people = people_, surfaces, object_id, grasps, most,
-                                     places, q = posture(), T_now = thing->T_world_object] {
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
+  const std::function<void()> job = [this, found, world = world_, scene = snapshot_.scene(), people = snapshot_.people(), surfaces,
+                                     object_id, grasps, most, places, q = posture(), T_now = thing->T_world_object] {
     place_world(*world, scene, people);
     PlacingSettings placing;
     placing.reach = arm_reach(*robot_, &arm_, palm_);
     for (const SceneBox& box : surfaces) {
       Putting putting(*world, *robot_, arm_, scene.T_world_base,
-                      free_places(*robot_, scene, people, objects_, object_id, box, T_now, places, placing), settings_.lift_height());
+                      free_places(*robot_, scene, people, snapshot_.objects(), object_id, box, T_now, places, placing),
+                      settings_.lift_height());
       for (std::size_t i = 0; i < grasps.size() && found->at.size() < most; ++i) {
         if (found->at.count(i) > 0) continue;
         const Vector closed = RobotModel::with(RobotModel::with(q, arm_, grasps[i].arm_joints), fingers_, grasps[i].hand_joints);
@@ -52,7 +48,7 @@ Routine<ManipulationPlanner::Serving> ManipulationPlanner::serving(const std::st
 Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(const std::string& object_id, const std::string& onto) {
   destinations_.clear();
   GraspList list = co_await ask_grasps(object_id, "", settings_.max_grasps_onto());
-  if (!list.outcome.good || surface(onto) == nullptr || object(object_id) == nullptr) co_return list;
+  if (!list.outcome.good || snapshot_.surface(onto) == nullptr || snapshot_.object(object_id) == nullptr) co_return list;
   status_.phase = ActionPhase::choosing_place;
   const Serving found = co_await serving(object_id, onto, list.grasps, settings_.max_grasps(), kPlaces);
   if (!found.outcome.good || found.at.empty()) {
@@ -72,7 +68,7 @@ Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps_onto(con
 bool ManipulationPlanner::comes_to_hand() const {
   constexpr double kRoom = 0.30, kSoon = 0.8;  // [m], [s]
   const Vector3 p = T_world_tool().translation();
-  return std::any_of(people_.people.begin(), people_.people.end(), [&](const Person& person) {
+  return std::any_of(snapshot_.people().people.begin(), snapshot_.people().people.end(), [&](const Person& person) {
     return std::any_of(person.joints.begin(), person.joints.end(), [&](const BodyJoint& joint) {
       const Vector3 way = p - joint.position;
       const double left = way.norm() - kRoom, closing = joint.velocity.dot(way.normalized());
@@ -105,9 +101,9 @@ Routine<Outcome> ManipulationPlanner::lower(const PuttingPosture& posture) {
 
 Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const std::string& onto) {
   if (!status_.holding || attachment_.object != object_id) co_return Outcome::failure("the hand does not hold " + object_id);
-  const SceneBox* box = surface(onto);
+  const SceneBox* box = snapshot_.surface(onto);
   if (box == nullptr) co_return Outcome::failure("there is no surface called " + onto);
-  if (model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
+  if (snapshot_.model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   status_.phase = ActionPhase::choosing_place;
   const auto chosen = std::find_if(destinations_.begin(), destinations_.end(), [&](const Destination& d) {
     return grasp_ && d.grasp == grasp_->id && d.object == object_id && d.surface == onto;
@@ -120,13 +116,13 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   };
   auto found = std::make_shared<Found>();
   const Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
-  const std::function<void()> job = [this, found, T_chosen, opening, world = world_, scene = scene_, people = people_, box = *box,
-                                     held = attachment_, q = posture(), T_now = T_world_tool() * attachment_.T_tool_object] {
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
+  const std::function<void()> job = [this, found, T_chosen, opening, world = world_, scene = snapshot_.scene(), people = snapshot_.people(),
+                                     box = *box, held = attachment_, q = posture(), T_now = T_world_tool() * attachment_.T_tool_object] {
     place_world(*world, scene, people);
     PlacingSettings placing;
     placing.reach = arm_reach(*robot_, &arm_, palm_);
-    std::vector<Pose> places = free_places(*robot_, scene, people, objects_, held.object, box, T_now, kPlaces, placing);
+    std::vector<Pose> places = free_places(*robot_, scene, people, snapshot_.objects(), held.object, box, T_now, kPlaces, placing);
     if (T_chosen) places.insert(places.begin(), *T_chosen);
     Putting putting(*world, *robot_, arm_, scene.T_world_base, std::move(places), settings_.lift_height());
     found->postures = putting.anywhere(q, RobotModel::with(q, fingers_, opening), held, kPostures);

@@ -55,7 +55,7 @@ const Vector3& torso_of(const Person& who) { return who.joints[static_cast<std::
 bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) const {
   if (held.holder != Holder::human || held.holder_id != who.id) return false;
   const Vector3 out = level(held.T_world_object.translation() - torso_of(who));
-  const bool fact = std::any_of(facts_.facts.begin(), facts_.facts.end(),
+  const bool fact = std::any_of(snapshot_.facts().facts.begin(), snapshot_.facts().facts.end(),
                                 [&](const Fact& f) { return f.kind == FactKind::offering && f.subject == who.id && f.object == held.id; });
   // What is taken up is held out until it clearly is not.
   const bool taken_up = taken_up_.object == held.id && taken_up_.giver == who.id;
@@ -68,21 +68,21 @@ bool ManipulationPlanner::holds_out(const Person& who, const SceneObject& held) 
     return out.dot(way) > kTowardRobot * out.norm() * way.norm();
   };
   if (asked && out.norm() > kFarOut) return true;
-  return asked && out.norm() >= least && (toward(scene_.T_world_base.translation()) || toward(T_world_tool().translation()));
+  return asked && out.norm() >= least && (toward(snapshot_.T_world_base().translation()) || toward(T_world_tool().translation()));
 }
 
 void ManipulationPlanner::watch_offer() {
-  const SceneObject* held = object(taken_up_.object);
-  const Person* who = held == nullptr ? nullptr : person(taken_up_.giver);
+  const SceneObject* held = snapshot_.object(taken_up_.object);
+  const Person* who = held == nullptr ? nullptr : snapshot_.person(taken_up_.giver);
   if (who != nullptr && holds_out(*who, *held)) offered_at_ = waiting_.now();
 }
 
 bool ManipulationPlanner::still_offered() const { return to_seconds(waiting_.now() - offered_at_) < kFlicker; }
 
 std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std::string& wanted, const std::string& giver) const {
-  for (const SceneObject& held : scene_.objects) {
+  for (const SceneObject& held : snapshot_.scene().objects) {
     if (!wanted.empty() && held.id != wanted) continue;
-    for (const Person& who : people_.people) {
+    for (const Person& who : snapshot_.people().people) {
       if ((!giver.empty() && who.id != giver) || held.velocity.norm() > settings_.offer_still() || !holds_out(who, held)) continue;
       return Offer{held.id, who.id};
     }
@@ -91,8 +91,8 @@ std::optional<ManipulationPlanner::Offer> ManipulationPlanner::offered(const std
 }
 
 bool ManipulationPlanner::comes_on(const std::string& giver) const {
-  const Person* who = person(giver);
-  const SceneObject* held = object(taken_up_.object);
+  const Person* who = snapshot_.person(giver);
+  const SceneObject* held = snapshot_.object(taken_up_.object);
   if (who == nullptr || held == nullptr) return false;
   const Vector3 p_hand = T_world_tool().translation(), p_held = held->T_world_object.translation();
   const auto toward_hand = [&p_hand](const Vector3& p, const Vector3& v) { return v.dot((p_hand - p).stableNormalized()) > kComesOn; };
@@ -104,7 +104,7 @@ bool ManipulationPlanner::comes_on(const std::string& giver) const {
 bool ManipulationPlanner::strayed(const Motion& motion) const {
   if (motion.aims_at.empty()) return false;
   if (motion.follows && comes_on(taken_up_.giver)) return true;
-  const SceneObject* aim = object(motion.aims_at);
+  const SceneObject* aim = snapshot_.object(motion.aims_at);
   if (aim == nullptr) return true;
   const double shifted = (aim->T_world_object.translation() - motion.p_world_aim).norm();
   if (!motion.follows) return shifted > motion.aim_slack;
@@ -113,7 +113,7 @@ bool ManipulationPlanner::strayed(const Motion& motion) const {
 }
 
 std::optional<Vector3> ManipulationPlanner::follow_offer(Motion& motion) {
-  const SceneObject* aim = object(motion.aims_at);
+  const SceneObject* aim = snapshot_.object(motion.aims_at);
   if (aim == nullptr || (aim->T_world_object.translation() - motion.p_world_aim).norm() < kAimed) return std::nullopt;
   const std::optional<Grasp> there = aimed(motion.aims_at, *motion.follows);
   if (!there) return std::nullopt;
@@ -122,19 +122,19 @@ std::optional<Vector3> ManipulationPlanner::follow_offer(Motion& motion) {
 }
 
 std::optional<Grasp> ManipulationPlanner::aimed(const std::string& object_id, const Grasp& grasp) const {
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   if (held == nullptr) return std::nullopt;
   const auto hand_in_root = [this](const Vector& arm_joints) {
-    return robot_->link_pose(RobotModel::with(set_point_, arm_, arm_joints), palm_);
+    return robot_->link_pose(RobotModel::with(snapshot_.set_point(), arm_, arm_joints), palm_);
   };
   const Pose T_grasp_standoff = hand_in_root(grasp.arm_joints).inverse() * hand_in_root(grasp.approach_joints);
-  const Pose T_root_hand = scene_.T_world_base.inverse() * held->T_world_object * grasp.T_object_hand;
+  const Pose T_root_hand = snapshot_.T_world_base().inverse() * held->T_world_object * grasp.T_object_hand;
   IkOptions options;
   options.restarts = 0;
   Grasp now = grasp;
-  const auto at = robot_->inverse(arm_, T_root_hand, RobotModel::with(set_point_, arm_, grasp.arm_joints), options);
+  const auto at = robot_->inverse(arm_, T_root_hand, RobotModel::with(snapshot_.set_point(), arm_, grasp.arm_joints), options);
   if (!at) return std::nullopt;
-  const auto before = robot_->inverse(arm_, T_root_hand * T_grasp_standoff, RobotModel::with(set_point_, arm_, *at), options);
+  const auto before = robot_->inverse(arm_, T_root_hand * T_grasp_standoff, RobotModel::with(snapshot_.set_point(), arm_, *at), options);
   if (!before) return std::nullopt;
   now.arm_joints = *at;
   now.approach_joints = *before;
@@ -182,13 +182,13 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     at_offer_ = false;
     status_.object = offer->object;
     status_.human = offer->giver;
-    const Vector3 p_asked = status_.exchange_point = object(offer->object)->T_world_object.translation();
+    const Vector3 p_asked = status_.exchange_point = snapshot_.object(offer->object)->T_world_object.translation();
     destinations_.clear();
     GraspList list = co_await ask_grasps(offer->object, "", settings_.max_grasps_onto());
     if (!list.grasps.empty()) list.outcome = co_await keep_off_fingers(offer->object, offer->giver, list.grasps);
     if (!list.outcome.good || list.grasps.empty()) {
       const auto moved_on = [this, &offer, &p_asked] {
-        const SceneObject* held = object(offer->object);
+        const SceneObject* held = snapshot_.object(offer->object);
         return held == nullptr || (held->T_world_object.translation() - p_asked).norm() > kMovedOn;
       };
       if (moved_on()) continue;
@@ -208,7 +208,7 @@ Routine<Outcome> ManipulationPlanner::receive(const std::string& wanted, const s
     const auto way = [this](const Grasp& g) {
       const bool serves = std::any_of(destinations_.begin(), destinations_.end(), [&g](const Destination& d) { return d.grasp == g.id; });
       const double farther = (g.epsilon < kWeak ? kForStrength : 0.0) + (serves ? 0.0 : kForPlacing);
-      return std::floor(((g.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + farther) / kSameWay);
+      return std::floor(((g.approach_joints - RobotModel::part(snapshot_.set_point(), arm_)).cwiseAbs().maxCoeff() + farther) / kSameWay);
     };
     std::stable_sort(list.grasps.begin(), list.grasps.end(), [&way](const Grasp& a, const Grasp& b) { return way(a) < way(b); });
     list.grasps.resize(std::min<std::size_t>(list.grasps.size(), settings_.max_grasps()));
@@ -239,7 +239,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   std::optional<Grasp> grasp = aimed(object_id, chosen);
   if (!grasp) co_return out_of_reach;
   Motion approach = approach_to(object_id, giver, *grasp, attempt);
-  const Vector opened = RobotModel::with(set_point_, fingers_, chosen.pregrasp_joints);
+  const Vector opened = RobotModel::with(snapshot_.set_point(), fingers_, chosen.pregrasp_joints);
   PlannedPath way = co_await plan_path(opened, approach);
   if (!way.outcome.good) co_return way.outcome.of("approach");
   Outcome opening = co_await tell_hand(HandAction::move, chosen.pregrasp_joints);
@@ -248,7 +248,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   const auto steady = [this, &object_id, &giver] { return offered(object_id, giver).has_value(); };
   // Who is eager puts it into the open hand.
   const auto put_into_hand = [this, &object_id, &chosen] {
-    const SceneObject* given = object(object_id);
+    const SceneObject* given = snapshot_.object(object_id);
     if (given == nullptr || given->holder != Holder::robot) return false;
     const Vector3 in_hand = T_world_tool().inverse() * given->T_world_object.translation();
     return (in_hand - chosen.T_object_hand.inverse().translation()).norm() < kInHand;
@@ -269,8 +269,8 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     last.end = offers ? MotionEnd::failed : MotionEnd::target_moved;
     grasp = offers ? aimed(object_id, chosen) : std::nullopt;
     if (!grasp) break;
-    const Pose T_before =
-        scene_.T_world_base * robot_->link_pose(RobotModel::with(set_point_, arm_, grasp->approach_joints), robot_->tool_link());
+    const Pose T_before = snapshot_.T_world_base() *
+                          robot_->link_pose(RobotModel::with(snapshot_.set_point(), arm_, grasp->approach_joints), robot_->tool_link());
     last = Outcome::failure(object_id + " is moved about");
     last.end = MotionEnd::target_moved;
     if ((T_before.translation() - T_world_tool().translation()).norm() > kAimed) continue;
@@ -278,7 +278,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     if (!last.good) break;
     std::vector<Grasp> this_one{*grasp};
     last = co_await keep_off_fingers(object_id, giver, this_one);
-    if (last.good && object(object_id) == nullptr) last = Outcome::out_of_sight(object_id);
+    if (last.good && snapshot_.object(object_id) == nullptr) last = Outcome::out_of_sight(object_id);
     if (!last.good) break;
     Motion reach_object;
     reach_object.phase = ActionPhase::reaching_object;
@@ -286,7 +286,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     reach_object.straight = true;
     reach_object.allowed = {object_id, giver};
     reach_object.aims_at = object_id;
-    reach_object.p_world_aim = status_.exchange_point = object(object_id)->T_world_object.translation();
+    reach_object.p_world_aim = status_.exchange_point = snapshot_.object(object_id)->T_world_object.translation();
     reach_object.aim_slack = settings_.aim_slack();
     reach_object.patience = kReachPatience;
     at_offer_ = true;
@@ -308,7 +308,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   at_offer_ = true;
   // What lies in the hand otherwise than planned is pressed on where the fingers are.
   const bool laid_in = put_into_hand();
-  const Vector closing = laid_in ? RobotModel::part(set_point_, robot_->require_group("hand")) : grasp->hand_joints;
+  const Vector closing = laid_in ? RobotModel::part(snapshot_.set_point(), robot_->require_group("hand")) : grasp->hand_joints;
   HandResult closed = co_await hand(HandAction::grasp, closing, settings_.hand_timeout(), &grasp->hand_effort);
   if (!closed.outcome.good || (closed.state != HandState::grasped && !laid_in)) {
     const Outcome why = closed.outcome.good ? Outcome::failure("the hand did not get hold of it") : closed.outcome;
@@ -317,7 +317,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
   }
   status_.phase = ActionPhase::waiting_for_release;
   const auto mine = [this, &object_id] {
-    const SceneObject* taken = object(object_id);
+    const SceneObject* taken = snapshot_.object(object_id);
     return taken != nullptr && taken->holder == Holder::robot;
   };
   // Fingers that press on it feel some of its weight, too: it is the robot's when that stays and the giver's hand has gone.
@@ -334,7 +334,7 @@ Routine<Outcome> ManipulationPlanner::take(const std::string& object_id, const s
     co_return moved;
   }
   grasp_ = *grasp;
-  hold(*object(object_id));
+  hold(*snapshot_.object(object_id));
   Motion back;
   back.phase = ActionPhase::retreat;
   back.straight = true;
@@ -354,26 +354,27 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {giver};
   approach.aims_at = object_id;
-  approach.p_world_aim = object(object_id)->T_world_object.translation();
+  approach.p_world_aim = snapshot_.object(object_id)->T_world_object.translation();
   approach.aim_slack = settings_.approach_slack();
   approach.follows = grasp;
   approach.patience = kApproachPatience;
   if (attempt > kHurried) return approach;
   approach.think = kThink;
-  approach.longest = kDetour * (grasp.approach_joints - RobotModel::part(set_point_, arm_)).cwiseAbs().maxCoeff() + attempt * kMoreThan;
+  approach.longest =
+      kDetour * (grasp.approach_joints - RobotModel::part(snapshot_.set_point(), arm_)).cwiseAbs().maxCoeff() + attempt * kMoreThan;
   return approach;
 }
 
 Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object_id, const std::string& giver, std::vector<Grasp>& grasps) {
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
   auto clear = std::make_shared<std::vector<Grasp>>();
-  HumanState around = people_;
+  HumanState around = snapshot_.people();
   for (Person& who : around.people) {
     if (who.id != giver) continue;
-    if (const SceneObject* held = object(object_id)) who = with_fingers_bent(who, held->T_world_object.translation());
+    if (const SceneObject* held = snapshot_.object(object_id)) who = with_fingers_bent(who, held->T_world_object.translation());
     who.inflation += kOffFingers;
   }
-  const std::function<void()> job = [this, clear, around, grasps, object_id, world = world_, scene = scene_, q = posture()] {
+  const std::function<void()> job = [this, clear, around, grasps, object_id, world = world_, scene = snapshot_.scene(), q = posture()] {
     constexpr int kSteps = 6;
     world->set_scene(scene);
     world->set_people(around);
@@ -402,9 +403,9 @@ Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object
 
 /// While the giver's hand is still excepted: from so near to it nothing but straight away leads off.
 Routine<Outcome> ManipulationPlanner::draw_back(const std::string& object_id, const std::string& giver) {
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   const Vector3 p_hand = T_world_tool().translation();
-  const Person* who = person(giver);
+  const Person* who = snapshot_.person(giver);
   const auto far = [&p_hand](const Vector3& p) { return (p - p_hand).norm() > kNear; };
   const bool clear =
       who == nullptr || std::all_of(who->joints.begin(), who->joints.end(), [&far](const BodyJoint& j) { return far(j.position); });
@@ -430,7 +431,8 @@ Routine<Outcome> ManipulationPlanner::step_back(const std::string& object_id, co
     Pose T = T_world_tool();
     T.translation() += kStepBack * way;
     const auto joints = reach(T);
-    if (!joints || !way_out_.leads_away(start, RobotModel::with(start, arm_, *joints), scene_.T_world_base, people_)) continue;
+    if (!joints || !way_out_.leads_away(start, RobotModel::with(start, arm_, *joints), snapshot_.T_world_base(), snapshot_.people()))
+      continue;
     back.goals = {*joints};
     PlannedPath planned = co_await plan_path(start, back);
     if (!planned.outcome.good) continue;

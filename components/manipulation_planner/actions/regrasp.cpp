@@ -19,14 +19,14 @@ constexpr std::size_t kMostPlaces = 4;  // on a surface that are tried
 }  // namespace
 
 HandState ManipulationPlanner::hand_state() const {
-  if (hand_ == 0) return execution_->hand;
-  const auto other = std::find_if(execution_->other_hands.begin(), execution_->other_hands.end(),
+  if (hand_ == 0) return snapshot_.execution()->hand;
+  const auto other = std::find_if(snapshot_.execution()->other_hands.begin(), snapshot_.execution()->other_hands.end(),
                                   [this](const OtherHandState& o) { return o.group == fingers_.name; });
-  return other == execution_->other_hands.end() ? HandState::idle : other->hand;
+  return other == snapshot_.execution()->other_hands.end() ? HandState::idle : other->hand;
 }
 
 bool ManipulationPlanner::holds(const std::string& object_id) const {
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   return held != nullptr && held->holder == Holder::robot && hand_index(hands_, held->holder_id) == static_cast<int>(hand_);
 }
 
@@ -50,7 +50,7 @@ Routine<Outcome> ManipulationPlanner::others_to_rest() {
   const std::string used = arm_.name;
   for (const Manipulator& other : hands_) {
     if (other.arm == nullptr || other.name == used) continue;
-    const Vector off = RobotModel::part(set_point_ - robot_->rest_posture(), *other.arm);
+    const Vector off = RobotModel::part(snapshot_.set_point() - robot_->rest_posture(), *other.arm);
     if (off.cwiseAbs().maxCoeff() < kAtRest) continue;
     const std::optional<Grasp> grasp = grasp_;
     Outcome done = co_await use_arm(other.name);
@@ -69,7 +69,7 @@ Routine<ManipulationPlanner::RegraspSteps> ManipulationPlanner::ask_regrasp(cons
   RegraspRequest request;
   request.id = next_request();
   request.object = object_id;
-  request.start = set_point_;
+  request.start = snapshot_.set_point();
   request.T_world_goal = T_world_goal;
   request.both = both;
   request.seed = goal_.id;
@@ -87,14 +87,15 @@ Routine<ManipulationPlanner::RegraspSteps> ManipulationPlanner::ask_regrasp(cons
 
 std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const SceneObject& seen, const ObjectModel& model) const {
   if (goal.has_goal) return {goal.T_world_goal};
-  const auto box = std::find_if(scene_.boxes.begin(), scene_.boxes.end(), [&](const SceneBox& b) { return b.id == goal.surface; });
-  if (box == scene_.boxes.end() || !box->supports) return {};
+  const auto box =
+      std::find_if(snapshot_.scene().boxes.begin(), snapshot_.scene().boxes.end(), [&](const SceneBox& b) { return b.id == goal.surface; });
+  if (box == snapshot_.scene().boxes.end() || !box->supports) return {};
   std::vector<Vector3> shoulders;
   for (const Manipulator& m : hands_) {
     if (m.arm == nullptr || m.arm->axes.empty()) continue;
     const Axis& first = robot_->axes()[static_cast<std::size_t>(m.arm->axes.front())];
     const int link = robot_->joints()[static_cast<std::size_t>(first.joint)].child;
-    shoulders.push_back((scene_.T_world_base * robot_->link_pose(set_point_, link)).translation());
+    shoulders.push_back((snapshot_.T_world_base() * robot_->link_pose(snapshot_.set_point(), link)).translation());
   }
   const Pose& now = seen.T_world_object;
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(std::atan2(now.linear()(1, 0), now.linear()(0, 0)), Vector3::UnitZ()));
@@ -120,7 +121,7 @@ std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const 
   for (double x = -x_end; x <= x_end + 1e-9; x += kGrid) {
     for (double y = -y_end; y <= y_end + 1e-9; y += kGrid) {
       const Vector3 at = box->T_world_box * Vector3(x, y, box->size.z() / 2);
-      const bool taken = std::any_of(scene_.objects.begin(), scene_.objects.end(), [&](const SceneObject& other) {
+      const bool taken = std::any_of(snapshot_.scene().objects.begin(), snapshot_.scene().objects.end(), [&](const SceneObject& other) {
         return other.id != seen.id && (other.T_world_object.translation() - at).head<2>().norm() < apart;
       });
       if (taken || !inside(at)) continue;
@@ -148,15 +149,16 @@ std::vector<Pose> ManipulationPlanner::places_for(const ActionGoal& goal, const 
 Routine<Outcome> ManipulationPlanner::wait_standing(const std::string& object_id) {
   if (status_.holding) co_return Outcome::failure(attachment_.object + " is in the hand: it must be put down first");
   status_.phase = ActionPhase::looking_for_object;
-  const bool seen = co_await waiting_.until([this, &object_id] { return object(object_id) != nullptr; }, settings_.sight_timeout());
+  const bool seen =
+      co_await waiting_.until([this, &object_id] { return snapshot_.object(object_id) != nullptr; }, settings_.sight_timeout());
   if (!seen) co_return Outcome::failure("object " + object_id + " is not in the scene");
   const auto stands = [this, &object_id] {
-    const SceneObject* thing = object(object_id);
+    const SceneObject* thing = snapshot_.object(object_id);
     return thing != nullptr && thing->holder != Holder::robot && thing->holder != Holder::human;
   };
   const bool free = co_await waiting_.until(stands, settings_.sight_timeout());
   if (!free) co_return Outcome::failure(object_id + " is held: it must stand first");
-  if (model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
+  if (snapshot_.model_of(object_id) == nullptr) co_return Outcome::failure("object " + object_id + " has no model");
   co_await waiting_.pause(settings_.settle_time());
   co_return Outcome{};
 }
@@ -168,7 +170,7 @@ Routine<Outcome> ManipulationPlanner::regrasp(const ActionGoal& goal) {
   RegraspSteps plan;
   plan.outcome = Outcome::failure(goal.surface.empty() ? "it was not said where " + object_id + " is to stand"
                                                        : "there is no free place on a surface called " + goal.surface);
-  const std::vector<Pose> places = places_for(goal, *object(object_id), *model_of(object_id));
+  const std::vector<Pose> places = places_for(goal, *snapshot_.object(object_id), *snapshot_.model_of(object_id));
   for (const Pose& place : places) {
     plan = co_await ask_regrasp(object_id, place, false);
     if (plan.outcome.good) break;
@@ -251,8 +253,8 @@ Routine<Outcome> ManipulationPlanner::make_room() {
   Outcome rested = co_await others_to_rest();
   if (rested.good) co_return rested;
   const Pose T_now = T_world_tool();
-  const Eigen::Matrix3d base = scene_.T_world_base.linear();
-  const double side = base.col(1).dot(p_world_shoulder() - scene_.T_world_base.translation()) < 0 ? -1 : 1;
+  const Eigen::Matrix3d base = snapshot_.T_world_base().linear();
+  const double side = base.col(1).dot(p_world_shoulder() - snapshot_.T_world_base().translation()) < 0 ? -1 : 1;
   const std::vector<Vector3> ways{{0, 1, 0.3}, {0, 1, 0}, {0.5, 1, 0}, {-0.5, 1, 0}, {0, 0.3, 1}, {0, 1, -0.5}, {0.7, 0, 0.7}};
   for (const Vector3& way : ways) {
     std::optional<Vector> farthest;
@@ -276,14 +278,16 @@ Routine<Outcome> ManipulationPlanner::make_room() {
 
 Vector3 ManipulationPlanner::p_world_shoulder() const {
   const Axis& first = robot_->axes()[static_cast<std::size_t>(arm_.axes.front())];
-  return (scene_.T_world_base * robot_->link_pose(set_point_, robot_->joints()[static_cast<std::size_t>(first.joint)].child)).translation();
+  return (snapshot_.T_world_base() *
+          robot_->link_pose(snapshot_.set_point(), robot_->joints()[static_cast<std::size_t>(first.joint)].child))
+      .translation();
 }
 
 /// What the hand holds does not lie in it quite as planned: it is the object that goes to its place, or where both arms reach it near that.
 std::optional<Vector> ManipulationPlanner::meeting_posture(const RegraspStep& step) const {
   const auto taker = std::find_if(hands_.begin(), hands_.end(), [&](const Manipulator& m) { return m.name == step.to; });
   if (taker == hands_.end() || taker->arm == nullptr) return std::nullopt;
-  const Pose T_base_world = scene_.T_world_base.inverse();
+  const Pose T_base_world = snapshot_.T_world_base().inverse();
   const Pose T_grasp_standoff = robot_->link_pose(step.q, taker->palm).inverse() * robot_->link_pose(step.before, taker->palm);
   IkOptions near_by;
   near_by.restarts = 0;
@@ -325,7 +329,7 @@ Routine<Outcome> ManipulationPlanner::pass(const std::string& object_id, const R
   }
   if (!done.good) co_return done;
   co_await waiting_.pause(settings_.settle_time());
-  const SceneObject* held = object(object_id);
+  const SceneObject* held = snapshot_.object(object_id);
   if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
   hold(*held);
 
@@ -342,7 +346,7 @@ Routine<Outcome> ManipulationPlanner::pass(const std::string& object_id, const R
     release_object();
     co_return Outcome::failure("the other hand does not feel the load of " + object_id);
   }
-  hold(*object(object_id));
+  hold(*snapshot_.object(object_id));
   co_return Outcome{};
 }
 
@@ -373,7 +377,7 @@ Routine<Outcome> ManipulationPlanner::let_go(const std::string& object_id, const
 
 Routine<Outcome> ManipulationPlanner::put_down(const std::string& object_id, const RegraspStep& step) {
   if (!holds(object_id)) co_return Outcome::failure("the hand does not hold " + object_id);
-  const Pose T_base_world = scene_.T_world_base.inverse(), T_object_tool = attachment_.T_tool_object.inverse();
+  const Pose T_base_world = snapshot_.T_world_base().inverse(), T_object_tool = attachment_.T_tool_object.inverse();
   IkOptions options;
   options.restarts = 2;
   Pose T_world_object = step.T_world_object;

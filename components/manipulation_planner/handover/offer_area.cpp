@@ -19,16 +19,17 @@ Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
 double ManipulationPlanner::room_before(const Person& who, const Vector& posture) const {
   double room = std::numeric_limits<double>::infinity();
-  const Vector3 p_hand = scene_.T_world_base * robot_->link_pose(posture, palm_).translation();
+  const Vector3 p_hand = snapshot_.T_world_base() * robot_->link_pose(posture, palm_).translation();
   for (const Side side : {Side::left, Side::right}) {
     const Vector3 p_offer = comfortable_reach(who, side);
-    room = std::min({room, level(p_hand - p_offer).norm() - kRoom, way_out_.distance(posture, scene_.T_world_base, p_offer) - kArmRoom});
+    room =
+        std::min({room, level(p_hand - p_offer).norm() - kRoom, way_out_.distance(posture, snapshot_.T_world_base(), p_offer) - kArmRoom});
   }
   return room;
 }
 
 bool ManipulationPlanner::crowds(const std::string& id) const {
-  const Person* who = person(id);
+  const Person* who = snapshot_.person(id);
   return who != nullptr && room_before(*who, posture()) < -kCrowded;
 }
 
@@ -42,9 +43,10 @@ std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) cons
     Vector joints;
     double room, from_rest;
   };
-  const Pose T_rest = scene_.T_world_base * robot_->link_pose(robot_->rest_posture(), palm_);
-  const Vector3 away = level(scene_.T_world_base.translation() - who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position)
-                           .stableNormalized();
+  const Pose T_rest = snapshot_.T_world_base() * robot_->link_pose(robot_->rest_posture(), palm_);
+  const Vector3 away =
+      level(snapshot_.T_world_base().translation() - who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position)
+          .stableNormalized();
   const Vector3 aside = Vector3::UnitZ().cross(away);
   std::vector<Place> places;
   IkOptions options;
@@ -53,7 +55,7 @@ std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) cons
     for (const double beside : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) {
       Pose T = T_rest;
       T.translation() += back * away + beside * aside;
-      const auto joints = robot_->inverse(arm_, scene_.T_world_base.inverse() * T, robot_->rest_posture(), options);
+      const auto joints = robot_->inverse(arm_, snapshot_.T_world_base().inverse() * T, robot_->rest_posture(), options);
       if (joints) places.push_back({*joints, room_before(who, RobotModel::with(posture(), arm_, *joints)), std::hypot(back, beside)});
     }
   }
@@ -73,7 +75,7 @@ Routine<Outcome> ManipulationPlanner::go_to_rest() {
   motion.phase = ActionPhase::to_rest;
   motion.speed = attachment_.object.empty() ? 1.0 : settings_.carry_speed();
   const Vector rest = RobotModel::with(posture(), arm_, RobotModel::part(robot_->rest_posture(), arm_));
-  const Person* who = person("");
+  const Person* who = snapshot_.person("");
   if (who != nullptr && room_before(*who, rest) < -kCrowded) motion.goals = postures_before(*who);
   if (motion.goals.empty()) motion.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
   Outcome outcome = co_await move(motion);
@@ -81,7 +83,7 @@ Routine<Outcome> ManipulationPlanner::go_to_rest() {
 }
 
 Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver, bool for_offer) {
-  const Person* who = person(giver);
+  const Person* who = snapshot_.person(giver);
   if (who == nullptr) co_return Outcome::failure("nobody is in sight");
   Motion back;
   back.phase = ActionPhase::making_room;

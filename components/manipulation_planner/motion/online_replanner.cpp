@@ -132,14 +132,14 @@ void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around&
 }
 
 Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
-  const Person* whom = person(motion.receiver);
+  const Person* whom = snapshot_.person(motion.receiver);
   if (whom == nullptr) co_return false;
   const Vector3 torso = whom->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   if ((torso - motion.receiver_at).norm() < kStepAside) co_return false;
   const Pose T_world_object =
-      scene_.T_world_base * robot_->link_pose(RobotModel::with(posture(), arm_, goal), palm_) * attachment_.T_tool_object;
+      snapshot_.T_world_base() * robot_->link_pose(RobotModel::with(posture(), arm_, goal), palm_) * attachment_.T_tool_object;
   ExchangeChoice choice = co_await choose_exchange(motion.receiver, &T_world_object);
-  whom = person(motion.receiver);
+  whom = snapshot_.person(motion.receiver);
   if (!choice.outcome.good || whom == nullptr) co_return false;
   if (choice.search.poses.empty()) co_return !choice.kept;
   if (choice.kept && *choice.kept <= choice.search.poses.front().cost + kWorthMoving) {
@@ -153,20 +153,20 @@ Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
 }
 
 bool ManipulationPlanner::gone(const Running& running) const {
-  return execution_->trajectory != running.command || execution_->motion != MotionState::running;
+  return snapshot_.execution()->trajectory != running.command || snapshot_.execution()->motion != MotionState::running;
 }
 
 Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& motion) {
-  if (active_.trajectory != running.command || active_.rest.size() != static_cast<int>(arm_.axes.size()))
+  if (snapshot_.active().trajectory != running.command || snapshot_.active().rest.size() != static_cast<int>(arm_.axes.size()))
     co_return Outcome::failure("the controller tells of another motion");
-  const double duration = active_.rest.duration();
+  const double duration = snapshot_.active().rest.duration();
   Leave leave;
   leave.offset = duration - running.duration;
   leave.standing = at_rest();
-  leave.at = active_.time + (leave.standing ? 0.0 : settings_.replan_time());
+  leave.at = snapshot_.active().time + (leave.standing ? 0.0 : settings_.replan_time());
   if (!leave.standing && leave.at <= leave.offset) co_return Outcome::failure("it has not begun yet");
   if (leave.at + settings_.replan_time() > duration) co_return Outcome::failure("it is nearly there");
-  leave.from = active_.rest.at(leave.at);
+  leave.from = snapshot_.active().rest.at(leave.at);
   leave.rest = duration - leave.at;
   const Vector start = RobotModel::with(posture(), arm_, leave.from.position);
   const Running* now = &running;
@@ -250,10 +250,10 @@ Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& mo
                                               const TrajectoryReply& timed, const std::vector<Vector>& nodes) {
   const Running* now = &running;
   const bool standing = leave.standing;
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, objects_);
+  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
   const std::function<void()> job = [this, ways, standing, from = leave.from, world = world_,
-                                     around = Around{scene_, people_, layers_.at(waiting_.now()), attachment_, motion.allowed,
-                                                     RobotModel::with(posture(), arm_, leave.from.position),
+                                     around = Around{snapshot_.scene(), snapshot_.people(), snapshot_.layers(waiting_.now()), attachment_,
+                                                     motion.allowed, RobotModel::with(posture(), arm_, leave.from.position),
                                                      live_pace_.heard(waiting_.now()) ? cost_gain_ : 1.0}] {
     weigh(*ways, *world, around, from, standing);
   };
@@ -265,7 +265,7 @@ Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& mo
     co_return Outcome::failure("no free motion leads over to the new path");
   }
   if (!ways->worth) co_return Outcome::failure("the new path takes longer than it is worth");
-  if (standing ? !at_rest() || active_.time > leave.at + 1e-6 : active_.time + kEarly > leave.at) {
+  if (standing ? !at_rest() || snapshot_.active().time > leave.at + 1e-6 : snapshot_.active().time + kEarly > leave.at) {
     ++live_counts_.refused;
     co_return Outcome::failure("the new path came too late");
   }
@@ -273,10 +273,10 @@ Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& mo
   command.switch_at = standing ? 0.0 : leave.at - leave.offset;
   Outcome heard = co_await send(command);
   if (!heard.good) co_return heard;
-  if (execution_->motion == MotionState::refused) {
+  if (snapshot_.execution()->motion == MotionState::refused) {
     ++live_counts_.refused;
-    const Outcome why = Outcome::failure("the new path was refused: " + execution_->reason);
-    co_await waiting_.until([this, now] { return execution_->trajectory == now->command; }, 1.0);
+    const Outcome why = Outcome::failure("the new path was refused: " + snapshot_.execution()->reason);
+    co_await waiting_.until([this, now] { return snapshot_.execution()->trajectory == now->command; }, 1.0);
     co_return why;
   }
   running.command = command.id;

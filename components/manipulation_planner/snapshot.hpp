@@ -1,0 +1,76 @@
+// The newest state of the world, as the messages that came in report it. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/collision/collision_world.hpp"
+#include "common/cost/cost_layers.hpp"
+#include "common/messages/execution.hpp"
+#include "common/messages/world.hpp"
+#include "common/model/object_model.hpp"
+
+namespace handsel::manipulation_planner {
+
+/// Newest scene, people, facts, cost layers and state of the controller.
+class Snapshot {
+ public:
+  /// `objects`: the models of the objects that scenes name.
+  explicit Snapshot(ObjectLibrary objects) : objects_(std::move(objects)) {}
+
+  /// Takes the newest scene; objects, boxes and base of the robot in the world frame.
+  void on(const Scene& scene) { scene_ = scene; }
+  /// Takes the newest people, joints in the world frame.
+  void on(const HumanState& people) { people_ = people; }
+  /// Takes the facts that hold now; they replace all before.
+  void on(const Facts& facts) { facts_ = facts; }
+  /// Takes a cost layer; `sent`: when its writer sent the layer.
+  void on(const Costmap& layer, TimePoint sent, TimePoint now) { layers_.put(layer, sent, now); }
+  /// Takes the newest report of the controller.
+  void on(const ExecutionStatus& status) { execution_ = status; }
+  /// Takes what the controller runs, and its set-point.
+  void on(const ActiveTrajectory& active) { active_ = active; }
+
+  /// Returns the newest scene.
+  const Scene& scene() const { return scene_; }
+  /// Returns the pose of the robot's base in the world.
+  const Pose& T_world_base() const { return scene_.T_world_base; }
+  /// Returns the newest people.
+  const HumanState& people() const { return people_; }
+  /// Returns the facts that hold.
+  const Facts& facts() const { return facts_; }
+  /// Returns the newest report of the controller; nullopt: none has come.
+  const std::optional<ExecutionStatus>& execution() const { return execution_; }
+  /// Returns what the controller runs.
+  const ActiveTrajectory& active() const { return active_; }
+  /// Returns all axes as commanded [rad, m]; empty: not known yet.
+  const Vector& set_point() const { return active_.position; }
+  /// Returns the cost layers that are not stale at `now`.
+  LayersNow layers(TimePoint now) { return layers_.at(now); }
+  /// Returns which cost layer was left out and why, one sentence; empty: none was.
+  std::string complaint(TimePoint now) { return layers_.complaint(now); }
+
+  /// Returns the object of that id; null: it is not in the scene.
+  const SceneObject* object(const std::string& id) const;
+  /// Returns the box of that id on which things can stand; null: there is none.
+  const SceneBox* surface(const std::string& id) const;
+  /// Returns the model of an object of the scene; null: unknown.
+  const ObjectModel* model_of(const std::string& id) const;
+  /// Returns the models of objects.
+  const ObjectLibrary& objects() const { return objects_; }
+  /// Returns the person of that id, for an empty id the one nearest to the base; null: none.
+  const Person* person(const std::string& id) const;
+  /// Returns whether this person is out of sight and may be near their last place.
+  bool is_lost(const std::string& id) const;
+
+ private:
+  ObjectLibrary objects_;
+  Scene scene_;
+  HumanState people_;
+  Facts facts_;
+  CostLayers layers_;
+  std::optional<ExecutionStatus> execution_;
+  ActiveTrajectory active_;
+};
+
+}  // namespace handsel::manipulation_planner
