@@ -32,8 +32,8 @@ ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettin
       palm_(robot_->tool_link()),
       way_out_(*robot_, arm_),
       live_pace_(settings.live_period(), settings.live_longest(), 0.0),
-      client_(client),
-      commands_(client),
+      clients_(client, outbox_, waiting_, settings_),
+      worker_(outbox_, waiting_, settings_.request_timeout()),
       snapshot_(std::move(objects)),
       cost_(std::make_shared<HumanCost>(*robot_, cost)) {
   if (const Group* fingers = robot_->group("hand")) fingers_ = *fingers;
@@ -67,7 +67,7 @@ void ManipulationPlanner::on(const ActionGoal& goal) {
 void ManipulationPlanner::drop_action() {
   if (action_ && snapshot_.active().trajectory != 0) {
     halt_.emplace();
-    halt_->id = ++commands_;
+    halt_->id = clients_.ids.next_command();
     halt_->robot = robot_->name();
     halted_at_ = {};
   }
@@ -75,27 +75,15 @@ void ManipulationPlanner::drop_action() {
   taken_up_ = {};
   at_offer_ = false;
   waiting_.clear();
-  drop_path_ = path_awaited_;
+  clients_.path.drop();
 }
 
-void ManipulationPlanner::on(const GraspReply& reply) {
-  if (reply.id == RequestId{client_, requests_}) grasp_reply_ = reply;
-}
-void ManipulationPlanner::on(const RegraspReply& reply) {
-  if (reply.id == RequestId{client_, requests_}) regrasp_reply_ = reply;
-}
-void ManipulationPlanner::on(const PathReply& reply) {
-  if (reply.id != RequestId{client_, requests_}) return;
-  path_reply_ = reply;
-  path_awaited_ = false;
-}
 void ManipulationPlanner::on(const TrajectoryReply& reply) {
-  if (reply.id == RequestId{client_, requests_}) trajectory_reply_ = reply;
-  if (reply.id == comparison_) comparison_reply_ = reply;
+  clients_.trajectory.on(reply);
+  clients_.comparison.on(reply);
 }
 
 void ManipulationPlanner::step(TimePoint now, Outbox& out) {
-  out_ = &out;
   too_near_ = snapshot_.execution() && (snapshot_.execution()->causes & kTooNear) != 0 && snapshot_.active().trajectory != 0 &&
               std::abs(snapshot_.active().speed_factor) < kCreeping;
   // An arm that stands has no collision ahead: it starts, and is held back again.
@@ -105,14 +93,13 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   blocked_for_ = to_seconds(now - free_at_);
   waiting_.set_now(now);
   watch_offer();
-  halt(out);
-  if (drop_path_) {
+  halt();
+  if (clients_.path.take_dropped()) {
     PathRequest request;
-    request.id = {client_, requests_};
+    request.id = clients_.ids.newest_request();
     request.group = arm_.name;
     request.cancel = true;
-    out.path_requests.push_back(request);
-    drop_path_ = path_awaited_ = false;
+    clients_.path.send(request);
   }
   if (status_.state == ActionState::running && !action_) {
     action_ = run(goal_);
@@ -121,7 +108,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
     waiting_.poll(now);
   }
   if (!slipped()) held_at_ = now;
-  if (action_ && !action_.done() && to_seconds(now - held_at_) > kSlipTime) lose_object(out);
+  if (action_ && !action_.done() && to_seconds(now - held_at_) > kSlipTime) lose_object();
   if (action_ && action_.done()) {
     const Outcome& outcome = action_.result();
     status_.state = outcome.good ? ActionState::succeeded : ActionState::failed;
@@ -133,7 +120,7 @@ void ManipulationPlanner::step(TimePoint now, Outbox& out) {
   }
   if (!taken_up_.giver.empty()) status_.exchange_engaged = at_offer_ || still_offered();
   status_.time_to_exchange = time_to_exchange();
-  out_ = nullptr;
+  outbox_.move_to(out);
 }
 
 bool ManipulationPlanner::in_hand(const SceneObject& held) const {
@@ -159,7 +146,7 @@ bool ManipulationPlanner::slipped() const {
 }
 
 /// Said again until it is heard: at first the epoch may have changed.
-void ManipulationPlanner::halt(Outbox& out) {
+void ManipulationPlanner::halt() {
   constexpr double kAgain = 0.1;  // [s]
   if (!halt_) return;
   const bool heard =
@@ -168,15 +155,15 @@ void ManipulationPlanner::halt(Outbox& out) {
   if (to_seconds(waiting_.now() - halted_at_) < kAgain) return;
   halted_at_ = waiting_.now();
   halt_->epoch = snapshot_.execution() ? snapshot_.execution()->epoch : 0;
-  out.trajectories.push_back(*halt_);
+  outbox_.trajectories.push_back(*halt_);
 }
 
 /// The action ends where the arm is.
-void ManipulationPlanner::lose_object(Outbox& out) {
+void ManipulationPlanner::lose_object() {
   const std::string lost = attachment_.object;
   drop_action();
   release_object();
-  halt(out);
+  halt();
   status_.state = ActionState::failed;
   status_.exchange_engaged = false;
   status_.failure = ActionFailure::other;
@@ -243,86 +230,76 @@ void ManipulationPlanner::refuse(const std::string& what, const std::string& rea
   if (status_.refusals.size() < 32) status_.refusals.push_back({what, reason});
 }
 
-Routine<Outcome> ManipulationPlanner::work(const std::function<void()>& job) {
-  const std::uint64_t mine = ++jobs_started_;
-  out_->jobs.push_back(job);
-  const bool done = co_await waiting_.until([this, mine] { return jobs_done_ >= mine; }, settings_.request_timeout());
-  co_return done ? Outcome{} : Outcome::failure("the computation did not end in time", ActionFailure::timed_out);
-}
-
 Routine<ManipulationPlanner::GraspList> ManipulationPlanner::ask_grasps(const std::string& object_id, const std::string& for_human,
                                                                         std::uint32_t most) {
   status_.phase = ActionPhase::choosing_grasp;
   GraspRequest request;
-  request.id = next_request();
+  clients_.grasp.open(request);
   request.object = object_id;
   request.start = snapshot_.set_point();
   request.for_human = for_human;
   request.max_grasps = most;
   request.seed = goal_.id;
-  const bool answered = co_await ask(&Outbox::grasp_requests, request, grasp_reply_, settings_.request_timeout());
+  const bool answered = co_await clients_.grasp.ask(request);
   GraspList list;
   if (!answered) {
     list.outcome = Outcome::no_answer("grasp");
     co_return list;
   }
-  list.grasps = grasp_reply_->grasps;
-  for (const auto& rejected : grasp_reply_->rejected) refuse("grasps: " + rejected.what, rejected.reason);
-  if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object_id + ": " + grasp_reply_->reason);
+  list.grasps = clients_.grasp.reply()->grasps;
+  for (const auto& rejected : clients_.grasp.reply()->rejected) refuse("grasps: " + rejected.what, rejected.reason);
+  if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object_id + ": " + clients_.grasp.reply()->reason);
   co_return list;
 }
 
 PathRequest ManipulationPlanner::path_request(const Vector& start, const Motion& motion) {
   PathRequest request;
-  request.id = next_request();
+  clients_.path.open(request);
   request.group = arm_.name;
   request.start = start;
   request.goals = motion.goals;
   request.attachment = attachment_;
   request.allowed_contacts = motion.allowed;
   request.time_limit = settings_.planning_time();
-  request.seed = goal_.id + requests_;
+  request.seed = goal_.id + request.id.number;
   request.straight = motion.straight;
-  path_reply_.reset();
-  path_awaited_ = true;
   return request;
 }
 
 Routine<ManipulationPlanner::PlannedPath> ManipulationPlanner::plan_path(const Vector& start, const Motion& motion) {
   const PathRequest request = path_request(start, motion);
   PlannedPath planned;
-  for (double waited = 0; waited < settings_.request_timeout(); waited += settings_.request_retry()) {
-    out_->path_requests.push_back(request);
-    const bool come = co_await waiting_.until([this] { return path_reply_.has_value(); }, settings_.request_retry());
-    if (!come) continue;
-    planned.nodes = path_reply_->path;
-    double length = 0;
-    for (std::size_t i = 1; i < planned.nodes.size(); ++i) length += (planned.nodes[i] - planned.nodes[i - 1]).cwiseAbs().maxCoeff();
-    planned.start_touches = path_reply_->start_touches;
-    if (!path_reply_->solved) planned.outcome = Outcome::failure(path_reply_->reason);
-    if (length > motion.longest) planned.outcome = Outcome::failure("only a long way around leads there");
+  const bool answered = co_await clients_.path.ask(request);
+  if (!answered) {
+    planned.outcome = Outcome::no_answer("path");
     co_return planned;
   }
-  planned.outcome = Outcome::no_answer("path");
+  const PathReply& reply = *clients_.path.reply();
+  planned.nodes = reply.path;
+  double length = 0;
+  for (std::size_t i = 1; i < planned.nodes.size(); ++i) length += (planned.nodes[i] - planned.nodes[i - 1]).cwiseAbs().maxCoeff();
+  planned.start_touches = reply.start_touches;
+  if (!reply.solved) planned.outcome = Outcome::failure(reply.reason);
+  if (length > motion.longest) planned.outcome = Outcome::failure("only a long way around leads there");
   co_return planned;
 }
 
-TrajectoryRequest ManipulationPlanner::trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion) {
+TrajectoryRequest ManipulationPlanner::trajectory_request(TrajectoryClient& client, const std::vector<Vector>& nodes, const Vector& start,
+                                                          const Motion& motion) {
   TrajectoryRequest request;
-  request.id = next_request();
+  client.open(request);
   request.group = arm_.name;
   request.nodes = nodes;
   request.start = start;
   request.attachment = attachment_;
   request.allowed_contacts = motion.allowed;
   request.speed_scale = motion.speed;
-  trajectory_reply_.reset();
   return request;
 }
 
 TrajectoryCommand ManipulationPlanner::command_for(const Trajectory& trajectory, const Motion& motion) {
   TrajectoryCommand command;
-  command.id = ++commands_;
+  command.id = clients_.ids.next_command();
   command.epoch = snapshot_.execution()->epoch;
   command.robot = robot_->name();
   for (const int axis : arm_.axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
@@ -337,7 +314,7 @@ TrajectoryCommand ManipulationPlanner::command_for(const Trajectory& trajectory,
 Routine<Outcome> ManipulationPlanner::send(const TrajectoryCommand& command) {
   const std::uint64_t id = command.id;
   for (int tries = 0; tries < 5; ++tries) {
-    out_->trajectories.push_back(command);
+    outbox_.trajectories.push_back(command);
     const bool heard = co_await waiting_.until([this, id] { return snapshot_.execution()->trajectory == id; }, 0.3);
     if (heard) co_return Outcome{};
   }
@@ -345,19 +322,16 @@ Routine<Outcome> ManipulationPlanner::send(const TrajectoryCommand& command) {
 }
 
 Routine<Outcome> ManipulationPlanner::execute(const std::vector<Vector>& nodes, Motion& motion) {
-  const TrajectoryRequest request = trajectory_request(nodes, posture(), motion);
-  for (double waited = 0; !trajectory_reply_ && waited < settings_.request_timeout(); waited += settings_.request_retry()) {
-    out_->trajectory_requests.push_back(request);
-    co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
-  }
-  if (!trajectory_reply_) co_return Outcome::no_answer("trajectory");
-  if (!trajectory_reply_->solved) co_return Outcome::failure(trajectory_reply_->reason);
-  for (const auto& corner : trajectory_reply_->corners) refuse(corner.what, corner.reason);
+  const TrajectoryRequest request = trajectory_request(clients_.trajectory, nodes, posture(), motion);
+  const bool answered = co_await clients_.trajectory.ask(request);
+  if (!answered) co_return Outcome::no_answer("trajectory");
+  if (!clients_.trajectory.reply()->solved) co_return Outcome::failure(clients_.trajectory.reply()->reason);
+  for (const auto& corner : clients_.trajectory.reply()->corners) refuse(corner.what, corner.reason);
 
-  const TrajectoryCommand command = command_for(trajectory_reply_->trajectory, motion);
+  const TrajectoryCommand command = command_for(clients_.trajectory.reply()->trajectory, motion);
   Outcome heard = co_await send(command);
   if (!heard.good) co_return heard;
-  Running running{command.id, command.trajectory.duration(), nodes, trajectory_reply_->speeds};
+  Running running{command.id, command.trajectory.duration(), nodes, clients_.trajectory.reply()->speeds};
   const Running* now = &running;
   const auto ended = [this, now] {
     return snapshot_.execution()->trajectory != now->command ||
@@ -420,11 +394,11 @@ Routine<Outcome> ManipulationPlanner::stop_motion() {
   constexpr int kMaxTries = 5;
   constexpr double kPause = 0.3;  // [s] between tries
   TrajectoryCommand stop;
-  stop.id = ++commands_;
+  stop.id = clients_.ids.next_command();
   stop.epoch = snapshot_.execution()->epoch;
   stop.robot = robot_->name();
   for (int tries = 0; tries < kMaxTries && snapshot_.execution()->trajectory != stop.id; ++tries) {
-    out_->trajectories.push_back(stop);
+    outbox_.trajectories.push_back(stop);
     co_await waiting_.pause(kPause);
   }
   co_return Outcome{};
@@ -549,7 +523,7 @@ Routine<Outcome> ManipulationPlanner::withdraw(const std::string& touched, const
 
 Routine<Outcome> ManipulationPlanner::tell_hand(HandAction action, const Vector& position, const Vector* effort, double share_of_mass) {
   HandCommand command;
-  command.id = ++commands_;
+  command.id = clients_.ids.next_command();
   command.robot = robot_->name();
   command.group = hand_name();
   command.action = action;
@@ -564,7 +538,7 @@ Routine<Outcome> ManipulationPlanner::tell_hand(HandAction action, const Vector&
     const bool ready = co_await waiting_.until([this] { return may_move(); }, settings_.permission_timeout());
     if (!ready) break;
     command.epoch = snapshot_.execution()->epoch;
-    out_->hand_commands.push_back(command);
+    outbox_.hand_commands.push_back(command);
     heard = co_await waiting_.until([this, id] { return snapshot_.execution()->hand_command == id && hand_state() != HandState::refused; },
                                     0.3);
   }

@@ -24,59 +24,17 @@
 #include "common/model/manipulator.hpp"
 #include "common/model/robot_model.hpp"
 #include "common/trajectory/switch.hpp"
+#include "components/manipulation_planner/clients.hpp"
 #include "components/manipulation_planner/handover/otp_search.hpp"
+#include "components/manipulation_planner/motion/motion_end.hpp"
 #include "components/manipulation_planner/motion/retreat_planner.hpp"
+#include "components/manipulation_planner/outbox.hpp"
 #include "components/manipulation_planner/placing/place_search.hpp"
 #include "components/manipulation_planner/routine.hpp"
 #include "components/manipulation_planner/snapshot.hpp"
+#include "components/manipulation_planner/worker.hpp"
 
 namespace handsel::manipulation_planner {
-
-/// What the core wants sent; the node empties it after each step.
-struct Outbox {
-  std::vector<GraspRequest> grasp_requests;            ///< to the grasp planner
-  std::vector<RegraspRequest> regrasp_requests;        ///< to the grasp planner, for two hands
-  std::vector<PathRequest> path_requests;              ///< to the path planner; also those that cancel
-  std::vector<TrajectoryRequest> trajectory_requests;  ///< to the trajectory planner
-  std::vector<TrajectoryCommand> trajectories;         ///< to the trajectory controller
-  std::vector<HandCommand> hand_commands;              ///< to the controller of the hand
-  std::vector<std::function<void()>> jobs;             ///< long work; call job_done() after each
-};
-
-/// How a motion of the arm ended.
-enum class MotionEnd : std::uint8_t {
-  reached,           ///< its goal
-  failed,            ///< for a reason of its own
-  person_too_near,   ///< a person is so near that the controller lets the arm go no further
-  target_moved,      ///< what it aimed at was moved
-  giver_approached,  ///< what it aimed at was moved by a step of the giver toward the hand
-  late,              ///< it took longer than it may
-  taken,             ///< the receiver takes hold of the object already
-};
-
-/// Outcome of a part of an action.
-struct Outcome {
-  bool good{true};                          ///< the part has succeeded
-  std::string reason;                       ///< why not, one sentence
-  MotionEnd end{MotionEnd::reached};        ///< failed also where no motion was part of it
-  ActionFailure kind{ActionFailure::none};  ///< of a failure: recovery is chosen by it
-  /// Returns whether the target of the motion is no longer where it was.
-  bool target_moved() const { return end == MotionEnd::target_moved || end == MotionEnd::giver_approached; }
-  /// Returns whether another attempt at the same motion is of no use.
-  bool is_final() const { return target_moved() || end == MotionEnd::taken || end == MotionEnd::late; }
-  /// Makes a failure for a reason of its own; `why`: one sentence.
-  static Outcome failure(std::string why, ActionFailure of_kind = ActionFailure::other) {
-    return {false, std::move(why), MotionEnd::failed, of_kind};
-  }
-  /// Returns this failure with the part of the action in front of its reason.
-  Outcome of(const std::string& part) const { return {good, part + ": " + reason, end, kind}; }
-  /// Makes the failure that a planner, e.g. "path", has not replied in time.
-  static Outcome no_answer(const std::string& planner) {
-    return failure("the " + planner + " planner does not answer", ActionFailure::no_answer);
-  }
-  /// Makes the failure that an object or a person is not seen any more.
-  static Outcome out_of_sight(const std::string& what) { return failure(what + " is out of sight", ActionFailure::not_visible); }
-};
 
 class ManipulationPlanner {
  public:
@@ -108,16 +66,16 @@ class ManipulationPlanner {
   /// Takes what the controller runs, and its set point: the joints as commanded.
   void on(const ActiveTrajectory& active) { snapshot_.on(active); }
   /// Takes a reply; ignored unless it answers the newest request.
-  void on(const GraspReply& reply);
+  void on(const GraspReply& reply) { clients_.grasp.on(reply); }
   /// Takes a reply; ignored unless it answers the newest request.
-  void on(const RegraspReply& reply);
+  void on(const RegraspReply& reply) { clients_.regrasp.on(reply); }
   /// Takes a reply; ignored unless it answers the newest request.
-  void on(const PathReply& reply);
+  void on(const PathReply& reply) { clients_.path.on(reply); }
   /// Takes a reply; ignored unless it answers the newest request or the comparison that was asked
   /// for.
   void on(const TrajectoryReply& reply);
   /// Counts one job of the outbox as ended; what it wrote may be read from now on.
-  void job_done() { ++jobs_done_; }
+  void job_done() { worker_.job_done(); }
 
   /// What became of running paths.
   struct LiveCounts {
@@ -308,18 +266,6 @@ class ManipulationPlanner {
   bool holds(const std::string& object) const;                               // the hand in use holds it, as the scene has it
 
   // Parts of actions. References are to what lives in the frame of the routine that awaits.
-  /// Until `reply` has come: asks again each request_retry, since asking twice is harmless; false:
-  /// no reply within the time allowed [s].
-  template <class Request, class Reply>
-  Routine<bool> ask(std::vector<Request> Outbox::*desk, const Request& request, std::optional<Reply>& reply, double patience) {
-    reply.reset();
-    const auto come = [&reply] { return reply.has_value(); };
-    for (double waited = 0; !reply && waited < patience; waited += settings_.request_retry()) {
-      (out_->*desk).push_back(request);
-      co_await waiting_.until(come, settings_.request_retry());
-    }
-    co_return reply.has_value();
-  }
   Routine<GraspList> ask_grasps(const std::string& object, const std::string& for_human, std::uint32_t most);
   /// Which of the grasps, the first `most` of them, serve at one of the best `places` of the
   /// surface too (`onto` empty: of any), and where.
@@ -346,8 +292,8 @@ class ManipulationPlanner {
   bool gone(const Running& running) const;
   bool slipped() const;
   bool in_hand(const SceneObject& held) const;  ///< it is where the hand has hold of it
-  void halt(Outbox& out);
-  void lose_object(Outbox& out);
+  void halt();
+  void lose_object();
   /// Other goals when the receiver has moved so far that `goal` (arm axes) is no good handover
   /// configuration any more; true: it is none, even where there is no other.
   Routine<bool> follow(Motion& motion, const Vector& goal);
@@ -359,7 +305,9 @@ class ManipulationPlanner {
   Routine<ExchangeChoice> choose_exchange(const std::string& receiver, const Pose* T_world_object);
   static void lead_to(const ExchangeSearch& search, const Person& receiver, Motion& motion);
   PathRequest path_request(const Vector& start, const Motion& motion);
-  TrajectoryRequest trajectory_request(const std::vector<Vector>& nodes, const Vector& start, const Motion& motion);
+  using TrajectoryClient = Client<TrajectoryRequest, TrajectoryReply>;
+  TrajectoryRequest trajectory_request(TrajectoryClient& client, const std::vector<Vector>& nodes, const Vector& start,
+                                       const Motion& motion);
   TrajectoryCommand command_for(const Trajectory& trajectory, const Motion& motion);
   /// What a motion that leads over from one trajectory to another is checked in.
   struct Around {
@@ -384,7 +332,6 @@ class ManipulationPlanner {
   Routine<Outcome> hand_opened();  ///< after it was commanded to move
   Routine<Outcome> withdraw(const std::string& touched, const Motion& next);
   Routine<Outcome> retreat(const std::string& allowed_person, const std::string& object);
-  Routine<Outcome> work(const std::function<void()>& job);
 
   double time_to_exchange() const;  // as foreseen [s]
   bool at_rest() const;
@@ -397,7 +344,6 @@ class ManipulationPlanner {
   void release_object();
   void drop_action();
   void refuse(const std::string& what, const std::string& reason);
-  RequestId next_request() { return {client_, ++requests_}; }
   static void place_world(CollisionWorld& world, const Scene& scene, const HumanState& people);
   Pose T_world_tool() const;
   std::optional<Vector> reach(const Pose& T_world_tool) const;
@@ -413,10 +359,11 @@ class ManipulationPlanner {
   WayOut way_out_;
   Pace live_pace_;  // of looking at the motion that runs
   double cost_gain_{1};
-  std::uint64_t client_, requests_{0}, commands_;
-  std::uint64_t jobs_started_{0}, jobs_done_{0};
 
   Waiting waiting_;
+  Outbox outbox_;
+  Clients clients_;
+  Worker worker_;
   Routine<Outcome> action_;
   ActionGoal goal_;
   Offer taken_up_;  // by receive; empty: none
@@ -426,20 +373,12 @@ class ManipulationPlanner {
   std::optional<Vector> opens_to_;
   bool at_offer_{};  // the hand, from the straight approach until the retreat has ended
   ActionStatus status_;
-  Outbox* out_{nullptr};
 
   Snapshot snapshot_;
   TimePoint free_at_{}, held_back_at_{}, held_at_{}, offered_at_{};
   // how long the forecast, or a person too near, has held the robot back [s]
   double blocked_for_{0};
   bool too_near_{false};
-  std::optional<GraspReply> grasp_reply_;
-  std::optional<RegraspReply> regrasp_reply_;
-  std::optional<PathReply> path_reply_;
-  std::optional<TrajectoryReply> trajectory_reply_, comparison_reply_;
-  RequestId comparison_;      // for the time that the path which runs would take from now on
-  bool path_awaited_{false};  // the newest path request is without a reply
-  bool drop_path_{false};     // the reply to it is not needed any more
   // what a dropped action has set in motion is to end, until the controller has acknowledged it
   std::optional<TrajectoryCommand> halt_;
   TimePoint halted_at_{};
@@ -449,7 +388,6 @@ class ManipulationPlanner {
   std::vector<Destination> destinations_;
   LiveCounts live_counts_;
   // Used by jobs only, which run one after the other.
-  std::shared_ptr<CollisionWorld> world_;
   std::shared_ptr<HumanCost> cost_;
 };
 

@@ -164,7 +164,7 @@ Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id
   together.allowed = {object_id};
   together.speed = kTogether;
   const Vector start = posture();
-  TrajectoryRequest request = trajectory_request({}, start, together);
+  TrajectoryRequest request = trajectory_request(clients_.trajectory, {}, start, together);
   // The whole way was looked at with the elbow where it is.
   const ik::Chain chain(*robot_, arm_, start);
   const std::optional<ik::SrsArm> srs = ik::SrsArm::recognise(chain);
@@ -180,14 +180,11 @@ Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id
   request.upright = true;
   request.upright_axis = attachment_.T_tool_object.linear() * Vector3::UnitZ();
   request.most_tilt = kMostTilt;
-  for (double waited = 0; !trajectory_reply_ && waited < settings_.request_timeout(); waited += settings_.request_retry()) {
-    out_->trajectory_requests.push_back(request);
-    co_await waiting_.until([this] { return trajectory_reply_.has_value(); }, settings_.request_retry());
-  }
-  if (!trajectory_reply_) co_return Outcome::no_answer("trajectory");
-  if (!trajectory_reply_->solved) co_return Outcome::failure("both hands together: " + trajectory_reply_->reason);
-  TrajectoryCommand command = command_for(trajectory_reply_->trajectory, together);
-  command.axes = trajectory_reply_->axes;
+  const bool answered = co_await clients_.trajectory.ask(request);
+  if (!answered) co_return Outcome::no_answer("trajectory");
+  if (!clients_.trajectory.reply()->solved) co_return Outcome::failure("both hands together: " + clients_.trajectory.reply()->reason);
+  TrajectoryCommand command = command_for(clients_.trajectory.reply()->trajectory, together);
+  command.axes = clients_.trajectory.reply()->axes;
   Outcome run = co_await run_to_end(command);
   co_return run;
 }

@@ -74,7 +74,7 @@ Routine<Outcome> ManipulationPlanner::keep_givable(std::vector<Grasp>& grasps, c
           result->givable.push_back({i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
       }
     };
-    Outcome worked = co_await work(job);
+    Outcome worked = co_await worker_.run(job);
     if (!worked.good) co_return worked;
     if (!result->givable.empty() || waiting_.now() >= patience) break;
     status_.phase = ActionPhase::waiting_for_person;
@@ -196,7 +196,7 @@ Routine<ManipulationPlanner::ExchangeChoice> ManipulationPlanner::choose_exchang
     choice->search = find_exchange(*robot_, scene, who, layers, q, T_now, T, settings_, barred);
     if (asks) choice->kept = exchange_cost(scene, who, layers, T_kept, T_now, T, settings_, barred);
   };
-  choice->outcome = co_await work(job);
+  choice->outcome = co_await worker_.run(job);
   co_return *choice;
 }
 

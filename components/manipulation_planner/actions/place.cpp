@@ -21,9 +21,9 @@ Routine<ManipulationPlanner::Serving> ManipulationPlanner::serving(const std::st
   for (const SceneBox& box : snapshot_.scene().boxes)
     if (box.supports && (onto.empty() || box.id == onto)) surfaces.push_back(box);
   if (thing == nullptr || surfaces.empty()) co_return *found;
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
-  const std::function<void()> job = [this, found, world = world_, scene = snapshot_.scene(), people = snapshot_.people(), surfaces,
-                                     object_id, grasps, most, places, q = posture(), T_now = thing->T_world_object] {
+  const std::function<void()> job = [this, found, world = worker_.world(*robot_, snapshot_.objects()), scene = snapshot_.scene(),
+                                     people = snapshot_.people(), surfaces, object_id, grasps, most, places, q = posture(),
+                                     T_now = thing->T_world_object] {
     place_world(*world, scene, people);
     PlacingSettings placing;
     placing.reach = arm_reach(*robot_, &arm_, palm_);
@@ -41,7 +41,7 @@ Routine<ManipulationPlanner::Serving> ManipulationPlanner::serving(const std::st
       found->objections = putting.objections();
     }
   };
-  found->outcome = co_await work(job);
+  found->outcome = co_await worker_.run(job);
   co_return *found;
 }
 
@@ -116,9 +116,9 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
   };
   auto found = std::make_shared<Found>();
   const Vector opening = grasp_ ? grasp_->pregrasp_joints : RobotModel::part(robot_->rest_posture(), fingers_);
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
-  const std::function<void()> job = [this, found, T_chosen, opening, world = world_, scene = snapshot_.scene(), people = snapshot_.people(),
-                                     box = *box, held = attachment_, q = posture(), T_now = T_world_tool() * attachment_.T_tool_object] {
+  const std::function<void()> job = [this, found, T_chosen, opening, world = worker_.world(*robot_, snapshot_.objects()),
+                                     scene = snapshot_.scene(), people = snapshot_.people(), box = *box, held = attachment_, q = posture(),
+                                     T_now = T_world_tool() * attachment_.T_tool_object] {
     place_world(*world, scene, people);
     PlacingSettings placing;
     placing.reach = arm_reach(*robot_, &arm_, palm_);
@@ -128,7 +128,7 @@ Routine<Outcome> ManipulationPlanner::place(const std::string& object_id, const 
     found->postures = putting.anywhere(q, RobotModel::with(q, fingers_, opening), held, kPostures);
     found->objections = putting.objections();
   };
-  Outcome last = co_await work(job);
+  Outcome last = co_await worker_.run(job);
   if (!last.good) co_return last;
   if (found->postures.empty()) co_return Outcome::failure("no free place on " + onto + " within the arm's reach: " + found->objections);
   for (const PuttingPosture& posture : found->postures) {

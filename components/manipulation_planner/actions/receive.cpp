@@ -366,7 +366,6 @@ ManipulationPlanner::Motion ManipulationPlanner::approach_to(const std::string& 
 }
 
 Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object_id, const std::string& giver, std::vector<Grasp>& grasps) {
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
   auto clear = std::make_shared<std::vector<Grasp>>();
   HumanState around = snapshot_.people();
   for (Person& who : around.people) {
@@ -374,7 +373,8 @@ Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object
     if (const SceneObject* held = snapshot_.object(object_id)) who = with_fingers_bent(who, held->T_world_object.translation());
     who.inflation += kOffFingers;
   }
-  const std::function<void()> job = [this, clear, around, grasps, object_id, world = world_, scene = snapshot_.scene(), q = posture()] {
+  const std::function<void()> job = [this, clear, around, grasps, object_id, world = worker_.world(*robot_, snapshot_.objects()),
+                                     scene = snapshot_.scene(), q = posture()] {
     constexpr int kSteps = 6;
     world->set_scene(scene);
     world->set_people(around);
@@ -394,7 +394,7 @@ Routine<Outcome> ManipulationPlanner::keep_off_fingers(const std::string& object
       if (off) clear->push_back(g);
     }
   };
-  Outcome worked = co_await work(job);
+  Outcome worked = co_await worker_.run(job);
   if (!worked.good) co_return worked;
   grasps = *clear;
   if (grasps.empty()) worked = Outcome::failure("the hand would come too near to the fingers of " + giver);

@@ -35,7 +35,7 @@ Routine<Outcome> ManipulationPlanner::use_arm(const std::string& arm) {
   if (wanted == hands_.end()) co_return Outcome::failure("robot " + robot_->name() + " has no arm \"" + arm + "\"");
   const auto index = static_cast<std::size_t>(wanted - hands_.begin());
   if (index == hand_) co_return Outcome{};
-  const bool free = co_await waiting_.until([this] { return jobs_done_ >= jobs_started_; }, settings_.request_timeout());
+  const bool free = co_await waiting_.until([this] { return worker_.is_idle(); }, settings_.request_timeout());
   if (!free) co_return Outcome::failure("a computation for the other arm does not end");
   hand_ = index;
   arm_ = *hands_[index].arm;
@@ -67,21 +67,21 @@ Routine<ManipulationPlanner::RegraspSteps> ManipulationPlanner::ask_regrasp(cons
                                                                             bool both) {
   status_.phase = both ? ActionPhase::choosing_two_grasps : ActionPhase::choosing_hands;
   RegraspRequest request;
-  request.id = next_request();
+  clients_.regrasp.open(request);
   request.object = object_id;
   request.start = snapshot_.set_point();
   request.T_world_goal = T_world_goal;
   request.both = both;
   request.seed = goal_.id;
-  const bool answered = co_await ask(&Outbox::regrasp_requests, request, regrasp_reply_, settings_.regrasp_timeout());
+  const bool answered = co_await clients_.regrasp.ask(request);
   RegraspSteps plan;
   if (!answered) {
     plan.outcome = Outcome::no_answer("grasp");
     co_return plan;
   }
-  plan.steps = regrasp_reply_->steps;
-  for (const auto& rejected : regrasp_reply_->rejected) refuse(rejected.what, rejected.reason);
-  if (!regrasp_reply_->solved) plan.outcome = Outcome::failure(regrasp_reply_->reason);
+  plan.steps = clients_.regrasp.reply()->steps;
+  for (const auto& rejected : clients_.regrasp.reply()->rejected) refuse(rejected.what, rejected.reason);
+  if (!clients_.regrasp.reply()->solved) plan.outcome = Outcome::failure(clients_.regrasp.reply()->reason);
   co_return plan;
 }
 

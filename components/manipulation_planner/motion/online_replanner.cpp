@@ -176,39 +176,39 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
   request.running = running.nodes;
   request.time_limit = settings_.live_time();
   ++live_counts_.looks;
-  out_->path_requests.push_back(request);
-  const bool planned = co_await waiting_.until([this, ended] { return path_reply_.has_value() || ended(); }, settings_.replan_time());
+  clients_.path.send(request);
+  const bool planned =
+      co_await waiting_.until([this, ended] { return clients_.path.reply().has_value() || ended(); }, settings_.replan_time());
   if (!planned || ended()) co_return Outcome::failure("no path came in time");
-  if (!path_reply_->solved) {
+  if (!clients_.path.reply()->solved) {
     ++live_counts_.refused;
-    co_return Outcome::failure(path_reply_->reason);
+    co_return Outcome::failure(clients_.path.reply()->reason);
   }
-  const PathOutcome outcome = path_reply_->outcome;
-  const std::vector<Vector> nodes = path_reply_->path;
+  const PathOutcome outcome = clients_.path.reply()->outcome;
+  const std::vector<Vector> nodes = clients_.path.reply()->path;
   const bool kept = outcome == PathOutcome::kept, only_cheaper = outcome == PathOutcome::improved;
   const std::vector<Vector> as_before = remainder(running.nodes, leave.from.position, settings_.live_reach());
   const bool compared = only_cheaper || (kept && settings_.live_pace() > 0 && !as_before.empty());
   if (compared) {
-    const TrajectoryRequest along = trajectory_request(as_before, start, motion);
-    comparison_ = along.id;
-    comparison_reply_.reset();
-    out_->trajectory_requests.push_back(along);
+    clients_.comparison.send(trajectory_request(clients_.comparison, as_before, start, motion));
   }
-  if (!kept) out_->trajectory_requests.push_back(trajectory_request(nodes, start, motion));
+  if (!kept) clients_.trajectory.send(trajectory_request(clients_.trajectory, nodes, start, motion));
   const bool timed = co_await waiting_.until(
-      [this, ended, kept, compared] { return ((kept || trajectory_reply_) && (!compared || comparison_reply_)) || ended(); },
+      [this, ended, kept, compared] {
+        return ((kept || clients_.trajectory.reply()) && (!compared || clients_.comparison.reply())) || ended();
+      },
       settings_.replan_time());
   if (!timed || ended()) co_return Outcome::failure("no trajectory came in time");
   if (!kept) {
-    if (!trajectory_reply_->solved) {
+    if (!clients_.trajectory.reply()->solved) {
       ++live_counts_.refused;
-      co_return Outcome::failure(trajectory_reply_->reason);
+      co_return Outcome::failure(clients_.trajectory.reply()->reason);
     }
     auto ways = std::make_shared<Ways>();
-    ways->over = trajectory_reply_->trajectory;
+    ways->over = clients_.trajectory.reply()->trajectory;
     ways->reach = settings_.live_reach();
-    if (only_cheaper && comparison_reply_->solved) ways->along = comparison_reply_->trajectory;
-    const TrajectoryReply reply = *trajectory_reply_;
+    if (only_cheaper && clients_.comparison.reply()->solved) ways->along = clients_.comparison.reply()->trajectory;
+    const TrajectoryReply reply = *clients_.trajectory.reply();
     Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
     if (over.good) ++live_counts_.taken;
     if (over.good || ways->worth) co_return over;
@@ -217,7 +217,7 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
   } else {
     ++live_counts_.kept;
   }
-  if (!compared || !comparison_reply_->solved || settings_.live_pace() <= 0) co_return Outcome{};
+  if (!compared || !clients_.comparison.reply()->solved || settings_.live_pace() <= 0) co_return Outcome{};
   Outcome retimed = co_await retime(running, motion, leave, as_before);
   if (retimed.good) ++live_counts_.retimed;
   co_return Outcome{};
@@ -225,7 +225,7 @@ Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& moti
 
 /// Slower where a leg ahead must be; faster where all of the way then is.
 Routine<Outcome> ManipulationPlanner::retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes) {
-  const TrajectoryReply reply = *comparison_reply_;
+  const TrajectoryReply reply = *clients_.comparison.reply();
   auto ways = std::make_shared<Ways>();
   ways->over = reply.trajectory;
   ways->share = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
@@ -250,14 +250,13 @@ Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& mo
                                               const TrajectoryReply& timed, const std::vector<Vector>& nodes) {
   const Running* now = &running;
   const bool standing = leave.standing;
-  if (!world_) world_ = std::make_shared<CollisionWorld>(*robot_, snapshot_.objects());
-  const std::function<void()> job = [this, ways, standing, from = leave.from, world = world_,
+  const std::function<void()> job = [this, ways, standing, from = leave.from, world = worker_.world(*robot_, snapshot_.objects()),
                                      around = Around{snapshot_.scene(), snapshot_.people(), snapshot_.layers(waiting_.now()), attachment_,
                                                      motion.allowed, RobotModel::with(posture(), arm_, leave.from.position),
                                                      live_pace_.heard(waiting_.now()) ? cost_gain_ : 1.0}] {
     weigh(*ways, *world, around, from, standing);
   };
-  Outcome worked = co_await work(job);
+  Outcome worked = co_await worker_.run(job);
   if (!worked.good) co_return worked;
   if (gone(running)) co_return Outcome::failure("the motion has ended");
   if (!ways->over) {
