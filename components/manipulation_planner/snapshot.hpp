@@ -31,6 +31,10 @@ class Snapshot {
   /// Takes what the controller runs, and its set-point.
   void on(const ActiveTrajectory& active) { active_ = active; }
 
+  /// Sets the time of the step that runs.
+  void set_time(TimePoint now) { time_ = now; }
+  /// Returns the time of the step that runs.
+  TimePoint time() const { return time_; }
   /// Returns the newest scene.
   const Scene& scene() const { return scene_; }
   /// Returns the pose of the robot's base in the world.
@@ -45,8 +49,8 @@ class Snapshot {
   const ActiveTrajectory& active() const { return active_; }
   /// Returns all axes as commanded [rad, m]; empty: not known yet.
   const Vector& set_point() const { return active_.position; }
-  /// Returns the cost layers that are not stale at `now`.
-  LayersNow layers(TimePoint now) { return layers_.at(now); }
+  /// Returns the cost layers that are not stale now.
+  LayersNow layers() { return layers_.at(time_); }
   /// Returns which cost layer was left out and why, one sentence; empty: none was.
   std::string complaint(TimePoint now) { return layers_.complaint(now); }
 
@@ -64,6 +68,7 @@ class Snapshot {
   bool is_lost(const std::string& id) const;
 
  private:
+  TimePoint time_{};
   ObjectLibrary objects_;
   Scene scene_;
   HumanState people_;

@@ -13,6 +13,7 @@
 
 namespace handsel::manipulation_planner {
 
+/// Hands jobs out and counts them.
 class Worker {
  public:
   /// `timeout`: a job that takes longer has failed [s]; the references must outlive the worker.

@@ -49,7 +49,9 @@ int run(int cases) {
   };
   const auto tool_at = [&](const Vector& q) { return Pose(robot.link_pose(q, robot.tool_link()) * attachment.T_tool_object); };
   const auto choose = [&](const HumanState& people, const Vector& q) {
-    return manipulation_planner::find_exchange(robot, scene, people.people[0], {}, q, tool_at(q), attachment.T_tool_object, settings);
+    const Pose T_world_object = tool_at(q);
+    const manipulation_planner::OtpQuery query{scene, people.people[0], {}, T_world_object, attachment.T_tool_object, {}};
+    return manipulation_planner::find_otp(robot, query, q, settings);
   };
   const auto smooth = [&](const HumanState& people, const std::vector<Vector>& nodes, const Vector& start) {
     TrajectoryRequest request;
@@ -85,7 +87,7 @@ int run(int cases) {
     problem.budget = kBudget;
     ++tried;
 
-    manipulation_planner::ExchangeSearch search;
+    manipulation_planner::OtpSearch search;
     path_planner::LiveResult live;
     TrajectoryReply soft;
     bool joined = false;

@@ -1,1 +1,12 @@
-handsel_test(manipulation_planner SOURCES ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/manipulation_planner_test.cpp ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/receive_test.cpp ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/exchange_test.cpp ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/retreat_planner_test.cpp ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/place_search_test.cpp LINK handsel_manipulation_planner_core LABEL unit)
+set(manipulation_planner_tests ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner)
+handsel_test(manipulation_planner
+  SOURCES
+    ${manipulation_planner_tests}/manipulation_planner_test.cpp
+    ${manipulation_planner_tests}/offer_detector_test.cpp
+    ${manipulation_planner_tests}/online_replanner_test.cpp
+    ${manipulation_planner_tests}/otp_search_test.cpp
+    ${manipulation_planner_tests}/place_search_test.cpp
+    ${manipulation_planner_tests}/receive_test.cpp
+    ${manipulation_planner_tests}/retreat_planner_test.cpp
+  LINK handsel_manipulation_planner_core
+  LABEL unit)

@@ -1,206 +1,255 @@
-// Two hands at once on what is too heavy for one, a closed chain: up, over and down, level on the way.
+// The action carry: two hands at once on what is too heavy for one, a closed chain: up, over and
+// down, level meanwhile.
 #include <algorithm>
 
 #include "common/messages/names.hpp"
 #include "common/model/srs_arm.hpp"
-#include "components/manipulation_planner/planner.hpp"
+#include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/grasping.hpp"
+#include "components/manipulation_planner/actions/two_hands.hpp"
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+#include "components/manipulation_planner/placing/place_search.hpp"
 
 namespace handsel::manipulation_planner {
-
 namespace {
 
-constexpr double kMostTilt = 0.05;  // of what is carried, as planned [rad]
-constexpr double kTogether = 0.5;   // speed scale of two arms in a closed chain
-constexpr double kSame = 0.004;     // what moved less stands where it was planned to be taken [m]
-constexpr int kTries = 2;           // to take hold of it
-constexpr double kForever = 600;    // [s]
+constexpr double kMaxTilt = 0.05;     // of what is carried, as planned [rad]
+constexpr double kCarrySpeed = 0.5;   // speed scale of two arms in a closed chain
+constexpr double kSamePlace = 0.004;  // what moved less is where it was planned to be taken [m]
+constexpr int kMaxGraspTries = 2;     // with both hands
+constexpr double kMassRatio = 0.5;    // of the object's mass that each hand bears
+constexpr std::size_t kSteps = 3;     // of a plan: two grasps and the place
 
-}  // namespace
+/// The steps of the plan.
+struct CarryPlan {
+  Outcome outcome;
+  RegraspStep first, second, down;
+};
 
-Routine<Outcome> ManipulationPlanner::carry(const ActionGoal& goal) {
-  const std::string object_id = goal.object;
-  Outcome stands = co_await wait_standing(object_id);
-  if (!stands.good) co_return stands;
-  Outcome rested = co_await rest_all();
-  if (!rested.good) co_return rested;
-
-  RegraspSteps plan;
-  plan.outcome = Outcome::failure("there is no free place on a surface called " + goal.surface);
-  const std::vector<Pose> places = places_for(goal, *snapshot_.object(object_id), *snapshot_.model_of(object_id));
+/// Asks how two hands take the object, place after place.
+Routine<CarryPlan> plan_carry(Parts& parts, const ActionGoal& goal) {
+  CarryPlan plan;
+  TwoHandPlan found;
+  found.outcome = Outcome::failure("there is no free place on a surface called " + goal.surface);
+  const std::vector<Pose> places = places_for(parts, goal, *parts.now.object(goal.object));
   for (const Pose& place : places) {
-    plan = co_await ask_regrasp(object_id, place, true);
-    if (plan.outcome.good) break;
+    found = co_await ask_regrasp(parts, goal.object, place, true);
+    if (found.outcome.good) break;
   }
-  if (!plan.outcome.good) co_return plan.outcome;
-  if (plan.steps.size() != 3) co_return Outcome::failure("the grasp planner did not say how two hands take " + object_id);
-  const RegraspStep first = plan.steps[0], second = plan.steps[1], down = plan.steps[2];
-
-  Outcome done;
-  const std::vector<const RegraspStep*> backwards{&second, &first};
-  for (int tries = 0; tries < kTries; ++tries) {
-    done = co_await take_together(object_id, first, second);
-    if (done.good) break;
-    refuse("grasp with both hands", done.reason);
-    for (const RegraspStep* step : backwards) {
-      Outcome off = co_await use_arm(step->to);
-      HandResult opened = co_await hand(HandAction::move, step->grasp.pregrasp_joints, settings_.hand_timeout());
-      if (off.good && opened.outcome.good) {
-        Motion back;
-        back.phase = ActionPhase::backing_off;
-        back.straight = true;
-        back.goals = {step->grasp.approach_joints};
-        back.allowed = {object_id};
-        off = co_await move(back);
-      }
-      if (!off.good) refuse("backing off", off.reason);
-    }
+  plan.outcome = found.outcome;
+  if (!plan.outcome.good) co_return plan;
+  if (found.steps.size() != kSteps) {
+    plan.outcome = Outcome::failure("the grasp planner did not say how two hands take " + goal.object);
+    co_return plan;
   }
-  if (!done.good) co_return done;
-  done = co_await use_arm(first.to);
-  if (!done.good) co_return done;
-  status_.phase = ActionPhase::lift;
-  const auto raised = [this](Pose T, double by) {
-    T.translation().z() += by;
-    return T;
-  };
-  const Pose T_start = snapshot_.object(object_id)->T_world_object;
-  std::vector<Pose> up{raised(T_start, settings_.lift_height())};
-  done = co_await move_together(object_id, second.to, up);
-  if (done.good) {
-    status_.phase = ActionPhase::carry;
-    std::vector<Pose> over{raised(down.T_world_object, settings_.lift_height()), raised(down.T_world_object, kAbovePlace)};
-    done = co_await move_together(object_id, second.to, over);
-  }
-  // Where it cannot go up or over it goes back down; hands that cannot bring it down keep it.
-  const SceneObject* now = snapshot_.object(object_id);
-  const bool off_the_ground = now == nullptr || now->T_world_object.translation().z() > T_start.translation().z() + kSame;
-  if (!done.good && off_the_ground) {
-    refuse(text_of(status_.phase), done.reason);
-    status_.phase = ActionPhase::put_back;
-    std::vector<Pose> back{raised(T_start, kAbovePlace)};
-    Outcome lowered = co_await move_together(object_id, second.to, back);
-    if (!lowered.good) co_return lowered;
-  }
-  // Off as they came: what each hand's stand-off is from its grasp holds wherever it was put down.
-  const Outcome carried = done;
-  const std::vector<std::string> arms{first.to, second.to};
-  for (const std::string& arm : arms) {
-    done = co_await use_arm(arm);
-    if (!done.good) co_return done;
-    status_.phase = ActionPhase::letting_go;
-    HandResult opened = co_await hand(HandAction::release, RobotModel::part(down.after, fingers_), settings_.hand_timeout());
-    if (!opened.outcome.good) co_return opened.outcome;
-  }
-  release_object();
-  for (const std::string& arm : arms) {
-    done = co_await use_arm(arm);
-    if (done.good) done = co_await let_go(object_id, down.q, down.after);
-    if (!done.good) co_return done;
-  }
-  done = co_await rest_all();
-  if (!done.good) refuse("to rest", done.reason);
-  co_return carried;
+  plan.first = found.steps[0];
+  plan.second = found.steps[1];
+  plan.down = found.steps[2];
+  co_return plan;
 }
 
-/// Both hands open about their grasps, then one after the other closed.
-Routine<Outcome> ManipulationPlanner::take_together(const std::string& object_id, const RegraspStep& first, const RegraspStep& second) {
-  const std::vector<const RegraspStep*> steps{&first, &second};
-  for (const RegraspStep* step : steps) {
-    Outcome done = co_await use_arm(step->to);
-    if (!done.good) co_return done;
-    std::optional<Grasp> grasp = aimed(object_id, step->grasp);
-    const SceneObject* thing = snapshot_.object(object_id);
-    const bool as_planned = thing != nullptr && (thing->T_world_object.translation() - step->T_world_object.translation()).norm() < kSame;
-    if (!grasp && as_planned) grasp = step->grasp;  // at the end of a joint's range only the place as it was seen then is reached
-    if (!grasp) co_return Outcome::failure(step->to + " does not reach " + object_id + " where it stands now");
-    status_.phase = ActionPhase::opening_hand;
-    HandResult open = co_await hand(HandAction::move, grasp->pregrasp_joints, settings_.hand_timeout());
-    if (!open.outcome.good) co_return open.outcome;
-    Motion approach;
-    approach.phase = ActionPhase::approach;
-    approach.goals = {grasp->approach_joints};
-    done = co_await move(approach);
-    if (!done.good) co_return done;
-    Motion reach_object;
-    reach_object.phase = ActionPhase::reaching_object;
-    reach_object.straight = true;
-    reach_object.goals = {grasp->arm_joints};
-    reach_object.allowed = {object_id};
-    reach_object.speed = settings_.approach_speed();
-    done = co_await move(reach_object);
-    if (!done.good) co_return done;
-  }
-  for (const RegraspStep* step : steps) {
-    Outcome done = co_await use_arm(step->to);
-    if (done.good) done = co_await grip(step->grasp, 0.5);
-    if (!done.good) co_return done;
-  }
-  co_await waiting_.pause(settings_.settle_time());
-  Outcome done = co_await use_arm(first.to);
-  if (!done.good) co_return done;
-  const SceneObject* held = snapshot_.object(object_id);
-  if (held == nullptr) co_return Outcome::failure("object " + object_id + " left the scene");
-  hold(*held);
-  grasp_ = first.grasp;
-  co_return Outcome{};
-}
-
-Routine<Outcome> ManipulationPlanner::grip(const Grasp& grasp, double share_of_mass) {
-  status_.phase = ActionPhase::grasp;
-  HandResult closed = co_await hand(HandAction::grasp, grasp.hand_joints, 2 * settings_.hand_timeout(), &grasp.hand_effort, share_of_mass);
+/// Closes the hand in use by a grasp.
+Routine<Outcome> grip(Parts& parts, const Grasp& grasp) {
+  parts.action.phase = ActionPhase::grasp;
+  const double timeout = 2 * parts.settings.hand_timeout();
+  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort, kMassRatio);
   if (!closed.outcome.good) co_return closed.outcome;
   if (closed.state != HandState::grasped)
-    co_return Outcome::failure("the hand " + fingers_.name + " closed on nothing", ActionFailure::nothing_grasped);
+    co_return Outcome::failure("the hand " + parts.arm.fingers().name + " closed on nothing", ActionFailure::nothing_grasped);
   co_return Outcome{};
 }
 
-Routine<Outcome> ManipulationPlanner::move_together(const std::string& object_id, const std::string& follower,
-                                                    const std::vector<Pose>& T_world_object) {
-  const auto other = std::find_if(hands_.begin(), hands_.end(), [&](const Manipulator& m) { return m.name == follower; });
-  if (other == hands_.end()) co_return Outcome::failure("there is no arm " + follower);
-  const bool ready = co_await waiting_.until([this] { return may_move() && at_rest(); }, settings_.permission_timeout());
-  if (!ready) co_return not_permitted();
-  Motion together;
-  together.allowed = {object_id};
-  together.speed = kTogether;
-  const Vector start = posture();
-  TrajectoryRequest request = trajectory_request(clients_.trajectory, {}, start, together);
-  // The whole way was looked at with the elbow where it is.
-  const ik::Chain chain(*robot_, arm_, start);
+/// Moves one hand, open, about its grasp.
+Routine<Outcome> enclose(Parts& parts, const std::string& object, const RegraspStep& step) {
+  Outcome done = co_await use_arm(parts, step.to);
+  if (!done.good) co_return done;
+  std::optional<Grasp> grasp = grasp_now(parts, object, step.grasp);
+  const SceneObject* thing = parts.now.object(object);
+  const bool as_planned = thing != nullptr && (thing->T_world_object.translation() - step.T_world_object.translation()).norm() < kSamePlace;
+  // At the end of a joint's range only the place as it was seen when planning is reached.
+  if (!grasp && as_planned) grasp = step.grasp;
+  if (!grasp) co_return Outcome::failure(step.to + " does not reach " + object + " where it stands now");
+  parts.action.phase = ActionPhase::opening_hand;
+  HandResult open = co_await parts.hand.run(HandAction::move, grasp->pregrasp_joints, parts.settings.hand_timeout());
+  if (!open.outcome.good) co_return open.outcome;
+  MotionSpec approach;
+  approach.phase = ActionPhase::approach;
+  approach.goals = {grasp->approach_joints};
+  done = co_await move(parts, approach);
+  if (!done.good) co_return done;
+  const MotionSpec reach = reach_along(parts, object, *grasp);
+  done = co_await move(parts, reach);
+  co_return done;
+}
+
+/// Opens both hands about their grasps, then closes one after the other.
+Routine<Outcome> take_together(Parts& parts, const std::string& object, const CarryPlan& plan) {
+  const std::vector<const RegraspStep*> steps{&plan.first, &plan.second};
+  for (const RegraspStep* step : steps) {
+    Outcome done = co_await enclose(parts, object, *step);
+    if (!done.good) co_return done;
+  }
+  for (const RegraspStep* step : steps) {
+    Outcome done = co_await use_arm(parts, step->to);
+    if (done.good) done = co_await grip(parts, step->grasp);
+    if (!done.good) co_return done;
+  }
+  co_await parts.waiting.pause(parts.settings.settle_time());
+  Outcome done = co_await use_arm(parts, plan.first.to);
+  if (!done.good) co_return done;
+  const SceneObject* held = parts.now.object(object);
+  if (held == nullptr) co_return Outcome::failure("object " + object + " left the scene");
+  parts.held.hold(*held);
+  parts.held.set_grasp(plan.first.grasp);
+  co_return Outcome{};
+}
+
+/// Opens a hand that did not get hold and moves it back to its stand-off.
+Routine<Outcome> back_off(Parts& parts, const std::string& object, const RegraspStep& step) {
+  Outcome off = co_await use_arm(parts, step.to);
+  HandResult opened = co_await parts.hand.run(HandAction::move, step.grasp.pregrasp_joints, parts.settings.hand_timeout());
+  if (off.good && opened.outcome.good) {
+    MotionSpec back;
+    back.phase = ActionPhase::backing_off;
+    back.is_straight = true;
+    back.goals = {step.grasp.approach_joints};
+    back.allowed = {object};
+    off = co_await move(parts, back);
+  }
+  if (!off.good) parts.refuse("backing off", off.reason);
+  co_return off;
+}
+
+/// Tries to take the object with both hands.
+Routine<Outcome> try_to_take(Parts& parts, const std::string& object, const CarryPlan& plan) {
+  Outcome done;
+  for (int tries = 0; tries < kMaxGraspTries; ++tries) {
+    done = co_await take_together(parts, object, plan);
+    if (done.good) break;
+    parts.refuse("grasp with both hands", done.reason);
+    co_await back_off(parts, object, plan.second);
+    co_await back_off(parts, object, plan.first);
+  }
+  co_return done;
+}
+
+/// Moves the object through poses, the other arm following in a closed chain.
+Routine<Outcome> move_together(Parts& parts, const std::string& object, const std::string& follower,
+                               const std::vector<Pose>& T_world_object) {
+  const auto& all = parts.arm.manipulators();
+  const auto other = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) { return m.name == follower; });
+  if (other == all.end()) co_return Outcome::failure("there is no arm " + follower);
+  const bool ready = co_await parts.link.await_permission();
+  if (!ready) co_return parts.link.not_permitted();
+  MotionSpec together;
+  together.allowed = {object};
+  together.speed = kCarrySpeed;
+  const Vector start = parts.arm.configuration();
+  const RobotModel& robot = parts.arm.robot();
+  auto& timing = parts.clients.trajectory;
+  TrajectoryRequest request = trajectory_request(parts, timing, {}, start, together);
+  // The whole path was checked with the elbow where it is.
+  const ik::Chain chain(robot, parts.arm.group(), start);
   const std::optional<ik::SrsArm> srs = ik::SrsArm::recognise(chain);
+  const Pose& T_tool_object = parts.held.attachment().T_tool_object;
   for (const Pose& T : T_world_object) {
     TipNode node;
-    node.T_world_tip = T * attachment_.T_tool_object.inverse();
+    node.T_world_tip = T * T_tool_object.inverse();
     node.has_elbow = srs.has_value();
-    if (srs) node.elbow = srs->elbow_angle(RobotModel::part(start, arm_));
+    if (srs) node.elbow = srs->elbow_angle(RobotModel::part(start, parts.arm.group()));
     request.poses.push_back(node);
   }
   request.follower = follower;
-  request.T_tip_follower = robot_->link_pose(start, palm_).inverse() * robot_->link_pose(start, other->palm);
+  request.T_tip_follower = robot.link_pose(start, parts.arm.palm()).inverse() * robot.link_pose(start, other->palm);
   request.upright = true;
-  request.upright_axis = attachment_.T_tool_object.linear() * Vector3::UnitZ();
-  request.most_tilt = kMostTilt;
-  const bool answered = co_await clients_.trajectory.ask(request);
+  request.upright_axis = T_tool_object.linear() * Vector3::UnitZ();
+  request.most_tilt = kMaxTilt;
+  const bool answered = co_await timing.ask(request);
   if (!answered) co_return Outcome::no_answer("trajectory");
-  if (!clients_.trajectory.reply()->solved) co_return Outcome::failure("both hands together: " + clients_.trajectory.reply()->reason);
-  TrajectoryCommand command = command_for(clients_.trajectory.reply()->trajectory, together);
-  command.axes = clients_.trajectory.reply()->axes;
-  Outcome run = co_await run_to_end(command);
+  if (!timing.reply()->solved) co_return Outcome::failure("both hands together: " + timing.reply()->reason);
+  TrajectoryCommand command = trajectory_command(parts, timing.reply()->trajectory, together);
+  command.axes = timing.reply()->axes;
+  Outcome run = co_await parts.link.run(command);
   co_return run;
 }
 
-Routine<Outcome> ManipulationPlanner::run_to_end(const TrajectoryCommand& command) {
-  Outcome heard = co_await send(command);
-  if (!heard.good) co_return heard;
-  const std::uint64_t id = command.id;
-  co_await waiting_.until(
-      [this, id] {
-        return snapshot_.execution()->trajectory != id ||
-               (snapshot_.execution()->motion != MotionState::running && snapshot_.execution()->motion != MotionState::idle);
-      },
-      kForever);
-  Outcome end = co_await end_motion(id);
-  co_return end;
+Pose raised(Pose T, double by) {
+  T.translation().z() += by;
+  return T;
+}
+
+/// Lifts the object, carries it over its place and lowers it. Where it cannot move up or over it is
+/// put back; hands that cannot bring it down keep it. `is_down`: whether the hands may open.
+Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, const CarryPlan& plan, bool& is_down) {
+  const std::string& follower = plan.second.to;
+  parts.action.phase = ActionPhase::lift;
+  const double height = parts.settings.lift_height();
+  const Pose T_start = parts.now.object(object)->T_world_object;
+  std::vector<Pose> up{raised(T_start, height)};
+  Outcome done = co_await move_together(parts, object, follower, up);
+  if (done.good) {
+    parts.action.phase = ActionPhase::carry;
+    const Pose& T_goal = plan.down.T_world_object;
+    std::vector<Pose> over{raised(T_goal, height), raised(T_goal, kAbovePlace)};
+    done = co_await move_together(parts, object, follower, over);
+  }
+  is_down = true;
+  const SceneObject* now = parts.now.object(object);
+  const bool is_lifted = now == nullptr || now->T_world_object.translation().z() > T_start.translation().z() + kSamePlace;
+  if (!done.good && is_lifted) {
+    parts.refuse(text_of(parts.action.phase), done.reason);
+    parts.action.phase = ActionPhase::put_back;
+    std::vector<Pose> back{raised(T_start, kAbovePlace)};
+    Outcome lowered = co_await move_together(parts, object, follower, back);
+    is_down = lowered.good;
+    if (!lowered.good) co_return lowered;
+  }
+  co_return done;
+}
+
+/// Opens both hands and moves them off as they came: each hand's stand-off from its grasp is the same
+/// wherever the object was put down.
+Routine<Outcome> release_both(Parts& parts, const std::string& object, const CarryPlan& plan) {
+  const std::vector<std::string> arms{plan.first.to, plan.second.to};
+  for (const std::string& arm : arms) {
+    Outcome done = co_await use_arm(parts, arm);
+    if (!done.good) co_return done;
+    parts.action.phase = ActionPhase::letting_go;
+    const Vector open = RobotModel::part(plan.down.after, parts.arm.fingers());
+    HandResult opened = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+    if (!opened.outcome.good) co_return opened.outcome;
+  }
+  parts.held.release();
+  for (const std::string& arm : arms) {
+    Outcome done = co_await use_arm(parts, arm);
+    if (done.good) done = co_await release_and_retreat(parts, object, plan.down.q, plan.down.after);
+    if (!done.good) co_return done;
+  }
+  co_return Outcome{};
+}
+
+}  // namespace
+
+Routine<Outcome> carry(Parts& parts, const ActionGoal& goal) {
+  const std::string object = goal.object;
+  Outcome ready = co_await await_put_down(parts, object);
+  if (!ready.good) co_return ready;
+  Outcome rested = co_await rest_all(parts);
+  if (!rested.good) co_return rested;
+  const CarryPlan plan = co_await plan_carry(parts, goal);
+  if (!plan.outcome.good) co_return plan.outcome;
+  Outcome done = co_await try_to_take(parts, object, plan);
+  if (!done.good) co_return done;
+  done = co_await use_arm(parts, plan.first.to);
+  if (!done.good) co_return done;
+  bool is_down = false;
+  const Outcome carried = co_await lift_over_and_down(parts, object, plan, is_down);
+  if (!is_down) co_return carried;
+  done = co_await release_both(parts, object, plan);
+  if (!done.good) co_return done;
+  done = co_await rest_all(parts);
+  if (!done.good) parts.refuse("to rest", done.reason);
+  co_return carried;
 }
 
 }  // namespace handsel::manipulation_planner

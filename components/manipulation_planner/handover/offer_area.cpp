@@ -1,98 +1,75 @@
-// Room before people: where the hand waits so that somebody can hold something out to it (ours).
+#include "components/manipulation_planner/handover/offer_area.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "common/model/human/human_body.hpp"
-#include "components/manipulation_planner/planner.hpp"
 
 namespace handsel::manipulation_planner {
-
 namespace {
-// [m] The waiting hand keeps so far, level, from where a person would hold something out comfortably: nobody puts it into a hand that is
-// there already; the arm keeps the second. Less room by more than the third makes it draw back.
-constexpr double kRoom = 0.55, kArmRoom = 0.35, kCrowded = 0.05;
-constexpr std::size_t kPostures = 6;  // to wait in that are looked for
+
+constexpr double kMinHandDistance = 0.55;                                // level, from a comfortable point of offer [m]
+constexpr double kMinArmDistance = 0.35;                                 // likewise of the arm [m]
+constexpr double kMaxIntrusion = 0.05;                                   // less space than that by more: the arm retreats [m]
+constexpr std::size_t kMaxConfigurations = 6;                            // to wait in
+constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};                         // from rest, away from the person [m]
+constexpr double kAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
+
 }  // namespace
 
-double ManipulationPlanner::room_before(const Person& who, const Vector& posture) const {
+double OfferArea::clearance(const Person& person, const Vector& q) const {
   double room = std::numeric_limits<double>::infinity();
-  const Vector3 p_hand = snapshot_.T_world_base() * robot_->link_pose(posture, palm_).translation();
+  const Vector3 p_hand = now_.T_world_base() * arm_.robot().link_pose(q, arm_.palm()).translation();
   for (const Side side : {Side::left, Side::right}) {
-    const Vector3 p_offer = comfortable_reach(who, side);
-    room =
-        std::min({room, level(p_hand - p_offer).norm() - kRoom, way_out_.distance(posture, snapshot_.T_world_base(), p_offer) - kArmRoom});
+    const Vector3 p_offer = comfortable_reach(person, side);
+    const double hand = level(p_hand - p_offer).norm() - kMinHandDistance;
+    room = std::min({room, hand, retreat_.distance(q, now_.T_world_base(), p_offer) - kMinArmDistance});
   }
   return room;
 }
 
-bool ManipulationPlanner::crowds(const std::string& id) const {
-  const Person* who = snapshot_.person(id);
-  return who != nullptr && room_before(*who, posture()) < -kCrowded;
+bool OfferArea::is_occupied(const Person& person, const Vector& q) const { return clearance(person, q) < -kMaxIntrusion; }
+
+bool OfferArea::is_occupied(const std::string& id) const {
+  const Person* person = now_.person(id);
+  return person != nullptr && is_occupied(*person, arm_.configuration());
 }
 
-bool ManipulationPlanner::room_is_made(const Motion& motion) const {
-  const std::string& who = motion.makes_room_for;
-  return !who.empty() && offered(goal_.object, who) && (motion.any_offer || !crowds(who));
-}
-
-std::vector<Vector> ManipulationPlanner::postures_before(const Person& who) const {
+std::vector<Vector> OfferArea::clear_configurations(const Person& person) const {
   struct Place {
     Vector joints;
-    double room, from_rest;
+    double clearance, from_rest;
   };
-  const Pose T_rest = snapshot_.T_world_base() * robot_->link_pose(robot_->rest_posture(), palm_);
-  const Vector3 away =
-      level(snapshot_.T_world_base().translation() - who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position)
-          .stableNormalized();
+  const Vector q_rest = arm_.robot().rest_posture();
+  const Pose T_rest = now_.T_world_base() * arm_.robot().link_pose(q_rest, arm_.palm());
+  const Vector3 p_torso = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const Vector3 away = level(now_.T_world_base().translation() - p_torso).stableNormalized();
   const Vector3 aside = Vector3::UnitZ().cross(away);
   std::vector<Place> places;
   IkOptions options;
   options.restarts = 0;
-  for (const double back : {0.0, 0.1, 0.2, 0.3}) {
-    for (const double beside : {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45}) {
+  for (const double back : kBack) {
+    for (const double beside : kAside) {
       Pose T = T_rest;
       T.translation() += back * away + beside * aside;
-      const auto joints = robot_->inverse(arm_, snapshot_.T_world_base().inverse() * T, robot_->rest_posture(), options);
-      if (joints) places.push_back({*joints, room_before(who, RobotModel::with(posture(), arm_, *joints)), std::hypot(back, beside)});
+      const auto joints = arm_.robot().inverse(arm_.group(), now_.T_world_base().inverse() * T, q_rest, options);
+      if (!joints) continue;
+      const Vector q = RobotModel::with(arm_.configuration(), arm_.group(), *joints);
+      places.push_back({*joints, clearance(person, q), std::hypot(back, beside)});
     }
   }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    const bool enough = a.room >= 0;
-    if (enough != (b.room >= 0)) return enough;
-    return enough ? a.from_rest < b.from_rest : a.room > b.room;
+    const bool is_clear = a.clearance >= 0;
+    if (is_clear != (b.clearance >= 0)) return is_clear;
+    return is_clear ? a.from_rest < b.from_rest : a.clearance > b.clearance;
   });
-  if (places.size() > kPostures) places.resize(kPostures);
+  if (places.size() > kMaxConfigurations) places.resize(kMaxConfigurations);
   std::vector<Vector> out;
   for (Place& place : places) out.push_back(std::move(place.joints));
   return out;
-}
-
-Routine<Outcome> ManipulationPlanner::go_to_rest() {
-  Motion motion;
-  motion.phase = ActionPhase::to_rest;
-  motion.speed = attachment_.object.empty() ? 1.0 : settings_.carry_speed();
-  const Vector rest = RobotModel::with(posture(), arm_, RobotModel::part(robot_->rest_posture(), arm_));
-  const Person* who = snapshot_.person("");
-  if (who != nullptr && room_before(*who, rest) < -kCrowded) motion.goals = postures_before(*who);
-  if (motion.goals.empty()) motion.goals = {RobotModel::part(robot_->rest_posture(), arm_)};
-  Outcome outcome = co_await move(motion);
-  co_return outcome;
-}
-
-Routine<Outcome> ManipulationPlanner::make_room(const std::string& giver, bool for_offer) {
-  const Person* who = snapshot_.person(giver);
-  if (who == nullptr) co_return Outcome::failure("nobody is in sight");
-  Motion back;
-  back.phase = ActionPhase::making_room;
-  back.goals = postures_before(*who);
-  back.makes_room_for = giver;
-  back.any_offer = for_offer;
-  if (back.goals.empty()) co_return Outcome::failure("no posture of the arm lies farther back");
-  Outcome made = co_await move(back);
-  co_return made;
 }
 
 }  // namespace handsel::manipulation_planner

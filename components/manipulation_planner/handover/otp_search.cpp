@@ -11,12 +11,16 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr int kHeadings = 24;
-constexpr double kWorthwhile = 0.25;   // poses this much costlier than the best are not offered as alternatives
-constexpr double kBarred = 0.5;        // cosine: a finger in the way of the person's pull
-constexpr double kLeastFacing = -0.3;  // cosine: the hand may not come from the person's side
+constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
+constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
+constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
+constexpr int kHeadings = 24;                                              // of the object at each place
+constexpr double kMinDistance = 0.05;                                      // between alternatives [m]
+constexpr double kMaxExtraCost = 0.25;                                     // of an alternative, over the best
+constexpr double kMaxBarred = 0.5;                                         // cosine of a finger and the person's pull
+constexpr double kMinFacing = -0.3;                                        // cosine: the hand must not come from the person's side
 
-struct Place {
+struct Candidate {
   Pose T_world_object;
   double cost;
 };
@@ -35,22 +39,21 @@ double distance_to_body(const SimplifiedBody& body, const Vector3& p) {
   return std::min(to_axis, (p - body.head).norm() - body.head_radius);
 }
 
-/// What places and poses of the object cost, for one person where they are now.
-class Costs {
+/// Cost of places and poses of the object, for one person where they are now.
+class OtpCosts {
  public:
-  Costs(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object_now, const Pose& T_tool_object,
-        const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred)
-      : scene_(scene),
-        person_(person),
-        layers_(layers),
+  OtpCosts(const OtpQuery& query, const config::ManipulationPlannerSettings& settings)
+      : scene_(query.scene),
+        person_(query.person),
+        layers_(query.layers),
         settings_(settings),
-        barred_(barred),
-        p_now_(T_world_object_now.translation()),
-        object_in_hand_(T_tool_object.linear().transpose() * T_tool_object.translation()),
-        body_(simplified_body(person)),
-        furniture_(person, scene.boxes),
-        arms_(placed_arms(person)) {
-    toward_robot_ = scene.T_world_base.translation() - torso();
+        barred_(query.barred),
+        p_now_(query.T_world_object.translation()),
+        object_in_hand_(query.T_tool_object.linear().transpose() * query.T_tool_object.translation()),
+        body_(simplified_body(query.person)),
+        furniture_(query.person, query.scene.boxes),
+        arms_(placed_arms(query.person)) {
+    toward_robot_ = query.scene.T_world_base.translation() - torso();
     toward_robot_.z() = 0;
     apart_ = toward_robot_.norm() >= 1e-3;
     toward_robot_.normalize();
@@ -59,19 +62,20 @@ class Costs {
   const Vector3& toward_robot() const { return toward_robot_; }
   bool apart() const { return apart_; }  ///< false: they stand inside the robot's base
 
-  enum class Why { good, blocked, out_of_reach, forbidden };
-  Why of_place(const Vector3& p, double& cost) const {
-    if (furniture_.blocked_by(p) != nullptr || inside_box(scene_, p, 0.12)) return Why::blocked;
+  enum class Place { good, blocked, out_of_reach, forbidden };
+  /// Adds up what speaks against a place; `cost` only of a good one.
+  Place of_place(const Vector3& p, double& cost) const {
+    if (furniture_.blocked_by(p) != nullptr || inside_box(scene_, p, 0.12)) return Place::blocked;
     const double comfort = arm_comfort_cost(layers_.comfort_of(person_.id), arms_, p);
-    if (comfort >= 1) return Why::out_of_reach;
+    if (comfort >= 1) return Place::out_of_reach;
     const OutsideCost outside = layers_.outside_cost(p);
-    if (outside.forbidden_by != nullptr) return Why::forbidden;
+    if (outside.forbidden_by != nullptr) return Place::forbidden;
     cost = settings_.w_comfort() * comfort + settings_.w_safety() * safety_cost(distance_to_body(body_, p), 0.8) +
            settings_.w_visibility() * visibility_cost(person_, p, 3.0) + settings_.w_effort() * (p - p_now_).norm() + outside.cost +
            settings_.w_preference() * against_preference(p);
-    return Why::good;
+    return Place::good;
   }
-  /// What their profile says against it: the other side, another distance; 0 without one.
+  /// Cost by the person's profile: the other side, another distance; 0 without a profile.
   double against_preference(const Vector3& p) const {
     constexpr double kFull = 0.3;  // [m]
     const auto& people = settings_.people();
@@ -89,13 +93,13 @@ class Costs {
       cost += std::min(1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance()) / kFull);
     return cost;
   }
-  /// Of how the hand holds it toward them; nullopt: they could not take it.
+  /// Cost of how the hand holds the object toward the person; nullopt: they could not take it.
   std::optional<double> of_attitude(const Eigen::Matrix3d& R_world_object) const {
     const double facing = (R_world_object * object_in_hand_).normalized().dot(-toward_robot_);
-    if (facing < kLeastFacing) return std::nullopt;
+    if (facing < kMinFacing) return std::nullopt;
     double in_the_way = 0;
     for (const Vector3& normal : barred_) in_the_way = std::max(in_the_way, (R_world_object * normal).dot(-toward_robot_));
-    if (in_the_way > kBarred) return std::nullopt;
+    if (in_the_way > kMaxBarred) return std::nullopt;
     return settings_.w_legibility() * ((1 - facing) / 2 + in_the_way);
   }
 
@@ -112,9 +116,48 @@ class Costs {
   bool apart_{};
 };
 
+/// Places and headings of the object before the person, the cheapest first, and how many places
+/// were left out.
+struct Candidates {
+  std::vector<Candidate> all;
+  int out_of_reach{}, blocked{}, forbidden{};
+};
+
+Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
+  Candidates found;
+  const double shoulder_z = query.person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
+  const Vector3& toward_robot = costs.toward_robot();
+  const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
+  const auto add_headings = [&](const Vector3& p, double cost) {
+    for (int k = 0; k < kHeadings; ++k) {
+      const double yaw = 2 * std::numbers::pi * k / kHeadings;
+      Pose T = query.T_world_object;
+      T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * query.T_world_object.linear();
+      T.translation() = p;
+      if (const std::optional<double> attitude = costs.of_attitude(T.linear())) found.all.push_back({T, cost + *attitude});
+    }
+  };
+  for (const double ahead : kAhead) {
+    for (const double aside : kAside) {
+      for (const double below : kBelowShoulder) {
+        Vector3 p = costs.torso() + ahead * toward_robot + aside * across;
+        p.z() = shoulder_z - below;
+        double cost = 0;
+        const OtpCosts::Place place = costs.of_place(p, cost);
+        found.blocked += place == OtpCosts::Place::blocked;
+        found.out_of_reach += place == OtpCosts::Place::out_of_reach;
+        found.forbidden += place == OtpCosts::Place::forbidden;
+        if (place == OtpCosts::Place::good) add_headings(p, cost);
+      }
+    }
+  }
+  std::stable_sort(found.all.begin(), found.all.end(), [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  return found;
+}
+
 }  // namespace
 
-std::vector<Vector3> barred_ways(const Grasp& grasp) {
+std::vector<Vector3> barred_directions(const Grasp& grasp) {
   std::set<std::uint32_t> fingers;
   std::vector<Vector3> normals;
   for (const Contact& contact : grasp.contacts) {
@@ -124,76 +167,44 @@ std::vector<Vector3> barred_ways(const Grasp& grasp) {
   return fingers.size() == 2 ? normals : std::vector<Vector3>{};
 }
 
-ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
-                             const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
-                             const std::vector<Vector3>& barred) {
-  ExchangeSearch out;
+OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q, const config::ManipulationPlannerSettings& settings) {
+  OtpSearch out;
   const Group& arm = robot.require_group("arm");
-  const Costs costs(scene, person, layers, T_world_object_now, T_tool_object, settings, barred);
+  const OtpCosts costs(query, settings);
   if (!costs.apart()) {
-    out.reason = "person " + person.id + " stands inside the robot's base";
+    out.reason = "person " + query.person.id + " stands inside the robot's base";
     return out;
   }
-  const double shoulder_z = person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
-  const Vector3& toward_robot = costs.toward_robot();
-  const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
-
-  std::vector<Place> places;
-  int out_of_reach = 0, blocked = 0, forbidden = 0;
-  for (const double ahead : {0.42, 0.5, 0.58, 0.66, 0.74, 0.82}) {
-    for (const double aside : {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36}) {
-      for (const double below : {0.05, 0.15, 0.25, 0.35, 0.45, 0.55}) {
-        Vector3 p = costs.torso() + ahead * toward_robot + aside * across;
-        p.z() = shoulder_z - below;
-        double cost = 0;
-        const Costs::Why why = costs.of_place(p, cost);
-        blocked += why == Costs::Why::blocked;
-        out_of_reach += why == Costs::Why::out_of_reach;
-        forbidden += why == Costs::Why::forbidden;
-        if (why != Costs::Why::good) continue;
-        for (int k = 0; k < kHeadings; ++k) {
-          const double yaw = 2 * std::numbers::pi * k / kHeadings;
-          Pose T = T_world_object_now;
-          T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * T_world_object_now.linear();
-          T.translation() = p;
-          if (const std::optional<double> attitude = costs.of_attitude(T.linear())) places.push_back({T, cost + *attitude});
-        }
-      }
-    }
-  }
-  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
-
+  const Candidates candidates = find_candidates(query, costs);
   IkOptions options;
   options.restarts = 0;
   int unreachable = 0;
-  for (const auto& place : places) {
-    if (!out.poses.empty() && place.cost > out.poses.front().cost + kWorthwhile) break;
-    const bool offered = std::any_of(out.poses.begin(), out.poses.end(), [&](const ExchangePose& pose) {
-      return (pose.T_world_object.translation() - place.T_world_object.translation()).norm() < 0.05;
+  for (const Candidate& candidate : candidates.all) {
+    if (!out.poses.empty() && candidate.cost > out.poses.front().cost + kMaxExtraCost) break;
+    const bool is_near = std::any_of(out.poses.begin(), out.poses.end(), [&](const OtpPose& pose) {
+      return (pose.T_world_object.translation() - candidate.T_world_object.translation()).norm() < kMinDistance;
     });
-    if (offered) continue;
+    if (is_near) continue;
     if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.exchange_tries()) break;
     ++out.tried;
-    const Pose T_root_tip = scene.T_world_base.inverse() * place.T_world_object * T_tool_object.inverse();
+    const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object * query.T_tool_object.inverse();
     if (auto joints = robot.inverse(arm, T_root_tip, q, options))
-      out.poses.push_back({place.T_world_object, std::move(*joints), place.cost});
+      out.poses.push_back({candidate.T_world_object, std::move(*joints), candidate.cost});
     else
       ++unreachable;
   }
   if (out.poses.empty())
-    out.reason = "no exchange point with " + person.id + ": " + std::to_string(out_of_reach) + " places beyond their reach, " +
-                 std::to_string(blocked) + " in, under or behind furniture, " +
-                 (forbidden > 0 ? std::to_string(forbidden) + " forbidden by a cost layer, " : "") + std::to_string(unreachable) + " of " +
-                 std::to_string(out.tried) + " poses beyond the robot's reach";
+    out.reason = "no exchange point with " + query.person.id + ": " + std::to_string(candidates.out_of_reach) +
+                 " places beyond their reach, " + std::to_string(candidates.blocked) + " in, under or behind furniture, " +
+                 (candidates.forbidden > 0 ? std::to_string(candidates.forbidden) + " forbidden by a cost layer, " : "") +
+                 std::to_string(unreachable) + " of " + std::to_string(out.tried) + " poses beyond the robot's reach";
   return out;
 }
 
-std::optional<double> exchange_cost(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object,
-                                    const Pose& T_world_object_now, const Pose& T_tool_object,
-                                    const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred) {
-  const Costs costs(scene, person, layers, T_world_object_now, T_tool_object, settings, barred);
+std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object, const config::ManipulationPlannerSettings& settings) {
+  const OtpCosts costs(query, settings);
   double cost = 0;
-  if (!costs.apart() || costs.of_place(T_world_object.translation(), cost) != Costs::Why::good) return std::nullopt;
+  if (!costs.apart() || costs.of_place(T_world_object.translation(), cost) != OtpCosts::Place::good) return std::nullopt;
   const std::optional<double> attitude = costs.of_attitude(T_world_object.linear());
   if (!attitude) return std::nullopt;
   return cost + *attitude;

@@ -1,4 +1,4 @@
-// Where and how to offer an object: exchange poses ranked by comfort, safety, visibility,
+// Where and how to offer an object: object transfer points ranked by comfort, safety, visibility,
 // legibility and the robot's effort (chapter sections 3.2.9 and 4.1.2). Own method: the sum. Pure.
 #pragma once
 
@@ -15,35 +15,43 @@
 
 namespace handsel::manipulation_planner {
 
-struct ExchangePose {
+/// A pose in which an object is handed over.
+struct OtpPose {
   Pose T_world_object{Pose::Identity()};  ///< where and how the object is offered
-  Vector arm_joints;                      ///< arm axes that put the held object there
-  double cost{};                          ///< as exchange_cost() counts it, the lower the better
+  Vector arm_joints;                      ///< arm axes that put the held object there [rad]
+  double cost{};                          ///< as otp_cost() counts it, the lower the better
 };
 
-struct ExchangeSearch {
-  std::vector<ExchangePose> poses;  ///< best first, reachable by robot and person
-  std::string reason;               ///< when there is none
-  std::uint32_t tried{};            ///< inverse kinematics solved for
+/// Result of a search.
+struct OtpSearch {
+  std::vector<OtpPose> poses;  ///< best first, reachable by robot and person
+  std::string reason;          ///< when there is none
+  std::uint32_t tried{};       ///< poses that inverse kinematics was solved for
 };
 
-/// Returns where the fingers of a hand that pinches stand, seen from the object (outward normals,
-/// object frame): the object cannot be drawn out in these directions. Empty when more than two
-/// fingers hold it: they open away from it.
-std::vector<Vector3> barred_ways(const Grasp& grasp);
+/// What is offered to whom; what is referred to must outlive the query.
+struct OtpQuery {
+  const Scene& scene;                  ///< furniture and base of the robot
+  const Person& person;                ///< the receiver
+  const LayersNow& layers;             ///< cost layers
+  const Pose& T_world_object;          ///< where the object is now
+  const Pose& T_tool_object;           ///< how the hand holds the object
+  const std::vector<Vector3>& barred;  ///< as barred_directions() returns them
+};
 
-/// `q`: all axes, near which configurations are searched; `T_world_object_now`: where the object
-/// is. The object keeps its tilt; only its place and heading change. Places in, under or behind
-/// furniture as the person sees it, and those an outside layer forbids, are none. `barred`: as
-/// barred_ways() gives them; the person must be able to draw the object toward them.
-ExchangeSearch find_exchange(const RobotModel& robot, const Scene& scene, const Person& person, const LayersNow& layers, const Vector& q,
-                             const Pose& T_world_object_now, const Pose& T_tool_object, const config::ManipulationPlannerSettings& settings,
-                             const std::vector<Vector3>& barred = {});
+/// Returns the directions, seen from the object, in which a hand that pinches stands (outward
+/// normals, object frame): the object cannot be drawn out in these directions. Empty when more than
+/// two fingers hold the object: they open away from it.
+std::vector<Vector3> barred_directions(const Grasp& grasp);
 
-/// Returns what a pose of the object costs as find_exchange() counts it, whether the robot reaches
-/// it or not; nullopt: it could not be one.
-std::optional<double> exchange_cost(const Scene& scene, const Person& person, const LayersNow& layers, const Pose& T_world_object,
-                                    const Pose& T_world_object_now, const Pose& T_tool_object,
-                                    const config::ManipulationPlannerSettings& settings, const std::vector<Vector3>& barred = {});
+/// Searches object transfer points. `q`: all axes, near which configurations are searched [rad, m].
+/// The object keeps its tilt; only its place and heading change. Places in, under or behind
+/// furniture as the person sees it, and those an outside layer forbids, are left out. The person
+/// must be able to draw the object toward them.
+OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q, const config::ManipulationPlannerSettings& settings);
+
+/// Returns the cost of a pose of the object as find_otp() counts it, whether the robot reaches the
+/// pose or not; nullopt: it is no object transfer point.
+std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object, const config::ManipulationPlannerSettings& settings);
 
 }  // namespace handsel::manipulation_planner

@@ -1,287 +1,199 @@
-// The motion that runs, looked at again and again: a better path for the people as they are now, a way around what came into it (chapter
-// sections 2.1 and 4.1.1). The path planner keeps what lies before the place where the old path is left; the controller is told that place.
+#include "components/manipulation_planner/motion/online_replanner.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <functional>
 
-#include "common/collision/margins.hpp"
-#include "common/model/human/human_body.hpp"
 #include "common/trajectory/path/broken_line.hpp"
-#include "components/manipulation_planner/planner.hpp"
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+#include "components/manipulation_planner/parts.hpp"
 
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kStep = 0.004;     // the motion that leads over is judged this often [rad, max norm]
-constexpr double kWideStep = 0.01;  // and what follows it this often
-constexpr double kMargin = 0.01;    // furniture, and what other axes turn, is taken for larger by this much on every side [m]
-constexpr double kReserve = 1.1;    // what a switch keeps of the limits it is given: so it keeps the comfort limits
-constexpr double kLook = 0.1;       // costs along a trajectory are looked at this often [s]
-constexpr double kEarly = 0.04;     // the command must be with the controller this long before it is due [s]
+constexpr double kMinLead = 0.04;       // a command is with the controller this long before it is due [s]
+constexpr double kRetimedReach = 0.3;   // the same path at another speed is joined within this, max norm [rad]
+constexpr double kReachStep = 0.1;      // or within this more, as often as braking needs it [rad]
+constexpr double kReturnTimeout = 1.0;  // for the controller to report the old command again [s]
+constexpr double kSameTime = 1e-6;      // [s]
 
-// [rad, max norm] The same path at another pace is joined at most so far from where the arm is, or so much farther as it needs to brake.
-constexpr double kRetimed = 0.3, kFarther = 0.1;
-
-constexpr double kStepAside = 0.1;     // a receiver who moved less is where they were [m]
-constexpr double kWorthMoving = 0.05;  // an exchange posture is kept until another costs less by this
-
-/// Until when the trajectory has not been farther than `reach` from where it begins [s].
-double within_reach(const Trajectory& trajectory, const Vector& from, double reach) {
-  constexpr int kLooks = 100;
-  double last = 0.0;
-  for (int k = 0; k <= kLooks; ++k) {
-    const double t = trajectory.duration() * k / kLooks;
-    if ((trajectory.at(t).position - from).cwiseAbs().maxCoeff() > reach) break;
-    last = t;
-  }
-  return last;
-}
-
-/// Whether one of the last `legs` legs must be slower than it was timed, to less than `share` of that. Speeds as in TrajectoryReply.
-bool slower_ahead(const Vector& before, const Vector& now, std::size_t legs, double share) {
+/// Returns whether one of the last `segments` segments must be slower than it was timed, to less
+/// than `ratio` of that. Speeds as in TrajectoryReply.
+bool is_slower_ahead(const Vector& before, const Vector& now, std::size_t segments, double ratio) {
   const auto from_end = [](const Vector& speeds, std::size_t k) {
-    return static_cast<Eigen::Index>(k) < speeds.size() ? speeds[speeds.size() - 1 - static_cast<Eigen::Index>(k)] : 1.0;
+    const auto index = static_cast<Eigen::Index>(k);
+    return index < speeds.size() ? speeds[speeds.size() - 1 - index] : 1.0;
   };
-  for (std::size_t k = 0; k < legs; ++k)
-    if (from_end(now, k) < share * from_end(before, k)) return true;
+  for (std::size_t k = 0; k < segments; ++k)
+    if (from_end(now, k) < ratio * from_end(before, k)) return true;
   return false;
 }
 
-/// From speed it takes longer than from rest: it would go past where it joins, and come back.
-bool turns_back(const Switched& over, const Trajectory& to) { return over.ok() && over.trajectory.duration() > to.duration(); }
-
 }  // namespace
 
-/// From a state in motion onto the trajectory.
-Switched ManipulationPlanner::join(const MotionState3& from, const Trajectory& to, const Ways& ways) const {
-  KinematicLimits limits = robot_->comfort_limits();
-  for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = kReserve * RobotModel::part(*part, arm_);
-  if (ways.share < 1)
-    limits.velocity = (ways.share * limits.velocity).cwiseMax(limits.velocity.cwiseMin(kReserve * from.velocity.cwiseAbs()));
-  SwitchSettings settings;
-  settings.reserve = kReserve;
-  settings.last = within_reach(to, from.position, ways.reach);
-  return switch_to(from, to, limits, settings);
+void OnlineReplanner::advise(double period, double cost_gain, TimePoint now) {
+  period_.advise(period, now);
+  cost_gain_ = cost_gain;
 }
 
-/// The same, all of what leads over free; nullopt when that cannot be.
-std::optional<Trajectory> ManipulationPlanner::lead_over(CollisionWorld& world, const Around& around, const MotionState3& from,
-                                                         const Ways& ways) const {
-  const Trajectory& to = *ways.over;
-  const Switched over = join(from, to, ways);
-  if (!over.ok()) return std::nullopt;
-  world.set_scene(around.scene);
-  world.set_people(around.people);
-  world.set_attachment(around.attachment, around.allowed);
-  world.set_moving_axes(arm_.axes);
-  const auto whole_posture = [&](const Vector& q) { return RobotModel::with(around.posture, arm_, q); };
-  set_scene_with_margins(world, around.scene, {kMargin, kMargin},
-                         {whole_posture(from.position), whole_posture(to.at(to.duration()).position)});
-  double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
-  for (const AxisTrajectory& axis : over.trajectory.axes) rate = std::max(rate, std::abs(axis.start.velocity));
-  // Past that the path is known to be free, but corners cut it.
-  const double whole = over.trajectory.duration();
-  const int first = std::max(2, static_cast<int>(std::ceil(rate * over.connecting / kStep)));
-  const int looks = first + static_cast<int>(std::ceil(rate * std::max(0.0, whole - over.connecting) / kWideStep));
-  for (int k = 0; k <= looks; ++k) {
-    const double t = k <= first ? over.connecting * k / first : over.connecting + (whole - over.connecting) * (k - first) / (looks - first);
-    const Vector q = over.trajectory.at(t).position;
-    for (int i = 0; i < q.size(); ++i) {
-      const Axis& axis = robot_->axes()[static_cast<std::size_t>(arm_.axes[static_cast<std::size_t>(i)])];
-      if (q[i] < axis.lower || q[i] > axis.upper) return std::nullopt;
-    }
-    if (!world.is_free(whole_posture(q))) return std::nullopt;
-  }
-  return over.trajectory;
+bool OnlineReplanner::is_over(const RunningMotion& running) const {
+  const ExecutionStatus& status = *parts_.now.execution();
+  return status.trajectory != running.command || status.motion != MotionState::running;
 }
 
-double ManipulationPlanner::cost_at(const Vector& q, const Vector& posture) const { return (*cost_)(RobotModel::with(posture, arm_, q)); }
-
-/// Integral along the trajectory of what the human-aware cost is above `level` [rad].
-double ManipulationPlanner::cost_along(const Trajectory& trajectory, const Vector& posture, double level) const {
-  const int looks = std::max(1, static_cast<int>(std::ceil(trajectory.duration() / kLook)));
-  double sum = 0;
-  for (int k = 0; k < looks; ++k) {
-    const auto at = [&](double look) { return trajectory.at(trajectory.duration() * look / looks).position; };
-    sum += std::max(0.0, cost_at(at(k + 0.5), posture) - level) * (at(k + 1) - at(k)).norm();
-  }
-  return sum;
+SwitchPlanner OnlineReplanner::switch_planner() const {
+  const auto& settings = parts_.settings;
+  return {parts_.arm.shared_robot(), parts_.arm.group(), {settings.live_slower(), settings.live_gain()}};
 }
 
-/// Both ways as the arm would really go: what leads over to a path may leave out what makes it cheaper.
-void ManipulationPlanner::weigh(Ways& ways, CollisionWorld& world, const Around& around, const MotionState3& from, bool standing) const {
-  const double from_rest = ways.over->duration();
-  if (!standing) {
-    ways.over = lead_over(world, around, from, ways);
-    if (ways.along) {
-      Switched along = join(from, *ways.along, ways);
-      if (along.ok() && !turns_back(along, *ways.along)) ways.along = std::move(along.trajectory);
-    }
-  }
-  if (!ways.over || !ways.along) return;
-  cost_->set_people(around.people);
-  cost_->set_layers(around.layers);
-  cost_->set_base(around.scene.T_world_base);
-  double level = cost_at(from.position, around.posture);  // what every motion between these ends costs is nobody's gain
-  for (const Trajectory* way : {&*ways.over, &*ways.along})
-    level = std::min(level, cost_at(way->at(way->duration()).position, around.posture));
-  const double before = cost_along(*ways.along, around.posture, level),
-               saved = before > 0 ? around.cost_gain * (1 - cost_along(*ways.over, around.posture, level) / before) : 0;
-  const double longest = std::min(from_rest, (1 + settings_.live_slower() * saved) * ways.along->duration());
-  ways.worth = saved >= settings_.live_gain() && ways.over->duration() <= longest;
+PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion, const SwitchPoint& point) const {
+  Snapshot& now = parts_.now;
+  const Vector q = RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
+  const double gain = period_.heard(now.time()) ? cost_gain_ : 1.0;
+  return {now.scene(), now.people(), now.layers(), parts_.held.attachment(), motion.allowed, q, gain};
 }
 
-Routine<bool> ManipulationPlanner::follow(Motion& motion, const Vector& goal) {
-  const Person* whom = snapshot_.person(motion.receiver);
-  if (whom == nullptr) co_return false;
-  const Vector3 torso = whom->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  if ((torso - motion.receiver_at).norm() < kStepAside) co_return false;
-  const Pose T_world_object =
-      snapshot_.T_world_base() * robot_->link_pose(RobotModel::with(posture(), arm_, goal), palm_) * attachment_.T_tool_object;
-  ExchangeChoice choice = co_await choose_exchange(motion.receiver, &T_world_object);
-  whom = snapshot_.person(motion.receiver);
-  if (!choice.outcome.good || whom == nullptr) co_return false;
-  if (choice.search.poses.empty()) co_return !choice.kept;
-  if (choice.kept && *choice.kept <= choice.search.poses.front().cost + kWorthMoving) {
-    motion.receiver_at = torso;
-    co_return false;
-  }
-  lead_to(choice.search, *whom, motion);
-  motion.receiver_at = torso;
-  status_.exchange_point = choice.search.poses.front().T_world_object.translation();
-  co_return true;
+Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, SwitchPoint& point) const {
+  const ActiveTrajectory& active = parts_.now.active();
+  const double replan_time = parts_.settings.replan_time();
+  if (active.trajectory != running.command || active.rest.size() != static_cast<int>(parts_.arm.group().axes.size()))
+    return Outcome::failure("the controller tells of another motion");
+  const double duration = active.rest.duration();
+  point.offset = duration - running.duration;
+  point.at_rest = parts_.arm.at_rest();
+  point.time = active.time + (point.at_rest ? 0.0 : replan_time);
+  if (!point.at_rest && point.time <= point.offset) return Outcome::failure("it has not begun yet");
+  if (point.time + replan_time > duration) return Outcome::failure("it is nearly there");
+  point.from = active.rest.at(point.time);
+  point.rest = duration - point.time;
+  return {};
 }
 
-bool ManipulationPlanner::gone(const Running& running) const {
-  return snapshot_.execution()->trajectory != running.command || snapshot_.execution()->motion != MotionState::running;
+Routine<Outcome> OnlineReplanner::check(RunningMotion& running, const MotionSpec& motion) {
+  SwitchPoint point;
+  Outcome found = find_switch_point(running, point);
+  if (!found.good) co_return found;
+  const Vector start = RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
+  auto& path = parts_.clients.path;
+  PathRequest request = path_request(parts_, start, motion);
+  request.running = running.waypoints;
+  request.time_limit = parts_.settings.live_time();
+  ++counts_.checks;
+  path.send(request);
+  const auto has_come = [this, &path, &running] { return path.reply().has_value() || is_over(running); };
+  const bool has_path = co_await parts_.waiting.until(has_come, parts_.settings.replan_time());
+  if (!has_path || is_over(running)) co_return Outcome::failure("no path came in time");
+  if (!path.reply()->solved) {
+    ++counts_.refused;
+    co_return Outcome::failure(path.reply()->reason);
+  }
+  Outcome planned = co_await plan(running, motion, point, start);
+  co_return planned;
 }
 
-Routine<Outcome> ManipulationPlanner::go_on(Running& running, const Motion& motion) {
-  if (snapshot_.active().trajectory != running.command || snapshot_.active().rest.size() != static_cast<int>(arm_.axes.size()))
-    co_return Outcome::failure("the controller tells of another motion");
-  const double duration = snapshot_.active().rest.duration();
-  Leave leave;
-  leave.offset = duration - running.duration;
-  leave.standing = at_rest();
-  leave.at = snapshot_.active().time + (leave.standing ? 0.0 : settings_.replan_time());
-  if (!leave.standing && leave.at <= leave.offset) co_return Outcome::failure("it has not begun yet");
-  if (leave.at + settings_.replan_time() > duration) co_return Outcome::failure("it is nearly there");
-  leave.from = snapshot_.active().rest.at(leave.at);
-  leave.rest = duration - leave.at;
-  const Vector start = RobotModel::with(posture(), arm_, leave.from.position);
-  const Running* now = &running;
-  const auto ended = [this, now] { return gone(*now); };
-
-  PathRequest request = path_request(start, motion);
-  request.running = running.nodes;
-  request.time_limit = settings_.live_time();
-  ++live_counts_.looks;
-  clients_.path.send(request);
-  const bool planned =
-      co_await waiting_.until([this, ended] { return clients_.path.reply().has_value() || ended(); }, settings_.replan_time());
-  if (!planned || ended()) co_return Outcome::failure("no path came in time");
-  if (!clients_.path.reply()->solved) {
-    ++live_counts_.refused;
-    co_return Outcome::failure(clients_.path.reply()->reason);
-  }
-  const PathOutcome outcome = clients_.path.reply()->outcome;
-  const std::vector<Vector> nodes = clients_.path.reply()->path;
-  const bool kept = outcome == PathOutcome::kept, only_cheaper = outcome == PathOutcome::improved;
-  const std::vector<Vector> as_before = remainder(running.nodes, leave.from.position, settings_.live_reach());
-  const bool compared = only_cheaper || (kept && settings_.live_pace() > 0 && !as_before.empty());
-  if (compared) {
-    clients_.comparison.send(trajectory_request(clients_.comparison, as_before, start, motion));
-  }
-  if (!kept) clients_.trajectory.send(trajectory_request(clients_.trajectory, nodes, start, motion));
-  const bool timed = co_await waiting_.until(
-      [this, ended, kept, compared] {
-        return ((kept || clients_.trajectory.reply()) && (!compared || clients_.comparison.reply())) || ended();
-      },
-      settings_.replan_time());
-  if (!timed || ended()) co_return Outcome::failure("no trajectory came in time");
-  if (!kept) {
-    if (!clients_.trajectory.reply()->solved) {
-      ++live_counts_.refused;
-      co_return Outcome::failure(clients_.trajectory.reply()->reason);
-    }
-    auto ways = std::make_shared<Ways>();
-    ways->over = clients_.trajectory.reply()->trajectory;
-    ways->reach = settings_.live_reach();
-    if (only_cheaper && clients_.comparison.reply()->solved) ways->along = clients_.comparison.reply()->trajectory;
-    const TrajectoryReply reply = *clients_.trajectory.reply();
-    Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
-    if (over.good) ++live_counts_.taken;
-    if (over.good || ways->worth) co_return over;
-    ++live_counts_.slower;
-    if (!only_cheaper || ended()) co_return over;
+/// Times the path that has come, and the running one as it would be now, and uses the better one.
+Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point, const Vector& start) {
+  const auto& settings = parts_.settings;
+  auto& timing = parts_.clients.trajectory;
+  auto& comparison = parts_.clients.comparison;
+  const PathOutcome outcome = parts_.clients.path.reply()->outcome;
+  const std::vector<Vector> waypoints = parts_.clients.path.reply()->path;
+  const bool is_unchanged = outcome == PathOutcome::kept, is_only_cheaper = outcome == PathOutcome::improved;
+  const std::vector<Vector> as_before = remainder(running.waypoints, point.from.position, settings.live_reach());
+  const bool is_compared = is_only_cheaper || (is_unchanged && settings.live_pace() > 0 && !as_before.empty());
+  if (is_compared) comparison.send(trajectory_request(parts_, comparison, as_before, start, motion));
+  if (!is_unchanged) timing.send(trajectory_request(parts_, timing, waypoints, start, motion));
+  const auto have_come = [&] { return ((is_unchanged || timing.reply()) && (!is_compared || comparison.reply())) || is_over(running); };
+  const bool is_timed = co_await parts_.waiting.until(have_come, settings.replan_time());
+  if (!is_timed || is_over(running)) co_return Outcome::failure("no trajectory came in time");
+  if (is_unchanged) {
+    ++counts_.unchanged;
   } else {
-    ++live_counts_.kept;
+    if (!timing.reply()->solved) {
+      ++counts_.refused;
+      co_return Outcome::failure(timing.reply()->reason);
+    }
+    auto candidate = std::make_shared<SwitchCandidate>();
+    candidate->onto = timing.reply()->trajectory;
+    candidate->max_reach = settings.live_reach();
+    if (is_only_cheaper && comparison.reply()->solved) candidate->along = comparison.reply()->trajectory;
+    const RunningMotion next{0, 0, waypoints, timing.reply()->speeds};
+    Outcome switched = co_await switch_to_candidate(running, motion, point, candidate, next);
+    if (switched.good) ++counts_.switched;
+    if (switched.good || candidate->is_worth) co_return switched;
+    ++counts_.slower;
+    if (!is_only_cheaper || is_over(running)) co_return switched;
   }
-  if (!compared || !clients_.comparison.reply()->solved || settings_.live_pace() <= 0) co_return Outcome{};
-  Outcome retimed = co_await retime(running, motion, leave, as_before);
-  if (retimed.good) ++live_counts_.retimed;
+  if (!is_compared || !comparison.reply()->solved || settings.live_pace() <= 0) co_return Outcome{};
+  Outcome retimed = co_await retime(running, motion, point, as_before);
+  if (retimed.good) ++counts_.retimed;
   co_return Outcome{};
 }
 
-/// Slower where a leg ahead must be; faster where all of the way then is.
-Routine<Outcome> ManipulationPlanner::retime(Running& running, const Motion& motion, const Leave& leave, const std::vector<Vector>& nodes) {
-  const TrajectoryReply reply = *clients_.comparison.reply();
-  auto ways = std::make_shared<Ways>();
-  ways->over = reply.trajectory;
-  ways->share = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
+/// Runs the same path slower where a segment ahead must be slower, faster where all the rest then is.
+Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
+                                         const std::vector<Vector>& waypoints) {
+  const TrajectoryReply reply = *parts_.clients.comparison.reply();
+  auto candidate = std::make_shared<SwitchCandidate>();
+  candidate->onto = reply.trajectory;
+  candidate->speed = reply.speeds.size() > 0 ? reply.speeds[0] : 1.0;
+  const SwitchPlanner planner = switch_planner();
   Switched along;
   along.trajectory = reply.trajectory;
-  for (double reach = kRetimed; !leave.standing && reach <= settings_.live_reach(); reach += kFarther) {
-    ways->reach = reach;
-    along = join(leave.from, reply.trajectory, *ways);
+  for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach(); reach += kReachStep) {
+    candidate->max_reach = reach;
+    along = planner.join(point.from, reply.trajectory, *candidate);
     if (along.ok() && !turns_back(along, reply.trajectory)) break;
   }
   if (!along.ok() || turns_back(along, reply.trajectory)) co_return Outcome::failure("the arm is too fast to go over");
-  const double share = 1 - settings_.live_pace();
-  if (!slower_ahead(running.speeds, reply.speeds, nodes.size() - 1, share)) {
-    const bool faster = slower_ahead(reply.speeds, running.speeds, nodes.size() - 1, share);
-    if (!faster || along.trajectory.duration() > share * leave.rest) co_return Outcome::failure("it would go as before");
+  const double ratio = 1 - parts_.settings.live_pace();
+  if (!is_slower_ahead(running.speeds, reply.speeds, waypoints.size() - 1, ratio)) {
+    const bool is_faster = is_slower_ahead(reply.speeds, running.speeds, waypoints.size() - 1, ratio);
+    if (!is_faster || along.trajectory.duration() > ratio * point.rest) co_return Outcome::failure("it would go as before");
   }
-  Outcome over = co_await go_over(running, motion, leave, ways, reply, nodes);
-  co_return over;
+  const RunningMotion next{0, 0, waypoints, reply.speeds};
+  Outcome switched = co_await switch_to_candidate(running, motion, point, candidate, next);
+  co_return switched;
 }
 
-Routine<Outcome> ManipulationPlanner::go_over(Running& running, const Motion& motion, const Leave& leave, const std::shared_ptr<Ways>& ways,
-                                              const TrajectoryReply& timed, const std::vector<Vector>& nodes) {
-  const Running* now = &running;
-  const bool standing = leave.standing;
-  const std::function<void()> job = [this, ways, standing, from = leave.from, world = worker_.world(*robot_, snapshot_.objects()),
-                                     around = Around{snapshot_.scene(), snapshot_.people(), snapshot_.layers(waiting_.now()), attachment_,
-                                                     motion.allowed, RobotModel::with(posture(), arm_, leave.from.position),
-                                                     live_pace_.heard(waiting_.now()) ? cost_gain_ : 1.0}] {
-    weigh(*ways, *world, around, from, standing);
-  };
-  Outcome worked = co_await worker_.run(job);
+bool OnlineReplanner::is_too_late(const SwitchPoint& point) const {
+  const double time = parts_.now.active().time;
+  return point.at_rest ? !parts_.arm.at_rest() || time > point.time + kSameTime : time + kMinLead > point.time;
+}
+
+/// Switches to the candidate if it is free of collision, worth the switch and in time. `next`: its
+/// waypoints and speeds.
+Routine<Outcome> OnlineReplanner::switch_to_candidate(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
+                                                      const std::shared_ptr<SwitchCandidate>& candidate, const RunningMotion& next) {
+  const std::function<void()> job = [candidate, point, cost = cost_, planner = switch_planner(),
+                                     world = parts_.worker.world(parts_.arm.robot(), parts_.now.objects()),
+                                     now = snapshot(motion, point)] { planner.evaluate(*candidate, *world, *cost, now, point); };
+  Outcome worked = co_await parts_.worker.run(job);
   if (!worked.good) co_return worked;
-  if (gone(running)) co_return Outcome::failure("the motion has ended");
-  if (!ways->over) {
-    ++live_counts_.refused;
+  if (is_over(running)) co_return Outcome::failure("the motion has ended");
+  if (!candidate->onto) {
+    ++counts_.refused;
     co_return Outcome::failure("no free motion leads over to the new path");
   }
-  if (!ways->worth) co_return Outcome::failure("the new path takes longer than it is worth");
-  if (standing ? !at_rest() || snapshot_.active().time > leave.at + 1e-6 : snapshot_.active().time + kEarly > leave.at) {
-    ++live_counts_.refused;
+  if (!candidate->is_worth) co_return Outcome::failure("the new path takes longer than it is worth");
+  if (is_too_late(point)) {
+    ++counts_.refused;
     co_return Outcome::failure("the new path came too late");
   }
-  TrajectoryCommand command = command_for(*ways->over, motion);
-  command.switch_at = standing ? 0.0 : leave.at - leave.offset;
-  Outcome heard = co_await send(command);
-  if (!heard.good) co_return heard;
-  if (snapshot_.execution()->motion == MotionState::refused) {
-    ++live_counts_.refused;
-    const Outcome why = Outcome::failure("the new path was refused: " + snapshot_.execution()->reason);
-    co_await waiting_.until([this, now] { return snapshot_.execution()->trajectory == now->command; }, 1.0);
+  TrajectoryCommand command = trajectory_command(parts_, *candidate->onto, motion);
+  command.switch_at = point.at_rest ? 0.0 : point.time - point.offset;
+  Outcome sent = co_await parts_.link.send(command);
+  if (!sent.good) co_return sent;
+  if (parts_.now.execution()->motion == MotionState::refused) {
+    ++counts_.refused;
+    const Outcome why = Outcome::failure("the new path was refused: " + parts_.link.reason());
+    const auto is_back = [this, &running] { return parts_.now.execution()->trajectory == running.command; };
+    co_await parts_.waiting.until(is_back, kReturnTimeout);
     co_return why;
   }
+  running = next;
   running.command = command.id;
   running.duration = command.trajectory.duration();
-  running.nodes = nodes;
-  running.speeds = timed.speeds;
   co_return Outcome{};
 }
 

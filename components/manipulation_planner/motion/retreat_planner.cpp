@@ -10,12 +10,12 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kNear = 0.12;       // where the guard lets nothing but going away pass, about [m]
-constexpr double kAway = 0.6;        // of the way a link goes, more than the guard asks for
-constexpr double kStep = 0.01;       // [m]
-constexpr double kLookAhead = 0.02;  // of a motion, by its fastest axis [rad, m]
-constexpr double kDamping = 1e-3;
-constexpr double kMost = 0.1;  // that one axis turns for a step [rad, m]
+constexpr double kNear = 0.12;       // nearer, the guard permits only motion away, about [m]
+constexpr double kMinAway = 0.6;     // part of a link's motion that leads away; the guard asks for less
+constexpr double kStep = 0.01;       // of the retreat [m]
+constexpr double kLookahead = 0.02;  // of a motion, by its fastest axis [rad, m]
+constexpr double kDamping = 1e-3;    // of the least-squares solution
+constexpr double kMaxTurn = 0.1;     // of one axis for a step [rad, m]
 
 struct Placed {
   Vector3 a, b;
@@ -27,25 +27,25 @@ Placed placed(const LinkCapsule& capsule, const std::vector<Pose>& T_root_link, 
 
 }  // namespace
 
-WayOut::WayOut(const RobotModel& robot, const Group& arm) : robot_(robot), arm_(arm), capsules_(robot_capsules(robot)) {}
+RetreatPlanner::RetreatPlanner(const RobotModel& robot, const Group& arm) : robot_(robot), arm_(arm), capsules_(robot_capsules(robot)) {}
 
-bool WayOut::within_limits(const Vector& posture) const {
+bool RetreatPlanner::within_limits(const Vector& q) const {
   return std::all_of(arm_.axes.begin(), arm_.axes.end(), [&](int axis) {
     const Axis& limits = robot_.axes()[axis];
-    return limits.lower >= limits.upper || (posture[axis] > limits.lower && posture[axis] < limits.upper);
+    return limits.lower >= limits.upper || (q[axis] > limits.lower && q[axis] < limits.upper);
   });
 }
 
-std::vector<Pose> WayOut::links(const Vector& posture) const {
+std::vector<Pose> RetreatPlanner::links(const Vector& q) const {
   std::vector<Pose> out;
-  robot_.forward(posture, out);
+  robot_.forward(q, out);
   return out;
 }
 
-bool WayOut::leads_away(const Vector& from, const Vector& to, const Pose& T_world_base, const HumanState& people) const {
+bool RetreatPlanner::leads_away(const Vector& from, const Vector& to, const Pose& T_world_base, const HumanState& people) const {
   const double farthest = (to - from).cwiseAbs().maxCoeff();
   if (farthest < 1e-9) return true;
-  const std::vector<Pose> before = links(from), after = links(from + std::min(1.0, kLookAhead / farthest) * (to - from));
+  const std::vector<Pose> before = links(from), after = links(from + std::min(1.0, kLookahead / farthest) * (to - from));
   Vector3 on_robot, on_person;
   for (const Person& person : people.people) {
     for (const BodyCapsule& part : body_capsules(person)) {
@@ -56,34 +56,35 @@ bool WayOut::leads_away(const Vector& from, const Vector& to, const Pose& T_worl
         const double was = nearest_points(old.a, old.b, part.a, part.b, on_robot, on_person);
         if (std::sqrt(was) - link.radius - part.radius > kNear) continue;
         const double is = nearest_points(now.a, now.b, part.a, part.b, on_robot, on_person);
-        if (std::sqrt(is) - std::sqrt(was) < kAway * moved) return false;
+        if (std::sqrt(is) - std::sqrt(was) < kMinAway * moved) return false;
       }
     }
   }
   return true;
 }
 
-double WayOut::distance(const Vector& posture, const Pose& T_world_base, const Vector3& p_world) const {
-  const std::vector<Pose> T_root_link = links(posture);
-  double least = std::numeric_limits<double>::infinity();
+double RetreatPlanner::distance(const Vector& q, const Pose& T_world_base, const Vector3& p_world) const {
+  const std::vector<Pose> T_root_link = links(q);
+  double min = std::numeric_limits<double>::infinity();
   Vector3 on_robot, on_point;
   for (const LinkCapsule& link : capsules_) {
     const Placed arm = placed(link, T_root_link, T_world_base);
-    least = std::min(least, std::sqrt(nearest_points(arm.a, arm.b, p_world, p_world, on_robot, on_point)) - link.radius);
+    min = std::min(min, std::sqrt(nearest_points(arm.a, arm.b, p_world, p_world, on_robot, on_point)) - link.radius);
   }
-  return least;
+  return min;
 }
 
-std::vector<Vector> WayOut::steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people, double way) const {
+std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people,
+                                               double max_distance) const {
   struct Near {
     int link{};
     Vector3 in_link, at, away;
   };
   std::vector<Vector> out;
   const auto n = static_cast<Eigen::Index>(arm_.axes.size());
-  Vector posture = from;
-  for (double gone = 0.0; gone < way; gone += kStep) {
-    const std::vector<Pose> T_root_link = links(posture);
+  Vector q = from;
+  for (double gone = 0.0; gone < max_distance; gone += kStep) {
+    const std::vector<Pose> T_root_link = links(q);
     std::vector<Near> near;
     for (const Person& person : people.people) {
       for (const BodyCapsule& part : body_capsules(person)) {
@@ -101,7 +102,7 @@ std::vector<Vector> WayOut::steps_away(const Vector& from, const Pose& T_world_b
     Eigen::MatrixXd rates(static_cast<Eigen::Index>(near.size()), n);  // of each distance, by each axis of the arm
     for (Eigen::Index i = 0; i < n; ++i) {
       constexpr double kSmall = 1e-5;
-      Vector turned = posture;
+      Vector turned = q;
       turned[arm_.axes[static_cast<std::size_t>(i)]] += kSmall;
       const std::vector<Pose> T_root_turned = links(turned);
       for (Eigen::Index k = 0; k < rates.rows(); ++k) {
@@ -112,15 +113,32 @@ std::vector<Vector> WayOut::steps_away(const Vector& from, const Pose& T_world_b
     }
     const Eigen::MatrixXd normal = rates * rates.transpose() + kDamping * Eigen::MatrixXd::Identity(rates.rows(), rates.rows());
     const Vector change = rates.transpose() * normal.ldlt().solve(Vector::Constant(rates.rows(), kStep));
-    Vector next = posture;
+    Vector next = q;
     for (Eigen::Index i = 0; i < n; ++i) next[arm_.axes[static_cast<std::size_t>(i)]] += change[i];
-    if (change.cwiseAbs().maxCoeff() > kMost || !within_limits(next) || !leads_away(posture, next, T_world_base, people)) break;
-    posture = next;
+    if (change.cwiseAbs().maxCoeff() > kMaxTurn || !within_limits(next) || !leads_away(q, next, T_world_base, people)) break;
+    q = next;
     Vector arm(n);
-    for (Eigen::Index i = 0; i < n; ++i) arm[i] = posture[arm_.axes[static_cast<std::size_t>(i)]];
+    for (Eigen::Index i = 0; i < n; ++i) arm[i] = q[arm_.axes[static_cast<std::size_t>(i)]];
     out.push_back(std::move(arm));
   }
   return out;
+}
+
+std::vector<Vector3> retreat_directions(const Pose& T_world_tool, const Vector3& p_world_from, const Vector3& p_world_base) {
+  const Vector3 p_tool = T_world_tool.translation();
+  Vector3 level = p_tool - p_world_from;
+  level.z() = 0;
+  if (level.norm() < 1e-3) level = p_world_base - p_tool;
+  level.z() = 0;
+  level.normalize();
+  const Vector3 up = Vector3::UnitZ(), aside = up.cross(level), hand_back = -T_world_tool.linear().col(2);
+  return {hand_back,
+          level,
+          (level + up).normalized(),
+          up,
+          (level - up).normalized(),
+          (level + aside).normalized(),
+          (level - aside).normalized()};
 }
 
 }  // namespace handsel::manipulation_planner

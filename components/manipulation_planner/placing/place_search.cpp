@@ -24,9 +24,9 @@ double footprint(const ObjectModel* model, const Primitive& primitive) {
 
 }  // namespace
 
-std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const HumanState& people, const ObjectLibrary& library,
-                              const std::string& object, const SceneBox& surface, const Pose& T_world_object, std::size_t most,
-                              const PlacingSettings& settings) {
+std::vector<Pose> free_places(const PlacingScene& in, const std::string& object, const SceneBox& surface, const Pose& T_world_object,
+                              std::size_t max_places, const PlacingSettings& settings) {
+  const auto& [robot, scene, people, library] = in;
   const auto thing = std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == object; });
   const ObjectModel* model = thing == scene.objects.end() ? nullptr : library(thing->model);
   const ArmReach reach = settings.reach ? *settings.reach : arm_reach(robot);
@@ -75,7 +75,7 @@ std::vector<Pose> free_places(const RobotModel& robot, const Scene& scene, const
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
   std::vector<Pose> out;
   for (const Place& place : places) {
-    if (out.size() >= most) break;
+    if (out.size() >= max_places) break;
     const bool beside = std::any_of(out.begin(), out.end(), [&](const Pose& T) {
       return (T.translation() - place.T_world_object.translation()).norm() < settings.apart;
     });
@@ -88,8 +88,8 @@ Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& ar
                  double from_above)
     : world_(world), robot_(robot), arm_(arm), T_base_world_(T_world_base.inverse()), places_(std::move(places)), from_above_(from_above) {}
 
-std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held) {
-  std::optional<PuttingPosture> closed_only;
+std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held) {
+  std::optional<PlacingConfiguration> closed_only;
   IkOptions options;
   options.restarts = 0;
   const Pose T_object_tool = held.T_tool_object.inverse();
@@ -113,32 +113,32 @@ std::optional<PuttingPosture> Putting::at(const Pose& place, const Vector& q, co
       continue;
     }
     const bool opens = world_.check(RobotModel::with(opened, arm_, *at)).free;
-    if (opens) return PuttingPosture{T, *above, *at, opens};
-    if (!closed_only) closed_only = PuttingPosture{T, *above, *at, opens};
+    if (opens) return PlacingConfiguration{T, *above, *at, opens};
+    if (!closed_only) closed_only = PlacingConfiguration{T, *above, *at, opens};
   }
   return closed_only;
 }
 
-std::vector<PuttingPosture> Putting::anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t most) {
-  std::vector<PuttingPosture> out, closed_only;
+std::vector<PlacingConfiguration> Putting::anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t max_count) {
+  std::vector<PlacingConfiguration> out, closed_only;
   for (const Pose& place : places_) {
-    if (out.size() >= most) break;
+    if (out.size() >= max_count) break;
     if (auto posture = at(place, q, opened, held)) (posture->opens ? out : closed_only).push_back(std::move(*posture));
   }
-  for (PuttingPosture& posture : closed_only)
-    if (out.size() < most) out.push_back(std::move(posture));
+  for (PlacingConfiguration& posture : closed_only)
+    if (out.size() < max_count) out.push_back(std::move(posture));
   return out;
 }
 
 std::string Putting::objections() const {
   if (places_.empty()) return "all of it is taken or too far away";
-  constexpr std::size_t kTold = 3;
+  constexpr std::size_t kMaxReasons = 3;
   std::vector<std::pair<std::string, int>> often(objections_.begin(), objections_.end());
   std::stable_sort(often.begin(), often.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
-  std::string told;
-  for (std::size_t i = 0; i < std::min(often.size(), kTold); ++i)
-    told += (i > 0 ? ", " : "") + std::to_string(often[i].second) + " " + often[i].first;
-  return told + (often.size() > kTold ? ", ..." : "");
+  std::string text;
+  for (std::size_t i = 0; i < std::min(often.size(), kMaxReasons); ++i)
+    text += (i > 0 ? ", " : "") + std::to_string(often[i].second) + " " + often[i].first;
+  return text + (often.size() > kMaxReasons ? ", ..." : "");
 }
 
 }  // namespace handsel::manipulation_planner

@@ -143,21 +143,21 @@ TEST(ManipulationPlanner, a_kept_path_is_timed_anew_when_people_come_near_and_wh
   };
   runs(1.0);
   EXPECT_EQ(rig.commands.size(), 1u);
-  EXPECT_GT(rig.planner.live_counts().kept, 1u);
-  EXPECT_EQ(rig.planner.live_counts().retimed, 0u);
+  EXPECT_GT(rig.planner.replan_counts().unchanged, 1u);
+  EXPECT_EQ(rig.planner.replan_counts().retimed, 0u);
   const double before = left();
   rig.share = 0.5;  // somebody has come near
   runs(0.6);
-  const auto& counts = rig.planner.live_counts();
-  ASSERT_EQ(rig.commands.size(), 2u) << counts.looks << " looks, " << counts.refused << " refused";
+  const auto& counts = rig.planner.replan_counts();
+  ASSERT_EQ(rig.commands.size(), 2u) << counts.checks << " checks, " << counts.refused << " refused";
   EXPECT_GT(left() + 0.6, before + 0.15);
   rig.share = 0.97;  // and has gone
   const double slow = left();
   EXPECT_GT(slow, 1.5) << "the test needs a longer way";
   runs(0.6);
-  ASSERT_EQ(rig.commands.size(), 3u) << counts.looks << " looks, " << counts.refused << " refused";
+  ASSERT_EQ(rig.commands.size(), 3u) << counts.checks << " checks, " << counts.refused << " refused";
   EXPECT_LT(left() + 0.6, slow - 0.08);
-  EXPECT_EQ(rig.planner.live_counts().retimed, 2u);
+  EXPECT_EQ(rig.planner.replan_counts().retimed, 2u);
   for (const double jump : rig.jumps) EXPECT_LT(jump, 1e-9);
   runs(20);
   EXPECT_EQ(rig.commands.size(), 3u);

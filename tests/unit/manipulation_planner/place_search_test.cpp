@@ -17,8 +17,9 @@ class Placing : public testing::Test {
     scene_.boxes.push_back({"table", make_pose({0.75, 0.0, 0.35}), {0.6, 1.0, 0.7}, true});
     scene_.objects.push_back({"mug", "mug", make_pose({0.7, -0.6, 0.75}), Holder::robot, "", 0});
   }
-  std::vector<Pose> places(std::size_t most = 50) const {
-    return free_places(robot_, scene_, people_, library_, "mug", scene_.boxes.front(), scene_.objects.front().T_world_object, most);
+  std::vector<Pose> places(std::size_t max_places = 50) const {
+    const PlacingScene in{robot_, scene_, people_, library_};
+    return free_places(in, "mug", scene_.boxes.front(), scene_.objects.front().T_world_object, max_places);
   }
 
   RobotModel robot_ = RobotModel::load(robot_description("jido"));

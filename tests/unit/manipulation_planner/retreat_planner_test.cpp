@@ -8,11 +8,11 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-class WayOutTest : public testing::Test {
+class RetreatPlannerTest : public testing::Test {
  protected:
-  double distance(const Vector& posture) const {
+  double distance(const Vector& q) const {
     std::vector<Pose> T_root_link;
-    robot.forward(posture, T_root_link);
+    robot.forward(q, T_root_link);
     return separation(robot_capsules(robot), T_root_link, Pose::Identity(), people).distance;
   }
   /// Somebody `gap` [m] away from the arm at rest, in that direction from its hand [rad].
@@ -30,15 +30,15 @@ class WayOutTest : public testing::Test {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
   const Group& arm = robot.require_group("arm");
   const Vector rest = robot.rest_posture();
-  const WayOut way_out{robot, arm};
+  const RetreatPlanner retreat{robot, arm};
   HumanState people;
 };
 
-TEST_F(WayOutTest, every_step_leads_away_from_whoever_stands_near) {
+TEST_F(RetreatPlannerTest, every_step_leads_away_from_whoever_stands_near) {
   for (double direction = -1.2; direction <= 1.2; direction += 0.3) {
     stand(0.07, direction);
     ASSERT_NEAR(distance(rest), 0.07, 0.01) << direction;
-    const std::vector<Vector> steps = way_out.steps_away(rest, Pose::Identity(), people, 0.15);
+    const std::vector<Vector> steps = retreat.steps_away(rest, Pose::Identity(), people, 0.15);
     ASSERT_FALSE(steps.empty()) << direction;
     double before = distance(rest);
     for (const Vector& step : steps) {
@@ -49,24 +49,24 @@ TEST_F(WayOutTest, every_step_leads_away_from_whoever_stands_near) {
   }
 }
 
-TEST_F(WayOutTest, toward_and_past_a_person_is_not_away) {
+TEST_F(RetreatPlannerTest, toward_and_past_a_person_is_not_away) {
   stand(0.07, 0.0);
-  const std::vector<Vector> steps = way_out.steps_away(rest, Pose::Identity(), people, 0.05);
+  const std::vector<Vector> steps = retreat.steps_away(rest, Pose::Identity(), people, 0.05);
   ASSERT_FALSE(steps.empty());
   const Vector away = RobotModel::with(rest, arm, steps.front());
-  EXPECT_TRUE(way_out.leads_away(rest, away, Pose::Identity(), people));
-  EXPECT_FALSE(way_out.leads_away(rest, 2.0 * rest - away, Pose::Identity(), people));
+  EXPECT_TRUE(retreat.leads_away(rest, away, Pose::Identity(), people));
+  EXPECT_FALSE(retreat.leads_away(rest, 2.0 * rest - away, Pose::Identity(), people));
   Vector past = rest;
   past[arm.axes[0]] += 0.3;
-  EXPECT_FALSE(way_out.leads_away(rest, past, Pose::Identity(), people));
+  EXPECT_FALSE(retreat.leads_away(rest, past, Pose::Identity(), people));
 }
 
-TEST_F(WayOutTest, with_nobody_near_every_way_is_open_and_none_is_needed) {
+TEST_F(RetreatPlannerTest, with_nobody_near_every_direction_is_open_and_none_is_needed) {
   stand(0.8, 0.0);
   Vector past = rest;
   past[arm.axes[0]] += 0.3;
-  EXPECT_TRUE(way_out.leads_away(rest, past, Pose::Identity(), people));
-  EXPECT_TRUE(way_out.steps_away(rest, Pose::Identity(), people, 0.15).empty());
+  EXPECT_TRUE(retreat.leads_away(rest, past, Pose::Identity(), people));
+  EXPECT_TRUE(retreat.steps_away(rest, Pose::Identity(), people, 0.15).empty());
 }
 
 }  // namespace

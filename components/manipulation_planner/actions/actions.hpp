@@ -1,0 +1,30 @@
+// The actions, as coroutines over the parts of the planner. References must outlive the routines.
+#pragma once
+
+#include <string>
+
+#include "components/manipulation_planner/motion/motion_end.hpp"
+#include "components/manipulation_planner/routine.hpp"
+
+namespace handsel::manipulation_planner {
+
+struct Parts;
+
+/// Picks an object. `for_human`: who will get it, empty: nobody; `onto`: the surface on which it
+/// will be put down, empty: not known.
+Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human, const std::string& onto);
+/// Gives the held object to a person; empty: the nearest.
+Routine<Outcome> give(Parts& parts, const std::string& object, const std::string& human);
+/// Takes an object from the hand of a person. `wanted` empty: whatever is offered; `giver` empty:
+/// any person; `onto`: as of pick(), empty: any surface.
+Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver, const std::string& onto);
+/// Puts the held object down on a surface.
+Routine<Outcome> place(Parts& parts, const std::string& object, const std::string& surface);
+/// Brings an object to its goal through two hands, one after the other.
+Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal);
+/// Carries an object to its goal with two hands, as a closed chain.
+Routine<Outcome> carry(Parts& parts, const ActionGoal& goal);
+/// Moves all arms to rest.
+Routine<Outcome> rest_all(Parts& parts);
+
+}  // namespace handsel::manipulation_planner

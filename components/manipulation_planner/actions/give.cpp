@@ -1,0 +1,112 @@
+// The action give.
+#include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/grasping.hpp"
+#include "components/manipulation_planner/handover/otp_choice.hpp"
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kRetryPause = 0.5;  // before the person's reach is checked again [s]
+constexpr double kTakePause = 0.5;   // before the hand retreats from what was taken [s]
+
+/// Returns the motion that carries the object to the receiver.
+MotionSpec carry_motion(const Parts& parts, const std::string& object, const OtpSearch& search, const Person& receiver) {
+  MotionSpec carry;
+  carry.phase = ActionPhase::carry;
+  carry.speed = parts.settings.carry_speed();
+  carry.allowed = {object};
+  carry.yields_to = receiver.id;
+  aim_at(search, receiver, carry);
+  return carry;
+}
+
+/// Carries the object to the receiver, again if they move; waits for a receiver out of reach.
+Routine<Outcome> carry_to(Parts& parts, const std::string& object, const std::string& receiver) {
+  Outcome last;
+  const auto& settings = parts.settings;
+  const TimePoint deadline = parts.now.time() + from_seconds(settings.reach_timeout());
+  for (std::uint32_t attempt = 0; attempt < settings.motion_attempts();) {
+    parts.action.phase = ActionPhase::choosing_exchange_point;
+    const Person* person = parts.now.person(receiver);
+    if (person == nullptr) co_return Outcome::out_of_sight("person " + receiver);
+    OtpChoice choice = co_await choose_otp(parts, receiver, nullptr);
+    last = choice.outcome;
+    if (last.good && choice.search.poses.empty()) {
+      last = Outcome::failure(choice.search.reason);
+      if (parts.now.time() >= deadline) {
+        parts.refuse("exchange point", last.reason);
+        co_return last;
+      }
+      parts.action.phase = ActionPhase::waiting_for_person;
+      co_await parts.waiting.pause(kRetryPause);
+      continue;
+    }
+    ++attempt;
+    if (!last.good) continue;
+    person = parts.now.person(receiver);
+    if (person == nullptr) co_return Outcome::out_of_sight("person " + receiver);
+    MotionSpec carry = carry_motion(parts, object, choice.search, *person);
+    parts.action.exchange_point = choice.search.poses.front().T_world_object.translation();
+    last = co_await move(parts, carry);
+    if (last.end == MotionEnd::taken) co_return Outcome{};
+    if (!last.good) continue;
+    if (settings.live_period() <= 0 || attempt >= settings.motion_attempts()) co_return last;
+    const Vector here = RobotModel::part(parts.arm.configuration(), parts.arm.group());
+    const bool has_moved = co_await follow_receiver(parts, carry, here);
+    if (!has_moved) co_return last;
+  }
+  co_return last;
+}
+
+/// Offers the object until the receiver takes it; else the hand keeps it.
+Routine<Outcome> offer(Parts& parts, const std::string& object, const std::string& receiver) {
+  parts.action.phase = ActionPhase::offer;
+  parts.action.exchange_point = parts.held.T_world_object().translation();
+  parts.action.exchange_engaged = true;
+  const Vector open = opening(parts);
+  const double timeout = parts.settings.offer_timeout();
+  HandResult released = co_await parts.hand.run(HandAction::release_on_pull, open, timeout);
+  if (released.outcome.good && released.state == HandState::released) co_return Outcome{};
+  parts.action.exchange_engaged = false;
+  const Vector grip = RobotModel::part(parts.now.set_point(), parts.arm.fingers());
+  HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout());
+  if (!held.outcome.good) parts.refuse("keeping the object", held.outcome.reason);
+  if (!released.outcome.good) co_return released.outcome;
+  co_return Outcome::failure(receiver + " did not take " + object + " within " + std::to_string(static_cast<int>(timeout)) + " s",
+                             ActionFailure::not_taken);
+}
+
+}  // namespace
+
+Routine<Outcome> give(Parts& parts, const std::string& object, const std::string& human) {
+  const SceneObject* held = parts.now.object(object);
+  if (held == nullptr) co_return Outcome::failure("object " + object + " is not in the scene");
+  if (held->holder == Holder::human && !parts.held.is_in_hand(*held)) co_return Outcome{};
+  if (!parts.held.is_holding() || parts.held.id() != object) co_return Outcome::failure("the hand does not hold " + object);
+  parts.action.phase = ActionPhase::choosing_exchange_point;
+  const auto is_seen = [&] { return parts.now.person(human) != nullptr; };
+  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
+  if (!seen)
+    co_return human.empty() ? Outcome::failure("nobody is in sight")
+                            : Outcome::failure("person " + human + " is not in sight", ActionFailure::not_visible);
+  const std::string receiver = parts.now.person(human)->id;
+  parts.action.human = receiver;
+  // In the hand, yet not borne by it: somebody has hold of the object already.
+  const SceneObject* now = parts.now.object(object);
+  const bool is_taken = parts.held.is_taken_by(receiver) || (now != nullptr && now->holder != Holder::robot);
+  if (!is_taken) {
+    Outcome carried = co_await carry_to(parts, object, receiver);
+    if (!carried.good) co_return carried;
+  }
+  Outcome offered = co_await offer(parts, object, receiver);
+  if (!offered.good) co_return offered;
+  parts.held.release();
+  parts.action.phase = ActionPhase::retreat;
+  co_await parts.waiting.pause(kTakePause);
+  Outcome back = co_await retreat(parts, receiver, object);
+  if (!back.good) parts.refuse("retreat", back.reason);
+  co_return Outcome{};
+}
+
+}  // namespace handsel::manipulation_planner

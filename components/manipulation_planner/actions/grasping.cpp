@@ -1,0 +1,207 @@
+#include "components/manipulation_planner/actions/grasping.hpp"
+
+#include <algorithm>
+
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kMaxStraightTurn = 0.9;                    // of one axis; with more the tool swings around [rad]
+constexpr double kRetreatRatios[] = {1.0, 0.75, 0.5, 0.3};  // of the retreat distance
+constexpr double kLiftRatios[] = {1.0, 0.85};               // of the lift height
+
+/// Lifts what was grasped straight up.
+Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string& for_human) {
+  MotionSpec up;
+  up.phase = ActionPhase::lift;
+  up.is_straight = true;
+  up.allowed = {object};
+  up.yields_to = for_human;
+  const double height = parts.settings.lift_height();
+  const Pose T_now = parts.arm.T_world_tool();
+  for (const double ratio : kLiftRatios) {
+    Pose T = T_now;
+    T.translation().z() += ratio * height;
+    if (auto joints = parts.arm.reach(T)) {
+      up.goals = {*joints};
+      Outcome outcome = co_await move(parts, up);
+      if (outcome.good || outcome.end == MotionEnd::taken) co_return outcome;
+    }
+  }
+  co_return Outcome::failure("the arm cannot lift " + object + " straight up by " + std::to_string(height) + " m");
+}
+
+/// Plans the approach, opens the hand meanwhile and moves to the grasp.
+Routine<Outcome> reach_grasp(Parts& parts, const std::string& object, const Grasp& grasp) {
+  MotionSpec approach;
+  approach.phase = ActionPhase::approach;
+  approach.goals = {grasp.approach_joints};
+  approach.tolerated = {object};
+  const MotionSpec reach = reach_along(parts, object, grasp);
+  const Group& fingers = parts.arm.fingers();
+  Vector opened = parts.now.set_point();
+  if (!fingers.axes.empty()) opened = RobotModel::with(opened, fingers, grasp.pregrasp_joints);
+  const Vector before = RobotModel::with(opened, parts.arm.group(), grasp.approach_joints);
+  PlannedPath last_part = co_await plan_path(parts, before, reach);
+  if (!last_part.outcome.good) co_return last_part.outcome.of("last part of the approach");
+  PlannedPath first_part = co_await plan_path(parts, opened, approach);
+  if (!first_part.outcome.good) co_return first_part.outcome.of("approach");
+
+  Outcome moved = co_await parts.hand.send(HandAction::move, grasp.pregrasp_joints);
+  if (!moved.good) co_return moved;
+  moved = co_await move(parts, approach);
+  if (!moved.good) co_return moved;
+  moved = co_await parts.hand.await_open();
+  if (!moved.good) co_return moved;
+  moved = co_await move(parts, reach);
+  co_return moved;
+}
+
+/// Closes the hand; if it holds nothing, it opens again and moves back to the stand-off.
+Routine<Outcome> close_hand(Parts& parts, const std::string& object, const Grasp& grasp) {
+  parts.action.phase = ActionPhase::grasp;
+  const double timeout = parts.settings.hand_timeout();
+  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort);
+  if (closed.outcome.good && closed.state == HandState::grasped) co_return Outcome{};
+  co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
+  MotionSpec back = reach_along(parts, object, grasp);
+  back.phase = ActionPhase::backing_off;
+  back.goals = {grasp.approach_joints};
+  co_await move(parts, back);
+  if (!closed.outcome.good) co_return closed.outcome;
+  co_return Outcome::failure("the hand closed on nothing", ActionFailure::nothing_grasped);
+}
+
+}  // namespace
+
+Routine<Outcome> use_arm(Parts& parts, const std::string& arm) {
+  const auto& all = parts.arm.manipulators();
+  const auto wanted = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) { return m.name == arm && m.arm != nullptr; });
+  if (wanted == all.end()) co_return Outcome::failure("robot " + parts.arm.robot().name() + " has no arm \"" + arm + "\"");
+  const auto index = static_cast<std::size_t>(wanted - all.begin());
+  if (index == parts.arm.index()) co_return Outcome{};
+  const bool is_idle = co_await parts.waiting.until([&parts] { return parts.worker.is_idle(); }, parts.settings.request_timeout());
+  if (!is_idle) co_return Outcome::failure("a computation for the other arm does not end");
+  parts.arm.select(index);
+  parts.held.set_grasp(std::nullopt);
+  co_return Outcome{};
+}
+
+Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human, std::uint32_t max_grasps) {
+  parts.action.phase = ActionPhase::choosing_grasp;
+  GraspRequest request;
+  parts.clients.grasp.open(request);
+  request.object = object;
+  request.start = parts.now.set_point();
+  request.for_human = for_human;
+  request.max_grasps = max_grasps;
+  request.seed = parts.action.id;
+  const bool answered = co_await parts.clients.grasp.ask(request);
+  GraspList list;
+  if (!answered) {
+    list.outcome = Outcome::no_answer("grasp");
+    co_return list;
+  }
+  const GraspReply& reply = *parts.clients.grasp.reply();
+  list.grasps = reply.grasps;
+  for (const auto& rejected : reply.rejected) parts.refuse("grasps: " + rejected.what, rejected.reason);
+  if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object + ": " + reply.reason);
+  co_return list;
+}
+
+std::optional<Grasp> grasp_now(const Parts& parts, const std::string& object, const Grasp& grasp) {
+  const SceneObject* seen = parts.now.object(object);
+  return seen == nullptr ? std::nullopt : parts.arm.grasp_at(seen->T_world_object, grasp);
+}
+
+MotionSpec reach_along(const Parts& parts, const std::string& object, const Grasp& grasp) {
+  MotionSpec reach;
+  reach.phase = ActionPhase::reaching_object;
+  reach.goals = {grasp.arm_joints};
+  reach.is_straight = true;
+  reach.allowed = {object};
+  reach.speed = parts.settings.approach_speed();
+  return reach;
+}
+
+Vector opening(const Parts& parts) {
+  const auto& grasp = parts.held.grasp();
+  return grasp ? grasp->pregrasp_joints : RobotModel::part(parts.arm.robot().rest_posture(), parts.arm.fingers());
+}
+
+bool is_held_by_robot(const Parts& parts, const std::string& object) {
+  const SceneObject* seen = parts.now.object(object);
+  return seen != nullptr && seen->holder == Holder::robot;
+}
+
+Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human, const Grasp& grasp) {
+  parts.action.phase = ActionPhase::planning;
+  const bool ready = co_await parts.link.await_permission();
+  if (!ready) co_return parts.link.not_permitted();
+  Outcome done = co_await reach_grasp(parts, object, grasp);
+  if (!done.good) co_return done;
+  done = co_await close_hand(parts, object, grasp);
+  if (!done.good) co_return done;
+  parts.held.set_grasp(grasp);
+  // The fingers may have pushed the object: it is taken from where it is at rest again.
+  const Stamp seen = parts.now.scene().stamp;
+  const auto is_at_rest = [&parts, &object, seen] {
+    const SceneObject* thing = parts.now.object(object);
+    return parts.now.scene().stamp != seen && thing != nullptr && thing->velocity.norm() < parts.settings.offer_still();
+  };
+  co_await parts.waiting.until(is_at_rest, parts.settings.settle_time());
+  const SceneObject* held = parts.now.object(object);
+  if (held == nullptr) co_return Outcome::failure("object " + object + " left the scene");
+  parts.held.hold(*held);
+  Outcome lifted = co_await lift(parts, object, for_human);
+  if (lifted.end == MotionEnd::taken) co_return Outcome{};
+  if (!lifted.good) co_return lifted;
+  const bool is_carried = co_await parts.waiting.until([&] { return is_held_by_robot(parts, object); }, parts.settings.settle_time());
+  if (is_carried) co_return lifted;
+  parts.held.release();
+  co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, parts.settings.hand_timeout());
+  co_return Outcome::failure(object + " stayed behind when the hand went up", ActionFailure::left_behind);
+}
+
+/// Returns the direction of the retreat in the world: back along the grasp, else off the object.
+static Vector3 retreat_direction(const Parts& parts, const std::string& object) {
+  const Pose T_now = parts.arm.T_world_tool();
+  Vector3 back = -Vector3::UnitZ();  // tool frame
+  if (const auto& grasp = parts.held.grasp()) {
+    const auto T_root_hand = [&](const Vector& joints) {
+      return parts.arm.robot().link_pose(parts.arm.set_point_with(joints), parts.arm.palm());
+    };
+    const Pose T_root_grasp = T_root_hand(grasp->arm_joints);
+    const Pose T_root_standoff = T_root_hand(grasp->approach_joints);
+    back = (T_root_grasp.inverse() * T_root_standoff).translation();
+  } else if (const SceneObject* left = parts.now.object(object)) {
+    back = -(T_now.inverse() * left->T_world_object.translation());
+  }
+  return T_now.linear() * back.normalized();
+}
+
+Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::string& object) {
+  const Pose T_now = parts.arm.T_world_tool();
+  const Vector3 away = retreat_direction(parts, object);
+  MotionSpec motion;
+  motion.phase = ActionPhase::retreat;
+  motion.is_straight = true;
+  motion.allowed = {object};
+  if (!person.empty()) motion.allowed.push_back(person);
+  std::string why = "no posture of the arm lies there";
+  for (const double ratio : kRetreatRatios) {
+    Pose T = T_now;
+    T.translation() += ratio * parts.settings.retreat_distance() * away;
+    const auto joints = parts.arm.reach(T);
+    const bool is_straight = joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() < kMaxStraightTurn;
+    if (!is_straight) continue;
+    motion.goals = {*joints};
+    Outcome outcome = co_await move(parts, motion);
+    if (outcome.good) co_return outcome;
+    why = outcome.reason;
+  }
+  co_return Outcome::failure("the hand finds no straight way back from " + object + ": " + why);
+}
+
+}  // namespace handsel::manipulation_planner

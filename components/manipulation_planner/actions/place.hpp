@@ -1,0 +1,18 @@
+// Parts of putting down that other actions use.
+#pragma once
+
+#include <string>
+
+#include "components/manipulation_planner/actions/grasping.hpp"
+#include "components/manipulation_planner/placing/place_search.hpp"
+
+namespace handsel::manipulation_planner {
+
+// References must outlive the routines.
+/// Asks for grasps that serve at a free place of the surface too, which place() then tries first;
+/// if there is none, for any.
+Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object, const std::string& surface);
+/// Moves what is held to above its place and down to it.
+Routine<Outcome> lower(Parts& parts, const PlacingConfiguration& place);
+
+}  // namespace handsel::manipulation_planner

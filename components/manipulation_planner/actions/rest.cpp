@@ -1,0 +1,67 @@
+#include "components/manipulation_planner/actions/rest.hpp"
+
+#include "components/manipulation_planner/actions/actions.hpp"
+#include "components/manipulation_planner/actions/grasping.hpp"
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kAtRest = 0.02;  // an arm this near its rest configuration is there, max norm [rad]
+
+}  // namespace
+
+Routine<Outcome> rest(Parts& parts) {
+  const Group& arm = parts.arm.group();
+  const Vector at_rest = RobotModel::part(parts.arm.robot().rest_posture(), arm);
+  MotionSpec motion;
+  motion.phase = ActionPhase::to_rest;
+  motion.speed = parts.held.is_holding() ? parts.settings.carry_speed() : 1.0;
+  const Vector q = RobotModel::with(parts.arm.configuration(), arm, at_rest);
+  const Person* person = parts.now.person("");
+  if (person != nullptr && parts.area.is_occupied(*person, q)) motion.goals = parts.area.clear_configurations(*person);
+  if (motion.goals.empty()) motion.goals = {at_rest};
+  Outcome outcome = co_await move(parts, motion);
+  co_return outcome;
+}
+
+Routine<Outcome> rest_others(Parts& parts) {
+  const std::string used = parts.arm.group().name;
+  for (const Manipulator& other : parts.arm.manipulators()) {
+    if (other.arm == nullptr || other.name == used) continue;
+    const Vector off = RobotModel::part(parts.now.set_point() - parts.arm.robot().rest_posture(), *other.arm);
+    if (off.cwiseAbs().maxCoeff() < kAtRest) continue;
+    const std::optional<Grasp> grasp = parts.held.grasp();
+    Outcome done = co_await use_arm(parts, other.name);
+    if (done.good) done = co_await rest(parts);
+    Outcome back = co_await use_arm(parts, used);
+    parts.held.set_grasp(grasp);
+    if (!done.good) co_return done;
+    if (!back.good) co_return back;
+  }
+  co_return Outcome{};
+}
+
+Routine<Outcome> rest_all(Parts& parts) {
+  // One arm may be where another rests: the one in the way goes first.
+  Outcome others = co_await rest_others(parts);
+  Outcome own = co_await rest(parts);
+  if (own.good && !others.good) others = co_await rest_others(parts);
+  if (!own.good) co_return own;
+  co_return others;
+}
+
+Routine<Outcome> clear_offer_area(Parts& parts, const std::string& giver, ClearUntil until) {
+  const Person* person = parts.now.person(giver);
+  if (person == nullptr) co_return Outcome::failure("nobody is in sight");
+  MotionSpec back;
+  back.phase = ActionPhase::making_room;
+  back.goals = parts.area.clear_configurations(*person);
+  back.clears_area_for = giver;
+  back.accepts_any_offer = until == ClearUntil::any_offer;
+  if (back.goals.empty()) co_return Outcome::failure("no posture of the arm lies farther back");
+  Outcome cleared = co_await move(parts, back);
+  co_return cleared;
+}
+
+}  // namespace handsel::manipulation_planner

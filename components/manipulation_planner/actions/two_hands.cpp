@@ -1,0 +1,179 @@
+#include "components/manipulation_planner/actions/two_hands.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/object_extent.hpp"
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kBestReach = 0.7;                    // of a place from a shoulder [m]
+constexpr double kEdge = 0.08;                        // kept free at the edge of a surface [m]
+constexpr double kMinEdgeDistance = 0.01;             // of any part of the object [m]
+constexpr double kGrid = 0.02;                        // between places that are tried [m]
+constexpr double kMinGap = 0.2;                       // to other things [m]
+constexpr std::size_t kMaxPlaces = 4;                 // on a surface
+constexpr double kRetreatRatios[] = {1.0, 0.8, 0.6};  // of the planned retreat
+
+/// Returns the shoulders of all arms in the world.
+std::vector<Vector3> shoulders_of(const Parts& parts) {
+  const RobotModel& robot = parts.arm.robot();
+  std::vector<Vector3> shoulders;
+  for (const Manipulator& m : parts.arm.manipulators()) {
+    if (m.arm == nullptr || m.arm->axes.empty()) continue;
+    const Axis& first = robot.axes()[static_cast<std::size_t>(m.arm->axes.front())];
+    const int link = robot.joints()[static_cast<std::size_t>(first.joint)].child;
+    shoulders.push_back((parts.now.T_world_base() * robot.link_pose(parts.now.set_point(), link)).translation());
+  }
+  return shoulders;
+}
+
+/// Places for one object on one surface.
+class SurfacePlaces {
+ public:
+  SurfacePlaces(const Scene& scene, const SceneBox& box, const SceneObject& seen, const Eigen::AlignedBox3d& extent)
+      : scene_(scene), box_(box), seen_(seen), extent_(extent) {
+    const Pose& now = seen.T_world_object;
+    const double yaw = std::atan2(now.linear()(1, 0), now.linear()(0, 0));
+    turn_ = Eigen::AngleAxisd(yaw, Vector3::UnitZ());
+    if (!extent.isEmpty()) half_ = 0.5 * extent.sizes();
+    gap_ = kMinGap + std::max(0.0, half_.head<2>().maxCoeff() - kEdge);
+  }
+  const Eigen::Quaterniond& turn() const { return turn_; }
+  /// Returns whether the object fits there, away from the edge and from other things.
+  bool is_free(const Vector3& p) const {
+    const auto is_near = [&](const SceneObject& other) {
+      return other.id != seen_.id && (other.T_world_object.translation() - p).head<2>().norm() < gap_;
+    };
+    return std::none_of(scene_.objects.begin(), scene_.objects.end(), is_near) && is_inside(p);
+  }
+
+ private:
+  bool is_inside(const Vector3& p) const {
+    for (const double x : {-1.0, 1.0})
+      for (const double y : {-1.0, 1.0}) {
+        const Vector3 corner = box_.T_world_box.inverse() * (p + turn_ * (extent_.center() + Vector3(x * half_.x(), y * half_.y(), 0)));
+        if (std::abs(corner.x()) > box_.size.x() / 2 - kMinEdgeDistance || std::abs(corner.y()) > box_.size.y() / 2 - kMinEdgeDistance)
+          return false;
+      }
+    return true;
+  }
+
+  const Scene& scene_;
+  const SceneBox& box_;
+  const SceneObject& seen_;
+  Eigen::AlignedBox3d extent_;
+  Eigen::Quaterniond turn_;
+  Vector3 half_{Vector3::Zero()};
+  double gap_{};
+};
+
+}  // namespace
+
+Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal, bool both) {
+  parts.action.phase = both ? ActionPhase::choosing_two_grasps : ActionPhase::choosing_hands;
+  RegraspRequest request;
+  parts.clients.regrasp.open(request);
+  request.object = object;
+  request.start = parts.now.set_point();
+  request.T_world_goal = T_world_goal;
+  request.both = both;
+  request.seed = parts.action.id;
+  const bool answered = co_await parts.clients.regrasp.ask(request);
+  TwoHandPlan plan;
+  if (!answered) {
+    plan.outcome = Outcome::no_answer("grasp");
+    co_return plan;
+  }
+  const RegraspReply& reply = *parts.clients.regrasp.reply();
+  plan.steps = reply.steps;
+  for (const auto& rejected : reply.rejected) parts.refuse(rejected.what, rejected.reason);
+  if (!reply.solved) plan.outcome = Outcome::failure(reply.reason);
+  co_return plan;
+}
+
+std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const SceneObject& seen) {
+  if (goal.has_goal) return {goal.T_world_goal};
+  const Scene& scene = parts.now.scene();
+  const auto box = std::find_if(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& b) { return b.id == goal.surface; });
+  if (box == scene.boxes.end() || !box->supports) return {};
+  const ObjectModel& model = *parts.now.model_of(seen.id);
+  const std::vector<Vector3> shoulders = shoulders_of(parts);
+  const SurfacePlaces surface(scene, *box, seen, object_extent(&model, seen.primitive));
+  struct Place {
+    Vector3 at;
+    double off;
+  };
+  std::vector<Place> all;
+  const double x_end = std::max(0.0, box->size.x() / 2 - kEdge), y_end = std::max(0.0, box->size.y() / 2 - kEdge);
+  const bool both = goal.kind == ActionKind::carry;
+  for (double x = -x_end; x <= x_end + 1e-9; x += kGrid) {
+    for (double y = -y_end; y <= y_end + 1e-9; y += kGrid) {
+      const Vector3 at = box->T_world_box * Vector3(x, y, box->size.z() / 2);
+      if (!surface.is_free(at)) continue;
+      // Neither folded nor stretched does an arm move well.
+      double nearest = 1e9, farthest = 0;
+      for (const Vector3& shoulder : shoulders) {
+        const double off = std::abs((at - shoulder).norm() - kBestReach);
+        nearest = std::min(nearest, off);
+        farthest = std::max(farthest, off);
+      }
+      all.push_back({at, both ? farthest : nearest});
+    }
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.off < b.off; });
+  std::vector<Pose> out;
+  for (const Place& p : all) {
+    const auto is_near = [&](const Pose& o) { return (o.translation() - p.at).head<2>().norm() < kMinGap / 2; };
+    if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= kMaxPlaces) continue;
+    out.push_back(make_pose(p.at + model.height_above_support * Vector3::UnitZ(), surface.turn()));
+  }
+  return out;
+}
+
+Routine<Outcome> await_put_down(Parts& parts, const std::string& object) {
+  if (parts.held.is_holding()) co_return Outcome::failure(parts.held.id() + " is in the hand: it must be put down first");
+  parts.action.phase = ActionPhase::looking_for_object;
+  const auto is_seen = [&] { return parts.now.object(object) != nullptr; };
+  const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
+  if (!seen) co_return Outcome::failure("object " + object + " is not in the scene");
+  const auto is_put_down = [&] {
+    const SceneObject* thing = parts.now.object(object);
+    return thing != nullptr && thing->holder != Holder::robot && thing->holder != Holder::human;
+  };
+  const bool free = co_await parts.waiting.until(is_put_down, parts.settings.sight_timeout());
+  if (!free) co_return Outcome::failure(object + " is held: it must stand first");
+  if (parts.now.model_of(object) == nullptr) co_return Outcome::failure("object " + object + " has no model");
+  co_await parts.waiting.pause(parts.settings.settle_time());
+  co_return Outcome{};
+}
+
+Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, const Vector& closed, const Vector& after) {
+  const Vector open = RobotModel::part(after, parts.arm.fingers());
+  HandResult opened = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+  if (!opened.outcome.good) co_return opened.outcome;
+  if (parts.held.attachment().hand == parts.arm.hand_name()) parts.held.release();
+  const RobotModel& robot = parts.arm.robot();
+  const Pose T_off = robot.link_pose(closed, parts.arm.palm()).inverse() * robot.link_pose(after, parts.arm.palm());
+  std::string why = "no posture of the arm lies there";
+  for (const double ratio : kRetreatRatios) {
+    Pose T = T_off;
+    T.translation() *= ratio;
+    const auto off = parts.arm.reach(parts.arm.T_world_tool() * T);
+    if (!off) continue;
+    MotionSpec away;
+    away.phase = ActionPhase::retreat;
+    away.is_straight = true;
+    away.goals = {*off};
+    away.allowed = {object};
+    away.speed = parts.settings.approach_speed();
+    Outcome gone = co_await move(parts, away);
+    if (gone.good) co_return gone;
+    why = gone.reason;
+  }
+  co_return Outcome::failure("the hand finds no straight way off " + object + ": " + why);
+}
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,60 @@
+// What the hand in use holds, as it was taken, and whether it still does. Pure.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/base/time.hpp"
+#include "common/messages/planning.hpp"
+#include "components/manipulation_planner/active_arm.hpp"
+
+namespace handsel::manipulation_planner {
+
+class HeldObject {
+ public:
+  /// The references must outlive what is made.
+  HeldObject(const ActiveArm& arm, const Snapshot& now) : arm_(arm), now_(now) {}
+
+  /// Notes that the hand holds the object where the scene has it.
+  void hold(const SceneObject& object);
+  /// Notes that no hand holds anything.
+  void release() { attachment_ = {}; }
+  /// Returns whether something is held.
+  bool is_holding() const { return !attachment_.object.empty(); }
+  /// Returns what is held and how; `object` empty: nothing.
+  const Attachment& attachment() const { return attachment_; }
+  /// Returns the scene object id of what is held; empty: nothing.
+  const std::string& id() const { return attachment_.object; }
+  /// Returns where the hand has what it holds, in the world.
+  Pose T_world_object() const { return arm_.T_world_tool() * attachment_.T_tool_object; }
+
+  /// Sets the grasp by which the hand in use takes things; nullopt: unknown.
+  void set_grasp(std::optional<Grasp> grasp) { grasp_ = std::move(grasp); }
+  /// Returns the grasp of the hand in use; nullopt: unknown.
+  const std::optional<Grasp>& grasp() const { return grasp_; }
+
+  /// Returns whether an object is where the hand has hold of it.
+  bool is_in_hand(const SceneObject& object) const;
+  /// Returns whether the scene has the object in the hand in use.
+  bool is_held_by_hand(const std::string& object) const;
+  /// Returns whether a hand of the person is at the object.
+  bool is_at_hand_of(const std::string& person, const std::string& object) const;
+  /// Returns whether a hand of the person is at what is held; false for an empty id.
+  bool is_taken_by(const std::string& person) const;
+
+  /// Observes, each step, whether what is held is still in the hand.
+  void update(TimePoint now);
+  /// Returns whether what was held has left the hand for a while and no person has it.
+  bool has_slipped(TimePoint now) const;
+
+ private:
+  bool is_out_of_hand() const;
+
+  const ActiveArm& arm_;
+  const Snapshot& now_;
+  Attachment attachment_;
+  std::optional<Grasp> grasp_;
+  TimePoint seen_in_hand_{};
+};
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,32 @@
+// Chooses the object transfer point for the person as they are now, and again when they move.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "components/manipulation_planner/handover/otp_search.hpp"
+#include "components/manipulation_planner/motion/motion_spec.hpp"
+#include "components/manipulation_planner/routine.hpp"
+
+namespace handsel::manipulation_planner {
+
+struct Parts;
+
+/// Result of a choice.
+struct OtpChoice {
+  Outcome outcome;                     ///< whether the search ended
+  OtpSearch search;                    ///< poses, best first
+  std::optional<double> present_cost;  ///< of the pose that was asked about; nullopt: it is none
+};
+
+// References must outlive the routines.
+/// Searches object transfer points with a person for what is held. `T_world_object`: a pose whose
+/// cost is asked, null: none.
+Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const Pose* T_world_object);
+/// Sets the goals of a motion to what was found for the receiver as they are now.
+void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion);
+/// Chooses other goals when the receiver has moved so far that `goal`, axes of the arm, is no good
+/// handover configuration any more. Returns whether it is none, even where there is no other.
+Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& goal);
+
+}  // namespace handsel::manipulation_planner

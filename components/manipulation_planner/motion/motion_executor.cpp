@@ -1,0 +1,222 @@
+#include "components/manipulation_planner/motion/motion_executor.hpp"
+
+#include <algorithm>
+
+#include "common/messages/names.hpp"
+#include "common/model/human/human_body.hpp"
+#include "components/manipulation_planner/handover/otp_choice.hpp"
+#include "components/manipulation_planner/parts.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr double kSameGoal = 1e-6;                    // [rad]
+constexpr double kMaxDuration = 600;                  // a motion this long has been forgotten by everybody [s]
+constexpr double kAttemptPause = 0.3;                 // before the next attempt [s]
+constexpr double kMaxRetreatRatio = 1.5;              // of the retreat distance, from people
+constexpr double kRetreatRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
+
+/// Returns the sum of the max norms of the segments [rad].
+double length_of(const std::vector<Vector>& waypoints) {
+  double length = 0;
+  for (std::size_t i = 1; i < waypoints.size(); ++i) length += (waypoints[i] - waypoints[i - 1]).cwiseAbs().maxCoeff();
+  return length;
+}
+
+}  // namespace
+
+PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion) {
+  PathRequest request;
+  parts.clients.path.open(request);
+  request.group = parts.arm.group().name;
+  request.start = start;
+  request.goals = motion.goals;
+  request.attachment = parts.held.attachment();
+  request.allowed_contacts = motion.allowed;
+  request.time_limit = parts.settings.planning_time();
+  request.seed = parts.action.id + request.id.number;
+  request.straight = motion.is_straight;
+  return request;
+}
+
+TrajectoryRequest trajectory_request(Parts& parts, Client<TrajectoryRequest, TrajectoryReply>& client, const std::vector<Vector>& waypoints,
+                                     const Vector& start, const MotionSpec& motion) {
+  TrajectoryRequest request;
+  client.open(request);
+  request.group = parts.arm.group().name;
+  request.nodes = waypoints;
+  request.start = start;
+  request.attachment = parts.held.attachment();
+  request.allowed_contacts = motion.allowed;
+  request.speed_scale = motion.speed;
+  return request;
+}
+
+TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory, const MotionSpec& motion) {
+  TrajectoryCommand command = parts.link.stop_command();
+  for (const int axis : parts.arm.group().axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
+  command.trajectory = trajectory;
+  command.attachment = parts.held.attachment();
+  command.allowed_contacts = motion.allowed;
+  command.allowed_contacts.insert(command.allowed_contacts.end(), motion.tolerated.begin(), motion.tolerated.end());
+  return command;
+}
+
+Routine<PlannedPath> plan_path(Parts& parts, const Vector& start, const MotionSpec& motion) {
+  const PathRequest request = path_request(parts, start, motion);
+  PlannedPath planned;
+  const bool answered = co_await parts.clients.path.ask(request);
+  if (!answered) {
+    planned.outcome = Outcome::no_answer("path");
+    co_return planned;
+  }
+  const PathReply& reply = *parts.clients.path.reply();
+  planned.waypoints = reply.path;
+  planned.start_touches = reply.start_touches;
+  if (!reply.solved) planned.outcome = Outcome::failure(reply.reason);
+  if (length_of(planned.waypoints) > motion.max_length) planned.outcome = Outcome::failure("only a long way around leads there");
+  co_return planned;
+}
+
+/// Replans the running motion until it ends by itself or must end.
+static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSpec& motion, TimePoint began) {
+  const auto is_over = [&] { return parts.link.has_ended(running.command) || parts.monitor.must_end(motion, began); };
+  const bool is_replanned = parts.settings.live_period() > 0 && !motion.is_straight;
+  for (bool done = false; !done;) {
+    const double period = is_replanned ? parts.replanner.period(parts.now.time()) : kMaxDuration;
+    done = co_await parts.waiting.until(is_over, period);
+    if (done || !is_replanned) break;
+    if (motion.receiver) co_await follow_receiver(parts, motion, running.waypoints.back());
+    const bool follows = motion.object && motion.object->grasp;
+    const std::optional<Vector3> p_moved = follows ? parts.monitor.follow_object(motion) : std::nullopt;
+    co_await parts.replanner.check(running, motion);
+    if (p_moved && (running.waypoints.back() - motion.goals.front()).norm() < kSameGoal)
+      motion.object->p_world = parts.action.exchange_point = *p_moved;
+  }
+  co_return parts.link.has_ended(running.command);
+}
+
+Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, MotionSpec& motion) {
+  auto& timing = parts.clients.trajectory;
+  const TrajectoryRequest request = trajectory_request(parts, timing, waypoints, parts.arm.configuration(), motion);
+  const bool answered = co_await timing.ask(request);
+  if (!answered) co_return Outcome::no_answer("trajectory");
+  if (!timing.reply()->solved) co_return Outcome::failure(timing.reply()->reason);
+  for (const auto& corner : timing.reply()->corners) parts.refuse(corner.what, corner.reason);
+  const TrajectoryCommand command = trajectory_command(parts, timing.reply()->trajectory, motion);
+  Outcome sent = co_await parts.link.send(command);
+  if (!sent.good) co_return sent;
+
+  RunningMotion running{command.id, command.trajectory.duration(), waypoints, timing.reply()->speeds};
+  const TimePoint began = parts.now.time();
+  parts.monitor.restart();
+  const bool ended = co_await watch_motion(parts, running, motion, began);
+  if (ended) {
+    Outcome end = co_await parts.link.end_of(running.command);
+    co_return end;
+  }
+  const bool is_area_cleared = parts.monitor.is_area_cleared(motion);
+  const Outcome why = parts.monitor.why_ended(motion, began);
+  co_await parts.link.stop();
+  if (is_area_cleared) co_return Outcome{};
+  co_return why;
+}
+
+/// Retreats from what ended a motion or is touched at its start; the reason grows if that fails.
+static Routine<bool> free_arm(Parts& parts, const std::string& touched, const MotionSpec& motion, Outcome& last) {
+  parts.refuse(text_of(motion.phase), last.reason);
+  Outcome freed = co_await retreat_from(parts, touched, motion);
+  if (!freed.good) last.reason += "; " + freed.reason;
+  co_return freed.good;
+}
+
+Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
+  Outcome last;
+  MotionSpec motion = asked;
+  for (std::uint32_t attempt = 0; attempt < parts.settings.motion_attempts(); ++attempt) {
+    parts.action.phase = motion.phase;
+    const bool ready = co_await parts.link.await_permission();
+    if (!ready) co_return parts.link.not_permitted();
+    const Vector start = parts.arm.configuration();
+    PlannedPath planned = co_await plan_path(parts, start, motion);
+    std::string in_the_way;
+    if (planned.outcome.good) {
+      last = co_await execute(parts, planned.waypoints, motion);
+      if (last.good || last.is_final()) co_return last;
+      const Person* person = last.end == MotionEnd::person_too_near ? parts.now.person("") : nullptr;
+      if (person != nullptr) in_the_way = person->id;
+    } else {
+      last = planned.outcome;
+      in_the_way = planned.start_touches;
+      if (parts.now.is_lost(in_the_way)) {
+        parts.refuse(text_of(motion.phase), last.reason);
+        const auto is_gone = [&] { return !parts.now.is_lost(in_the_way); };
+        co_await parts.waiting.until(is_gone, parts.settings.permission_timeout());
+        continue;
+      }
+    }
+    if (!in_the_way.empty()) {
+      const bool freed = co_await free_arm(parts, in_the_way, motion, last);
+      if (freed) continue;
+    }
+    parts.refuse(text_of(motion.phase), last.reason);
+    co_await parts.waiting.pause(kAttemptPause);
+  }
+  co_return last;
+}
+
+std::vector<Vector3> retreat_directions_from(const Parts& parts, const std::string& touched) {
+  const Pose T_tool = parts.arm.T_world_tool();
+  Vector3 from = T_tool.translation() + T_tool.linear().col(2);
+  if (const Person* person = parts.now.person(touched))
+    from = person->joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  else if (const SceneObject* object = parts.now.object(touched))
+    from = object->T_world_object.translation();
+  return retreat_directions(T_tool, from, parts.now.T_world_base().translation());
+}
+
+/// Returns goals of a retreat, those that lead away from people first, then in the order of the
+/// search.
+static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& touched, const Vector& start) {
+  const double distance = parts.settings.retreat_distance();
+  const Pose& T_world_base = parts.now.T_world_base();
+  const HumanState& people = parts.now.people();
+  std::vector<Vector> goals = parts.retreat.steps_away(start, T_world_base, people, kMaxRetreatRatio * distance);
+  std::reverse(goals.begin(), goals.end());
+  for (const double ratio : kRetreatRatios) {
+    for (const Vector3& direction : retreat_directions_from(parts, touched)) {
+      Pose T = parts.arm.T_world_tool();
+      T.translation() += ratio * distance * direction;
+      if (const auto joints = parts.arm.reach(T)) goals.push_back(*joints);
+    }
+  }
+  std::stable_partition(goals.begin(), goals.end(), [&](const Vector& goal) {
+    return parts.retreat.leads_away(start, RobotModel::with(start, parts.arm.group(), goal), T_world_base, people);
+  });
+  return goals;
+}
+
+Routine<Outcome> retreat_from(Parts& parts, const std::string& touched, const MotionSpec& next) {
+  MotionSpec off;
+  off.phase = ActionPhase::drawing_back;
+  off.is_straight = true;
+  off.speed = parts.settings.approach_speed();
+  off.allowed = next.allowed;
+  off.allowed.push_back(touched);
+  const Vector start = parts.arm.configuration();
+  const std::vector<Vector> goals = retreat_goals(parts, touched, start);
+  for (const Vector& goal : goals) {
+    const Vector clear = RobotModel::with(start, parts.arm.group(), goal);
+    off.goals = {goal};
+    PlannedPath first = co_await plan_path(parts, start, off);
+    if (!first.outcome.good) continue;
+    PlannedPath then = co_await plan_path(parts, clear, next);
+    if (!then.outcome.good) continue;
+    parts.action.phase = off.phase;
+    Outcome outcome = co_await execute(parts, first.waypoints, off);
+    co_return outcome;
+  }
+  co_return Outcome::failure("no straight way leads off " + touched);
+}
+
+}  // namespace handsel::manipulation_planner

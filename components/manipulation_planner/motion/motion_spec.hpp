@@ -1,0 +1,62 @@
+// What a motion of the arm is to do, and what ends it.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/messages/planning.hpp"
+#include "common/messages/task.hpp"
+#include "components/manipulation_planner/motion/motion_end.hpp"
+
+namespace handsel::manipulation_planner {
+
+/// An object that the goals of a motion depend on.
+struct ObjectTarget {
+  std::string object;                ///< scene object id
+  Vector3 p_world{Vector3::Zero()};  ///< where it was when the goals were chosen, world [m]
+  double max_shift{};                ///< the motion ends when it has moved farther [m]
+  /// The moving arm follows the object to where this grasp is then; nullopt: it does not follow.
+  std::optional<Grasp> grasp;
+};
+
+/// A person to whom an object is carried: the goals change when the person moves.
+struct ReceiverTarget {
+  std::string person;                      ///< id
+  Vector3 p_world_torso{Vector3::Zero()};  ///< when the goals were chosen, world [m]
+};
+
+struct MotionSpec {
+  ActionPhase phase{};                                      ///< part of the action
+  std::vector<Vector> goals;                                ///< axes of the arm, alternatives [rad]
+  bool is_straight{false};                                  ///< straight motion of the axes; it is not replanned
+  std::vector<std::string> allowed;                         ///< what may be touched
+  std::vector<std::string> tolerated;                       ///< planned around; a foreseen touch does not hold the arm
+  double speed{1.0};                                        ///< scale of the velocity limits
+  double max_length{1e9};                                   ///< of the path, sum of the max norms of its segments [rad]
+  double timeout{std::numeric_limits<double>::infinity()};  ///< for the motion [s]
+
+  std::optional<ObjectTarget> object;      ///< ends when this object is moved
+  std::optional<ReceiverTarget> receiver;  ///< goals are handover configurations for this person
+  std::string yields_to;                   ///< ends when this person takes hold; empty: nobody
+  std::string clears_area_for;             ///< ends when this person offers the object; empty: nobody
+  bool accepts_any_offer{};                ///< such an offer counts however little space there is
+};
+
+/// A path of the arm, or why there is none.
+struct PlannedPath {
+  Outcome outcome;                ///< whether there is a path
+  std::vector<Vector> waypoints;  ///< axes of the arm [rad]
+  std::string start_touches;      ///< id of what the robot touches at the start; empty: nothing
+};
+
+/// What the controller runs, and the path it came from.
+struct RunningMotion {
+  std::uint64_t command{};        ///< id of its command
+  double duration{};              ///< of its trajectory [s]
+  std::vector<Vector> waypoints;  ///< of its path, axes of the arm [rad]
+  Vector speeds;                  ///< of its segments, as in TrajectoryReply
+};
+
+}  // namespace handsel::manipulation_planner

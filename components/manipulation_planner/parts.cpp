@@ -1,0 +1,26 @@
+#include "components/manipulation_planner/parts.hpp"
+
+namespace handsel::manipulation_planner {
+
+Parts::Parts(const config::ManipulationPlannerSettings& s, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
+             std::uint64_t client, const CostSettings& cost)
+    : settings(s),
+      now(std::move(objects)),
+      clients(client, outbox, waiting, settings),
+      worker(outbox, waiting, settings.request_timeout()),
+      arm(std::move(robot), now),
+      held(arm, now),
+      link(arm, now, waiting, outbox, clients.ids, settings),
+      hand(arm, link, now, waiting, action, settings),
+      retreat(arm.robot(), arm.group()),
+      offers(now, {settings.held_out(), settings.offer_still()}),
+      area(arm, retreat, now),
+      monitor(arm, held, offers, area, now, settings),
+      replanner(*this, settings, std::make_shared<HumanCost>(arm.robot(), cost)) {}
+
+void Parts::refuse(const std::string& what, const std::string& reason) {
+  constexpr std::size_t kMaxRefusals = 32;
+  if (action.refusals.size() < kMaxRefusals) action.refusals.push_back({what, reason});
+}
+
+}  // namespace handsel::manipulation_planner

@@ -1,0 +1,98 @@
+#include "components/manipulation_planner/placing/destination_search.hpp"
+
+#include <functional>
+#include <memory>
+
+#include "components/manipulation_planner/parts.hpp"
+
+namespace handsel::manipulation_planner {
+namespace {
+
+constexpr std::size_t kMaxPlaces = 24;         // of a surface that are tried
+constexpr std::size_t kMaxConfigurations = 6;  // that motions are planned to
+
+/// What a job needs of arm and scene, as values.
+struct PlacingJob {
+  std::shared_ptr<const RobotModel> robot;
+  std::shared_ptr<CollisionWorld> world;
+  ObjectLibrary objects;
+  Scene scene;
+  HumanState people;
+  Group arm, fingers;
+  int palm;
+  double lift_height;
+  Vector q;
+};
+
+PlacingJob placing_job(Parts& parts) {
+  return {parts.arm.shared_robot(),     parts.worker.world(parts.arm.robot(), parts.now.objects()),
+          parts.now.objects(),          parts.now.scene(),
+          parts.now.people(),           parts.arm.group(),
+          parts.arm.fingers(),          parts.arm.palm(),
+          parts.settings.lift_height(), parts.arm.configuration()};
+}
+
+void set_world(const PlacingJob& job) {
+  job.world->set_scene(job.scene);
+  job.world->set_people(job.people);
+  job.world->set_moving_axes({});
+}
+
+std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface, const std::string& object, const Pose& T_now,
+                            std::size_t max_places) {
+  PlacingSettings placing;
+  placing.reach = arm_reach(*job.robot, &job.arm, job.palm);
+  const PlacingScene in{*job.robot, job.scene, job.people, job.objects};
+  return free_places(in, object, surface, T_now, max_places, placing);
+}
+
+}  // namespace
+
+Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object, const std::string& onto, const std::vector<Grasp>& grasps,
+                                         const DestinationLimits& limits) {
+  auto found = std::make_shared<ServingGrasps>();
+  const SceneObject* thing = parts.now.object(object);
+  std::vector<SceneBox> surfaces;
+  for (const SceneBox& box : parts.now.scene().boxes)
+    if (box.supports && (onto.empty() || box.id == onto)) surfaces.push_back(box);
+  if (thing == nullptr || surfaces.empty()) co_return *found;
+  const std::function<void()> job = [found, surfaces, object, grasps, limits, in = placing_job(parts), T_now = thing->T_world_object] {
+    set_world(in);
+    for (const SceneBox& box : surfaces) {
+      Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, places_on(in, box, object, T_now, limits.max_places),
+                      in.lift_height);
+      for (std::size_t i = 0; i < grasps.size() && found->at.size() < limits.max_grasps; ++i) {
+        if (found->at.count(i) > 0) continue;
+        const Grasp& grasp = grasps[i];
+        const Vector reached = RobotModel::with(in.q, in.arm, grasp.arm_joints);
+        const Vector closed = RobotModel::with(reached, in.fingers, grasp.hand_joints);
+        const Vector opened = RobotModel::with(closed, in.fingers, grasp.pregrasp_joints);
+        const auto all = putting.anywhere(closed, opened, {object, grasp.T_object_hand.inverse()}, 1);
+        if (!all.empty()) found->at[i] = {grasp.id, object, box.id, all.front().T_world_object};
+      }
+      found->objections = putting.objections();
+    }
+  };
+  found->outcome = co_await parts.worker.run(job);
+  co_return *found;
+}
+
+Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening) {
+  const Attachment held = parts.held.attachment();
+  const auto& grasp = parts.held.grasp();
+  const std::optional<Pose> T_chosen = grasp ? parts.destinations.find(grasp->id, held.object, surface.id) : std::optional<Pose>();
+  auto found = std::make_shared<FoundPlaces>();
+  const std::function<void()> job = [found, T_chosen, opening, held, box = surface, in = placing_job(parts),
+                                     T_now = parts.held.T_world_object()] {
+    set_world(in);
+    std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
+    if (T_chosen) places.insert(places.begin(), *T_chosen);
+    Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, std::move(places), in.lift_height);
+    found->configurations = putting.anywhere(in.q, RobotModel::with(in.q, in.fingers, opening), held, kMaxConfigurations);
+    found->objections = putting.objections();
+  };
+  found->outcome = co_await parts.worker.run(job);
+  co_return *found;
+}
+
+}  // namespace handsel::manipulation_planner
