@@ -24,11 +24,16 @@ void ActiveArm::select(std::size_t index) {
 HandState ActiveArm::hand_state() const {
   if (index_ == 0) return now_.execution()->hand;
   const auto& others = now_.execution()->other_hands;
-  const auto other = std::find_if(others.begin(), others.end(), [this](const OtherHandState& o) { return o.group == fingers_.name; });
+  const auto other = std::find_if(others.begin(), others.end(), [this](const OtherHandState& o) {
+    return o.group == fingers_.name;
+  });
   return other == others.end() ? HandState::idle : other->hand;
 }
 
-bool ActiveArm::at_rest() const { return now_.set_point().size() == robot_->dof() && now_.active().velocity(group_.axes).norm() < 1e-9; }
+bool ActiveArm::at_rest() const {
+  return now_.set_point().size() == robot_->dof() &&
+         now_.active().velocity(group_.axes).norm() < 1e-9;
+}
 
 Vector ActiveArm::configuration() const {
   Vector q = now_.scene().robot_position;
@@ -40,7 +45,9 @@ Vector ActiveArm::configuration() const {
   return opens ? RobotModel::with(q, fingers_, *finger_goal_) : q;
 }
 
-Vector ActiveArm::set_point_with(const Vector& arm_joints) const { return RobotModel::with(now_.set_point(), group_, arm_joints); }
+Vector ActiveArm::set_point_with(const Vector& arm_joints) const {
+  return RobotModel::with(now_.set_point(), group_, arm_joints);
+}
 
 Vector3 ActiveArm::p_world_shoulder() const {
   const Axis& first = robot_->axes()[static_cast<std::size_t>(group_.axes.front())];
@@ -51,19 +58,24 @@ Vector3 ActiveArm::p_world_shoulder() const {
 std::optional<Vector> ActiveArm::reach(const Pose& T_world_tool) const {
   IkOptions options;
   options.restarts = 0;
-  return robot_->inverse(group_, now_.T_world_base().inverse() * T_world_tool, now_.set_point(), options);
+  return robot_->inverse(group_, now_.T_world_base().inverse() * T_world_tool, now_.set_point(),
+                         options);
 }
 
 std::optional<Grasp> ActiveArm::grasp_at(const Pose& T_world_object, const Grasp& grasp) const {
-  const auto T_root_hand_at = [this](const Vector& joints) { return robot_->link_pose(set_point_with(joints), palm_); };
-  const Pose T_grasp_standoff = T_root_hand_at(grasp.arm_joints).inverse() * T_root_hand_at(grasp.approach_joints);
+  const auto T_root_hand_at = [this](const Vector& joints) {
+    return robot_->link_pose(set_point_with(joints), palm_);
+  };
+  const Pose T_grasp_standoff =
+      T_root_hand_at(grasp.arm_joints).inverse() * T_root_hand_at(grasp.approach_joints);
   const Pose T_root_hand = now_.T_world_base().inverse() * T_world_object * grasp.T_object_hand;
   IkOptions options;
   options.restarts = 0;
   Grasp found = grasp;
   const auto at = robot_->inverse(group_, T_root_hand, set_point_with(grasp.arm_joints), options);
   if (!at) return std::nullopt;
-  const auto before = robot_->inverse(group_, T_root_hand * T_grasp_standoff, set_point_with(*at), options);
+  const auto before =
+      robot_->inverse(group_, T_root_hand * T_grasp_standoff, set_point_with(*at), options);
   if (!before) return std::nullopt;
   found.arm_joints = *at;
   found.approach_joints = *before;

@@ -51,7 +51,9 @@ class ActiveArm {
   /// Returns the set-point with other axes of the arm [rad, m].
   Vector set_point_with(const Vector& arm_joints) const;
   /// Returns the pose of the hand in the world, with the arm as commanded.
-  Pose T_world_tool() const { return now_.T_world_base() * robot_->link_pose(now_.set_point(), palm_); }
+  Pose T_world_tool() const {
+    return now_.T_world_base() * robot_->link_pose(now_.set_point(), palm_);
+  }
   /// Returns the first moving link of the arm in the world [m].
   Vector3 p_world_shoulder() const;
   /// Returns axes of the arm near the present ones that put the hand there; nullopt: out of reach.

@@ -100,13 +100,16 @@ class Client {
 /// The requests to all planners, under ids of one sequence.
 struct Clients {
   /// The references must outlive what is made.
-  Clients(std::uint64_t client, Outbox& outbox, Waiting& waiting, const config::ManipulationPlannerSettings& s)
+  Clients(std::uint64_t client, Outbox& outbox, Waiting& waiting,
+          const config::ManipulationPlannerSettings& s)
       : ids(client),
         grasp(ids, waiting, outbox.grasp_requests, {s.request_retry(), s.request_timeout()}),
         regrasp(ids, waiting, outbox.regrasp_requests, {s.request_retry(), s.regrasp_timeout()}),
         path(ids, waiting, outbox.path_requests, {s.request_retry(), s.request_timeout()}),
-        trajectory(ids, waiting, outbox.trajectory_requests, {s.request_retry(), s.request_timeout()}),
-        comparison(ids, waiting, outbox.trajectory_requests, {s.request_retry(), s.request_timeout(), Accepts::own}) {}
+        trajectory(ids, waiting, outbox.trajectory_requests,
+                   {s.request_retry(), s.request_timeout()}),
+        comparison(ids, waiting, outbox.trajectory_requests,
+                   {s.request_retry(), s.request_timeout(), Accepts::own}) {}
 
   Ids ids;                                                ///< of requests and commands
   Client<GraspRequest, GraspReply> grasp;                 ///< lists of grasps

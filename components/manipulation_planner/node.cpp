@@ -11,7 +11,8 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   config::ManipulationPlannerSettings s;
   load_text_proto(context.settings / "manipulation_planner.txtpb", s);
   const auto positive = [](const char* key, double value) {
-    if (value <= 0) throw ConfigError(std::string("manipulation_planner.txtpb: ") + key + " must be > 0");
+    if (value <= 0)
+      throw ConfigError(std::string("manipulation_planner.txtpb: ") + key + " must be > 0");
   };
   positive("request_retry", s.request_retry());
   positive("request_timeout", s.request_timeout());
@@ -23,16 +24,22 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
   positive("approach_speed", s.approach_speed());
   positive("status_period", s.status_period());
   positive("regrasp_timeout", s.regrasp_timeout());
-  if (s.w_preference() < 0) throw ConfigError("manipulation_planner.txtpb: w_preference must be >= 0");
+  if (s.w_preference() < 0)
+    throw ConfigError("manipulation_planner.txtpb: w_preference must be >= 0");
   *s.mutable_people() = load_people(context.settings).people();
-  if (s.live_period() < 0) throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
+  if (s.live_period() < 0)
+    throw ConfigError("manipulation_planner.txtpb: live_period must be >= 0");
   if (s.live_period() > 0) {
-    if (s.live_longest() < s.live_period()) throw ConfigError("manipulation_planner.txtpb: live_longest must not be below live_period");
+    if (s.live_longest() < s.live_period())
+      throw ConfigError("manipulation_planner.txtpb: live_longest must not be below live_period");
     positive("live_time", s.live_time());
     positive("replan_time", s.replan_time());
     positive("live_reach", s.live_reach());
-    if (s.live_slower() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_pace() < 0 || s.live_pace() >= 1)
-      throw ConfigError("manipulation_planner.txtpb: live_slower must be >= 0, live_gain and live_pace in [0, 1)");
+    if (s.live_slower() < 0 || s.live_gain() < 0 || s.live_gain() >= 1 || s.live_pace() < 0 ||
+        s.live_pace() >= 1)
+      throw ConfigError(
+          "manipulation_planner.txtpb: live_slower must be >= 0, live_gain and live_pace in [0, "
+          "1)");
   }
   return s;
 }
@@ -40,7 +47,8 @@ config::ManipulationPlannerSettings load_settings(const NodeContext& context) {
 std::uint64_t client_id(const Bus& bus) { return static_cast<std::uint64_t>(bus.stamp_now()); }
 
 bool changed(const ActionStatus& a, const ActionStatus& b) {
-  return a.id != b.id || a.state != b.state || a.phase != b.phase || a.holding != b.holding || a.exchange_engaged != b.exchange_engaged;
+  return a.id != b.id || a.state != b.state || a.phase != b.phase || a.holding != b.holding ||
+         a.exchange_engaged != b.exchange_engaged;
 }
 
 }  // namespace
@@ -48,7 +56,8 @@ bool changed(const ActionStatus& a, const ActionStatus& b) {
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       settings_(load_settings(context)),
-      core_(settings_, context.robot, context.objects, client_id(bus), load_cost_settings(context.settings)),
+      core_(settings_, context.robot, context.objects, client_id(bus),
+            load_cost_settings(context.settings)),
       grasp_out_(bus.advertise<GraspRequest>()),
       regrasp_out_(bus.advertise<RegraspRequest>()),
       path_out_(bus.advertise<PathRequest>()),
@@ -60,9 +69,11 @@ Node::Node(Bus& bus, const NodeContext& context)
   feed<Scene>();
   feed<HumanState>();
   feed<Facts>();
-  bus.subscribe<Costmap>(
-      [this](const Costmap& layer, const Receipt& receipt) { core_.on(layer, receipt.arrival - receipt.age, receipt.arrival); });
-  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& advice, const Receipt& r) { core_.on(advice, r.arrival); });
+  bus.subscribe<Costmap>([this](const Costmap& layer, const Receipt& receipt) {
+    core_.on(layer, receipt.arrival - receipt.age, receipt.arrival);
+  });
+  bus.subscribe<AttentionAdvice>(
+      [this](const AttentionAdvice& advice, const Receipt& r) { core_.on(advice, r.arrival); });
   feed<ExecutionStatus>();
   feed<ActiveTrajectory>();
   feed<GraspReply>();
@@ -101,7 +112,8 @@ void Node::step(TimePoint now) {
 
 void Node::publish_status(TimePoint now) {
   const ActionStatus& status = core_.status();
-  if (!changed(status, sent_) && to_seconds(now - status_sent_) < 0.99 * settings_.status_period()) return;
+  if (!changed(status, sent_) && to_seconds(now - status_sent_) < 0.99 * settings_.status_period())
+    return;
   status_out_->publish(status);
   sent_ = status;
   status_sent_ = now;

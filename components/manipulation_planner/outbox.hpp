@@ -12,9 +12,9 @@ namespace handsel::manipulation_planner {
 
 /// What the core wants sent; the node empties it after each step.
 struct Outbox {
-  std::vector<GraspRequest> grasp_requests;            ///< to the grasp planner
-  std::vector<RegraspRequest> regrasp_requests;        ///< to the grasp planner, for two hands
-  std::vector<PathRequest> path_requests;              ///< to the path planner; also those that cancel
+  std::vector<GraspRequest> grasp_requests;      ///< to the grasp planner
+  std::vector<RegraspRequest> regrasp_requests;  ///< to the grasp planner, for two hands
+  std::vector<PathRequest> path_requests;        ///< to the path planner; also those that cancel
   std::vector<TrajectoryRequest> trajectory_requests;  ///< to the trajectory planner
   std::vector<TrajectoryCommand> trajectories;         ///< to the trajectory controller
   std::vector<HandCommand> hand_commands;              ///< to the controller of the hand
@@ -23,7 +23,8 @@ struct Outbox {
   /// Moves everything to the end of another outbox, in order.
   void move_to(Outbox& other) {
     const auto append = [](auto& from, auto& to) {
-      to.insert(to.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+      to.insert(to.end(), std::make_move_iterator(from.begin()),
+                std::make_move_iterator(from.end()));
       from.clear();
     };
     append(grasp_requests, other.grasp_requests);

@@ -2,8 +2,8 @@
 
 namespace handsel::manipulation_planner {
 
-Parts::Parts(const config::ManipulationPlannerSettings& s, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
-             std::uint64_t client, const CostSettings& cost)
+Parts::Parts(const config::ManipulationPlannerSettings& s, std::shared_ptr<const RobotModel> robot,
+             ObjectLibrary objects, std::uint64_t client, const CostSettings& cost)
     : settings(s),
       now(std::move(objects)),
       clients(client, outbox, waiting, settings),

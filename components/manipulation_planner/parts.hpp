@@ -23,8 +23,9 @@ namespace handsel::manipulation_planner {
 struct Parts {
   /// `client` makes request ids unique over restarts; trajectory and hand command ids start above
   /// it.
-  Parts(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
-        std::uint64_t client, const CostSettings& cost);
+  Parts(const config::ManipulationPlannerSettings& settings,
+        std::shared_ptr<const RobotModel> robot, ObjectLibrary objects, std::uint64_t client,
+        const CostSettings& cost);
 
   /// Lists an alternative that was rejected during the action. `reason`: one sentence.
   void refuse(const std::string& what, const std::string& reason);

@@ -12,8 +12,10 @@ constexpr double kSceneTimeout = 10.0;  // for the first scene and report of the
 
 }  // namespace
 
-ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot,
-                                         ObjectLibrary objects, std::uint64_t client, const CostSettings& cost)
+ManipulationPlanner::ManipulationPlanner(const config::ManipulationPlannerSettings& settings,
+                                         std::shared_ptr<const RobotModel> robot,
+                                         ObjectLibrary objects, std::uint64_t client,
+                                         const CostSettings& cost)
     : parts_(settings, std::move(robot), std::move(objects), client, cost) {}
 
 void ManipulationPlanner::on(const ActionGoal& goal) {
@@ -120,7 +122,8 @@ Routine<Outcome> ManipulationPlanner::find_hand(const ActionGoal& goal) {
   if (object != nullptr && object->holder == Holder::robot) {
     const auto& all = parts_.arm.manipulators();
     const int by = hand_index(all, object->holder_id);
-    Outcome ready = co_await use_arm(parts_, by < 0 ? parts_.arm.group().name : all[static_cast<std::size_t>(by)].name);
+    Outcome ready = co_await use_arm(
+        parts_, by < 0 ? parts_.arm.group().name : all[static_cast<std::size_t>(by)].name);
     if (!ready.good) co_return ready;
     object = parts_.now.object(goal.object);
     if (object == nullptr) co_return Outcome::failure("object " + goal.object + " left the scene");
@@ -130,7 +133,8 @@ Routine<Outcome> ManipulationPlanner::find_hand(const ActionGoal& goal) {
     }
   } else if (parts_.held.id() == goal.object) {
     // Not while a person takes hold of the object, too.
-    const bool is_gripped = object != nullptr && parts_.held.is_in_hand(*object) && parts_.arm.hand_state() == HandState::grasped;
+    const bool is_gripped = object != nullptr && parts_.held.is_in_hand(*object) &&
+                            parts_.arm.hand_state() == HandState::grasped;
     if (!is_gripped) parts_.held.release();
   }
   if (!parts_.held.is_holding() && parts_.arm.index() != 0) {
@@ -144,7 +148,8 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
   parts_.action.phase = ActionPhase::waiting_for_scene;
   const auto is_known = [this] {
     const Snapshot& now = parts_.now;
-    return now.scene().robot_known && now.execution() && now.set_point().size() == parts_.arm.robot().dof();
+    return now.scene().robot_known && now.execution() &&
+           now.set_point().size() == parts_.arm.robot().dof();
   };
   const bool known = co_await parts_.waiting.until(is_known, kSceneTimeout);
   if (!known) co_return Outcome::failure("no scene or no controller state has come");
@@ -152,7 +157,8 @@ Routine<Outcome> ManipulationPlanner::run(ActionGoal goal) {
   if (!outcome.good) co_return outcome;
   const bool takes_two_hands = goal.kind == ActionKind::regrasp || goal.kind == ActionKind::carry;
   if (takes_two_hands && parts_.arm.manipulators().size() < 2)
-    co_return Outcome::failure(std::string(name(goal.kind)) + " needs two hands, robot " + parts_.arm.robot().name() + " has one");
+    co_return Outcome::failure(std::string(name(goal.kind)) + " needs two hands, robot " +
+                               parts_.arm.robot().name() + " has one");
   switch (goal.kind) {
     case ActionKind::pick:
       outcome = co_await pick(parts_, goal.object, goal.human, goal.surface);

@@ -16,7 +16,8 @@ class ManipulationPlanner {
  public:
   /// `client` makes request ids unique over restarts; trajectory and hand command ids start above
   /// it.
-  ManipulationPlanner(const config::ManipulationPlannerSettings& settings, std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
+  ManipulationPlanner(const config::ManipulationPlannerSettings& settings,
+                      std::shared_ptr<const RobotModel> robot, ObjectLibrary objects,
                       std::uint64_t client, const CostSettings& cost = {});
 
   /// Begins an action in place of the one that runs, or cancels the one with that id. A goal with
@@ -32,7 +33,9 @@ class ManipulationPlanner {
   void on(const Costmap& layer, TimePoint sent, TimePoint now) { parts_.now.on(layer, sent, now); }
   /// Takes the advised period of replanning and the gain of the human-aware cost; both hold for a
   /// moment only.
-  void on(const AttentionAdvice& advice, TimePoint now) { parts_.replanner.advise(advice.replan_period, advice.cost_gain, now); }
+  void on(const AttentionAdvice& advice, TimePoint now) {
+    parts_.replanner.advise(advice.replan_period, advice.cost_gain, now);
+  }
   /// Takes the newest report of the controller: what holds the robot back, and the state of its
   /// command.
   void on(const ExecutionStatus& status) { parts_.now.on(status); }

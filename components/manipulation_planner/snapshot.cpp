@@ -8,13 +8,15 @@ namespace handsel::manipulation_planner {
 
 const SceneObject* Snapshot::object(const std::string& id) const {
   const auto& all = scene_.objects;
-  const auto it = std::find_if(all.begin(), all.end(), [&](const SceneObject& o) { return o.id == id; });
+  const auto it =
+      std::find_if(all.begin(), all.end(), [&](const SceneObject& o) { return o.id == id; });
   return it == all.end() ? nullptr : &*it;
 }
 
 const SceneBox* Snapshot::surface(const std::string& id) const {
   const auto& all = scene_.boxes;
-  const auto it = std::find_if(all.begin(), all.end(), [&](const SceneBox& b) { return b.id == id && b.supports; });
+  const auto it = std::find_if(all.begin(), all.end(),
+                               [&](const SceneBox& b) { return b.id == id && b.supports; });
   return it == all.end() ? nullptr : &*it;
 }
 
@@ -28,7 +30,8 @@ const Person* Snapshot::person(const std::string& id) const {
   double nearest = 0;
   for (const auto& candidate : people_.people) {
     if (!id.empty() && candidate.id != id) continue;
-    const Vector3 torso = candidate.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+    const Vector3 torso =
+        candidate.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
     const double distance = (torso - scene_.T_world_base.translation()).norm();
     if (best == nullptr || distance < nearest) {
       best = &candidate;
@@ -40,7 +43,8 @@ const Person* Snapshot::person(const std::string& id) const {
 
 bool Snapshot::is_lost(const std::string& id) const {
   const auto& all = people_.people;
-  return std::any_of(all.begin(), all.end(), [&](const Person& p) { return p.id == id && p.inflation > 0; });
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Person& p) { return p.id == id && p.inflation > 0; });
 }
 
 }  // namespace handsel::manipulation_planner

@@ -17,14 +17,17 @@ namespace handsel::manipulation_planner {
 class Worker {
  public:
   /// `timeout`: a job that takes longer has failed [s]; the references must outlive the worker.
-  Worker(Outbox& outbox, Waiting& waiting, double timeout) : outbox_(outbox), waiting_(waiting), timeout_(timeout) {}
+  Worker(Outbox& outbox, Waiting& waiting, double timeout)
+      : outbox_(outbox), waiting_(waiting), timeout_(timeout) {}
 
   /// Hands the job out and waits for its end. `job` must outlive the routine.
   Routine<Outcome> run(const std::function<void()>& job) {
     const std::uint64_t mine = ++started_;
     outbox_.jobs.push_back(job);
     const bool done = co_await waiting_.until([this, mine] { return done_ >= mine; }, timeout_);
-    co_return done ? Outcome{} : Outcome::failure("the computation did not end in time", ActionFailure::timed_out);
+    co_return done
+        ? Outcome{}
+        : Outcome::failure("the computation did not end in time", ActionFailure::timed_out);
   }
   /// Counts one job as ended; what it wrote may be read from now on.
   void job_done() { ++done_; }

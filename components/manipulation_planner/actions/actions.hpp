@@ -12,12 +12,14 @@ struct Parts;
 
 /// Picks an object. `for_human`: who will get it, empty: nobody; `onto`: the surface on which it
 /// will be put down, empty: not known.
-Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human, const std::string& onto);
+Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human,
+                      const std::string& onto);
 /// Gives the held object to a person; empty: the nearest.
 Routine<Outcome> give(Parts& parts, const std::string& object, const std::string& human);
 /// Takes an object from the hand of a person. `wanted` empty: whatever is offered; `giver` empty:
 /// any person; `onto`: as of pick(), empty: any surface.
-Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver, const std::string& onto);
+Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver,
+                         const std::string& onto);
 /// Puts the held object down on a surface.
 Routine<Outcome> place(Parts& parts, const std::string& object, const std::string& surface);
 /// Brings an object to its goal through two hands, one after the other.

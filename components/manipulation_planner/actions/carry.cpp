@@ -39,7 +39,8 @@ Routine<CarryPlan> plan_carry(Parts& parts, const ActionGoal& goal) {
   plan.outcome = found.outcome;
   if (!plan.outcome.good) co_return plan;
   if (found.steps.size() != kSteps) {
-    plan.outcome = Outcome::failure("the grasp planner did not say how two hands take " + goal.object);
+    plan.outcome =
+        Outcome::failure("the grasp planner did not say how two hands take " + goal.object);
     co_return plan;
   }
   plan.first = found.steps[0];
@@ -52,10 +53,12 @@ Routine<CarryPlan> plan_carry(Parts& parts, const ActionGoal& goal) {
 Routine<Outcome> grip(Parts& parts, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
   const double timeout = 2 * parts.settings.hand_timeout();
-  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort, kMassRatio);
+  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout,
+                                              &grasp.hand_effort, kMassRatio);
   if (!closed.outcome.good) co_return closed.outcome;
   if (closed.state != HandState::grasped)
-    co_return Outcome::failure("the hand " + parts.arm.fingers().name + " closed on nothing", ActionFailure::nothing_grasped);
+    co_return Outcome::failure("the hand " + parts.arm.fingers().name + " closed on nothing",
+                               ActionFailure::nothing_grasped);
   co_return Outcome{};
 }
 
@@ -65,12 +68,16 @@ Routine<Outcome> enclose(Parts& parts, const std::string& object, const RegraspS
   if (!done.good) co_return done;
   std::optional<Grasp> grasp = grasp_now(parts, object, step.grasp);
   const SceneObject* thing = parts.now.object(object);
-  const bool as_planned = thing != nullptr && (thing->T_world_object.translation() - step.T_world_object.translation()).norm() < kSamePlace;
+  const bool as_planned =
+      thing != nullptr &&
+      (thing->T_world_object.translation() - step.T_world_object.translation()).norm() < kSamePlace;
   // At the end of a joint's range only the place as it was seen when planning is reached.
   if (!grasp && as_planned) grasp = step.grasp;
-  if (!grasp) co_return Outcome::failure(step.to + " does not reach " + object + " where it stands now");
+  if (!grasp)
+    co_return Outcome::failure(step.to + " does not reach " + object + " where it stands now");
   parts.action.phase = ActionPhase::opening_hand;
-  HandResult open = co_await parts.hand.run(HandAction::move, grasp->pregrasp_joints, parts.settings.hand_timeout());
+  HandResult open = co_await parts.hand.run(HandAction::move, grasp->pregrasp_joints,
+                                            parts.settings.hand_timeout());
   if (!open.outcome.good) co_return open.outcome;
   MotionSpec approach;
   approach.phase = ActionPhase::approach;
@@ -107,7 +114,8 @@ Routine<Outcome> take_together(Parts& parts, const std::string& object, const Ca
 /// Opens a hand that did not get hold and moves it back to its stand-off.
 Routine<Outcome> back_off(Parts& parts, const std::string& object, const RegraspStep& step) {
   Outcome off = co_await use_arm(parts, step.to);
-  HandResult opened = co_await parts.hand.run(HandAction::move, step.grasp.pregrasp_joints, parts.settings.hand_timeout());
+  HandResult opened = co_await parts.hand.run(HandAction::move, step.grasp.pregrasp_joints,
+                                              parts.settings.hand_timeout());
   if (off.good && opened.outcome.good) {
     MotionSpec back;
     back.phase = ActionPhase::backing_off;
@@ -137,7 +145,8 @@ Routine<Outcome> try_to_take(Parts& parts, const std::string& object, const Carr
 Routine<Outcome> move_together(Parts& parts, const std::string& object, const std::string& follower,
                                const std::vector<Pose>& T_world_object) {
   const auto& all = parts.arm.manipulators();
-  const auto other = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) { return m.name == follower; });
+  const auto other = std::find_if(all.begin(), all.end(),
+                                  [&](const Manipulator& m) { return m.name == follower; });
   if (other == all.end()) co_return Outcome::failure("there is no arm " + follower);
   const bool ready = co_await parts.link.await_permission();
   if (!ready) co_return parts.link.not_permitted();
@@ -160,13 +169,15 @@ Routine<Outcome> move_together(Parts& parts, const std::string& object, const st
     request.poses.push_back(node);
   }
   request.follower = follower;
-  request.T_tip_follower = robot.link_pose(start, parts.arm.palm()).inverse() * robot.link_pose(start, other->palm);
+  request.T_tip_follower =
+      robot.link_pose(start, parts.arm.palm()).inverse() * robot.link_pose(start, other->palm);
   request.upright = true;
   request.upright_axis = T_tool_object.linear() * Vector3::UnitZ();
   request.most_tilt = kMaxTilt;
   const bool answered = co_await timing.ask(request);
   if (!answered) co_return Outcome::no_answer("trajectory");
-  if (!timing.reply()->solved) co_return Outcome::failure("both hands together: " + timing.reply()->reason);
+  if (!timing.reply()->solved)
+    co_return Outcome::failure("both hands together: " + timing.reply()->reason);
   TrajectoryCommand command = trajectory_command(parts, timing.reply()->trajectory, together);
   command.axes = timing.reply()->axes;
   Outcome run = co_await parts.link.run(command);
@@ -180,7 +191,8 @@ Pose raised(Pose T, double by) {
 
 /// Lifts the object, carries it over its place and lowers it. Where it cannot move up or over it is
 /// put back; hands that cannot bring it down keep it. `is_down`: whether the hands may open.
-Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, const CarryPlan& plan, bool& is_down) {
+Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, const CarryPlan& plan,
+                                    bool& is_down) {
   const std::string& follower = plan.second.to;
   parts.action.phase = ActionPhase::lift;
   const double height = parts.settings.lift_height();
@@ -195,7 +207,8 @@ Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, con
   }
   is_down = true;
   const SceneObject* now = parts.now.object(object);
-  const bool is_lifted = now == nullptr || now->T_world_object.translation().z() > T_start.translation().z() + kSamePlace;
+  const bool is_lifted = now == nullptr || now->T_world_object.translation().z() >
+                                               T_start.translation().z() + kSamePlace;
   if (!done.good && is_lifted) {
     parts.refuse(text_of(parts.action.phase), done.reason);
     parts.action.phase = ActionPhase::put_back;
@@ -207,8 +220,8 @@ Routine<Outcome> lift_over_and_down(Parts& parts, const std::string& object, con
   co_return done;
 }
 
-/// Opens both hands and moves them off as they came: each hand's stand-off from its grasp is the same
-/// wherever the object was put down.
+/// Opens both hands and moves them off as they came: each hand's stand-off from its grasp is the
+/// same wherever the object was put down.
 Routine<Outcome> release_both(Parts& parts, const std::string& object, const CarryPlan& plan) {
   const std::vector<std::string> arms{plan.first.to, plan.second.to};
   for (const std::string& arm : arms) {
@@ -216,7 +229,8 @@ Routine<Outcome> release_both(Parts& parts, const std::string& object, const Car
     if (!done.good) co_return done;
     parts.action.phase = ActionPhase::letting_go;
     const Vector open = RobotModel::part(plan.down.after, parts.arm.fingers());
-    HandResult opened = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+    HandResult opened =
+        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
     if (!opened.outcome.good) co_return opened.outcome;
   }
   parts.held.release();

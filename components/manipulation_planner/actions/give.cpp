@@ -11,7 +11,8 @@ constexpr double kRetryPause = 0.5;  // before the person's reach is checked aga
 constexpr double kTakePause = 0.5;   // before the hand retreats from what was taken [s]
 
 /// Returns the motion that carries the object to the receiver.
-MotionSpec carry_motion(const Parts& parts, const std::string& object, const OtpSearch& search, const Person& receiver) {
+MotionSpec carry_motion(const Parts& parts, const std::string& object, const OtpSearch& search,
+                        const Person& receiver) {
   MotionSpec carry;
   carry.phase = ActionPhase::carry;
   carry.speed = parts.settings.carry_speed();
@@ -73,7 +74,8 @@ Routine<Outcome> offer(Parts& parts, const std::string& object, const std::strin
   HandResult held = co_await parts.hand.run(HandAction::grasp, grip, parts.settings.hand_timeout());
   if (!held.outcome.good) parts.refuse("keeping the object", held.outcome.reason);
   if (!released.outcome.good) co_return released.outcome;
-  co_return Outcome::failure(receiver + " did not take " + object + " within " + std::to_string(static_cast<int>(timeout)) + " s",
+  co_return Outcome::failure(receiver + " did not take " + object + " within " +
+                                 std::to_string(static_cast<int>(timeout)) + " s",
                              ActionFailure::not_taken);
 }
 
@@ -83,18 +85,21 @@ Routine<Outcome> give(Parts& parts, const std::string& object, const std::string
   const SceneObject* held = parts.now.object(object);
   if (held == nullptr) co_return Outcome::failure("object " + object + " is not in the scene");
   if (held->holder == Holder::human && !parts.held.is_in_hand(*held)) co_return Outcome{};
-  if (!parts.held.is_holding() || parts.held.id() != object) co_return Outcome::failure("the hand does not hold " + object);
+  if (!parts.held.is_holding() || parts.held.id() != object)
+    co_return Outcome::failure("the hand does not hold " + object);
   parts.action.phase = ActionPhase::choosing_exchange_point;
   const auto is_seen = [&] { return parts.now.person(human) != nullptr; };
   const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
   if (!seen)
-    co_return human.empty() ? Outcome::failure("nobody is in sight")
-                            : Outcome::failure("person " + human + " is not in sight", ActionFailure::not_visible);
+    co_return human.empty()
+        ? Outcome::failure("nobody is in sight")
+        : Outcome::failure("person " + human + " is not in sight", ActionFailure::not_visible);
   const std::string receiver = parts.now.person(human)->id;
   parts.action.human = receiver;
   // In the hand, yet not borne by it: somebody has hold of the object already.
   const SceneObject* now = parts.now.object(object);
-  const bool is_taken = parts.held.is_taken_by(receiver) || (now != nullptr && now->holder != Holder::robot);
+  const bool is_taken =
+      parts.held.is_taken_by(receiver) || (now != nullptr && now->holder != Holder::robot);
   if (!is_taken) {
     Outcome carried = co_await carry_to(parts, object, receiver);
     if (!carried.good) co_return carried;

@@ -7,7 +7,7 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMaxStraightTurn = 0.9;                    // of one axis; with more the tool swings around [rad]
+constexpr double kMaxStraightTurn = 0.9;  // of one axis; with more the tool swings around [rad]
 constexpr double kRetreatRatios[] = {1.0, 0.75, 0.5, 0.3};  // of the retreat distance
 constexpr double kLiftRatios[] = {1.0, 0.85};               // of the lift height
 
@@ -29,7 +29,8 @@ Routine<Outcome> lift(Parts& parts, const std::string& object, const std::string
       if (outcome.good || outcome.end == MotionEnd::taken) co_return outcome;
     }
   }
-  co_return Outcome::failure("the arm cannot lift " + object + " straight up by " + std::to_string(height) + " m");
+  co_return Outcome::failure("the arm cannot lift " + object + " straight up by " +
+                             std::to_string(height) + " m");
 }
 
 /// Plans the approach, opens the hand meanwhile and moves to the grasp.
@@ -62,7 +63,8 @@ Routine<Outcome> reach_grasp(Parts& parts, const std::string& object, const Gras
 Routine<Outcome> close_hand(Parts& parts, const std::string& object, const Grasp& grasp) {
   parts.action.phase = ActionPhase::grasp;
   const double timeout = parts.settings.hand_timeout();
-  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort);
+  HandResult closed =
+      co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort);
   if (closed.outcome.good && closed.state == HandState::grasped) co_return Outcome{};
   co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
   MotionSpec back = reach_along(parts, object, grasp);
@@ -77,18 +79,23 @@ Routine<Outcome> close_hand(Parts& parts, const std::string& object, const Grasp
 
 Routine<Outcome> use_arm(Parts& parts, const std::string& arm) {
   const auto& all = parts.arm.manipulators();
-  const auto wanted = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) { return m.name == arm && m.arm != nullptr; });
-  if (wanted == all.end()) co_return Outcome::failure("robot " + parts.arm.robot().name() + " has no arm \"" + arm + "\"");
+  const auto wanted = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) {
+    return m.name == arm && m.arm != nullptr;
+  });
+  if (wanted == all.end())
+    co_return Outcome::failure("robot " + parts.arm.robot().name() + " has no arm \"" + arm + "\"");
   const auto index = static_cast<std::size_t>(wanted - all.begin());
   if (index == parts.arm.index()) co_return Outcome{};
-  const bool is_idle = co_await parts.waiting.until([&parts] { return parts.worker.is_idle(); }, parts.settings.request_timeout());
+  const bool is_idle = co_await parts.waiting.until([&parts] { return parts.worker.is_idle(); },
+                                                    parts.settings.request_timeout());
   if (!is_idle) co_return Outcome::failure("a computation for the other arm does not end");
   parts.arm.select(index);
   parts.held.set_grasp(std::nullopt);
   co_return Outcome{};
 }
 
-Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human, std::uint32_t max_grasps) {
+Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
+                              std::uint32_t max_grasps) {
   parts.action.phase = ActionPhase::choosing_grasp;
   GraspRequest request;
   parts.clients.grasp.open(request);
@@ -105,8 +112,10 @@ Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std
   }
   const GraspReply& reply = *parts.clients.grasp.reply();
   list.grasps = reply.grasps;
-  for (const auto& rejected : reply.rejected) parts.refuse("grasps: " + rejected.what, rejected.reason);
-  if (list.grasps.empty()) list.outcome = Outcome::failure("no grasp for " + object + ": " + reply.reason);
+  for (const auto& rejected : reply.rejected)
+    parts.refuse("grasps: " + rejected.what, rejected.reason);
+  if (list.grasps.empty())
+    list.outcome = Outcome::failure("no grasp for " + object + ": " + reply.reason);
   co_return list;
 }
 
@@ -127,7 +136,8 @@ MotionSpec reach_along(const Parts& parts, const std::string& object, const Gras
 
 Vector opening(const Parts& parts) {
   const auto& grasp = parts.held.grasp();
-  return grasp ? grasp->pregrasp_joints : RobotModel::part(parts.arm.robot().rest_posture(), parts.arm.fingers());
+  return grasp ? grasp->pregrasp_joints
+               : RobotModel::part(parts.arm.robot().rest_posture(), parts.arm.fingers());
 }
 
 bool is_held_by_robot(const Parts& parts, const std::string& object) {
@@ -135,7 +145,8 @@ bool is_held_by_robot(const Parts& parts, const std::string& object) {
   return seen != nullptr && seen->holder == Holder::robot;
 }
 
-Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human, const Grasp& grasp) {
+Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human,
+                           const Grasp& grasp) {
   parts.action.phase = ActionPhase::planning;
   const bool ready = co_await parts.link.await_permission();
   if (!ready) co_return parts.link.not_permitted();
@@ -148,7 +159,8 @@ Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::s
   const Stamp seen = parts.now.scene().stamp;
   const auto is_at_rest = [&parts, &object, seen] {
     const SceneObject* thing = parts.now.object(object);
-    return parts.now.scene().stamp != seen && thing != nullptr && thing->velocity.norm() < parts.settings.offer_still();
+    return parts.now.scene().stamp != seen && thing != nullptr &&
+           thing->velocity.norm() < parts.settings.offer_still();
   };
   co_await parts.waiting.until(is_at_rest, parts.settings.settle_time());
   const SceneObject* held = parts.now.object(object);
@@ -157,11 +169,13 @@ Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::s
   Outcome lifted = co_await lift(parts, object, for_human);
   if (lifted.end == MotionEnd::taken) co_return Outcome{};
   if (!lifted.good) co_return lifted;
-  const bool is_carried = co_await parts.waiting.until([&] { return is_held_by_robot(parts, object); }, parts.settings.settle_time());
+  const bool is_carried = co_await parts.waiting.until(
+      [&] { return is_held_by_robot(parts, object); }, parts.settings.settle_time());
   if (is_carried) co_return lifted;
   parts.held.release();
   co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, parts.settings.hand_timeout());
-  co_return Outcome::failure(object + " stayed behind when the hand went up", ActionFailure::left_behind);
+  co_return Outcome::failure(object + " stayed behind when the hand went up",
+                             ActionFailure::left_behind);
 }
 
 /// Returns the direction of the retreat in the world: back along the grasp, else off the object.
@@ -194,7 +208,8 @@ Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::str
     Pose T = T_now;
     T.translation() += ratio * parts.settings.retreat_distance() * away;
     const auto joints = parts.arm.reach(T);
-    const bool is_straight = joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() < kMaxStraightTurn;
+    const bool is_straight =
+        joints && (*joints - parts.arm.joints()).cwiseAbs().maxCoeff() < kMaxStraightTurn;
     if (!is_straight) continue;
     motion.goals = {*joints};
     Outcome outcome = co_await move(parts, motion);

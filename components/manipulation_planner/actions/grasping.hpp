@@ -19,15 +19,17 @@ struct GraspList {
 /// Uses another arm and its hand for what follows.
 Routine<Outcome> use_arm(Parts& parts, const std::string& arm);
 /// Asks for at most `max_grasps` grasps of an object. `for_human`: who will get it, empty: nobody.
-Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human, std::uint32_t max_grasps);
+Routine<GraspList> ask_grasps(Parts& parts, const std::string& object, const std::string& for_human,
+                              std::uint32_t max_grasps);
 /// Returns the grasp for where the object is now; nullopt: the arm does not reach it.
 std::optional<Grasp> grasp_now(const Parts& parts, const std::string& object, const Grasp& grasp);
 /// Returns the part of a reaching motion that is straight: from the stand-off to the grasp.
 MotionSpec reach_along(const Parts& parts, const std::string& object, const Grasp& grasp);
 /// Approaches an object, closes the hand and lifts the object. `for_human`: as of pick().
-Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human, const Grasp& grasp);
-/// Retreats the opened hand straight from what it has released. `person`: who may be touched, empty:
-/// nobody.
+Routine<Outcome> try_grasp(Parts& parts, const std::string& object, const std::string& for_human,
+                           const Grasp& grasp);
+/// Retreats the opened hand straight from what it has released. `person`: who may be touched,
+/// empty: nobody.
 Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::string& object);
 /// Returns the positions of the fingers that open the hand about what it holds.
 Vector opening(const Parts& parts);

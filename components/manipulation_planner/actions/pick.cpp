@@ -25,12 +25,14 @@ struct GivableGrasps {
 };
 
 /// Returns a job that searches one object transfer point for each grasp.
-std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> result, const std::vector<Grasp>& grasps,
-                                  const Person& person, const Pose& T_world_object) {
+std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> result,
+                                  const std::vector<Grasp>& grasps, const Person& person,
+                                  const Pose& T_world_object) {
   auto settings = parts.settings;
   settings.set_exchange_goals(1);
-  return [result = std::move(result), grasps, settings, person, T_world_object, robot = parts.arm.shared_robot(), scene = parts.now.scene(),
-          layers = parts.now.layers(), q = parts.now.set_point()] {
+  return [result = std::move(result), grasps, settings, person, T_world_object,
+          robot = parts.arm.shared_robot(), scene = parts.now.scene(), layers = parts.now.layers(),
+          q = parts.now.set_point()] {
     for (std::size_t i = 0; i < grasps.size(); ++i) {
       const Pose T_tool_object = grasps[i].T_object_hand.inverse();
       const std::vector<Vector3> barred = barred_directions(grasps[i]);
@@ -39,21 +41,22 @@ std::function<void()> givable_job(Parts& parts, std::shared_ptr<GivableGrasps> r
       if (search.poses.empty())
         result->refused.push_back({"grasp " + std::to_string(grasps[i].id), search.reason});
       else
-        result->givable.push_back({i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
+        result->givable.push_back(
+            {i, search.poses.front().cost + settings.w_grasp_rank() * static_cast<double>(i)});
     }
   };
 }
 
 /// Leaves the grasps by which the object can be given to the person, the best first; waits for a
 /// person out of reach until `deadline`.
-Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const std::string& object, const std::string& human,
-                                TimePoint deadline) {
+Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const std::string& object,
+                                const std::string& human, TimePoint deadline) {
   auto result = std::make_shared<GivableGrasps>();
   while (parts.now.person(human) != nullptr && parts.now.object(object) != nullptr) {
     parts.action.phase = ActionPhase::looking_ahead;
     *result = {};
-    const std::function<void()> job =
-        givable_job(parts, result, grasps, *parts.now.person(human), parts.now.object(object)->T_world_object);
+    const std::function<void()> job = givable_job(parts, result, grasps, *parts.now.person(human),
+                                                  parts.now.object(object)->T_world_object);
     Outcome worked = co_await parts.worker.run(job);
     if (!worked.good) co_return worked;
     if (!result->givable.empty() || parts.now.time() >= deadline) break;
@@ -63,11 +66,13 @@ Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const 
   for (const auto& refusal : result->refused) parts.refuse(refusal.what, refusal.reason);
   if (result->givable.empty()) {
     const bool is_unseen = result->refused.empty();
-    const std::string why = is_unseen ? ", who is out of sight" : ": " + result->refused.front().reason;
+    const std::string why =
+        is_unseen ? ", who is out of sight" : ": " + result->refused.front().reason;
     co_return Outcome::failure("no grasp of " + object + " can be handed to " + human + why,
                                is_unseen ? ActionFailure::not_visible : ActionFailure::other);
   }
-  std::stable_sort(result->givable.begin(), result->givable.end(), [](const Givable& a, const Givable& b) { return a.cost < b.cost; });
+  std::stable_sort(result->givable.begin(), result->givable.end(),
+                   [](const Givable& a, const Givable& b) { return a.cost < b.cost; });
   std::vector<Grasp> givable;
   for (const Givable& one : result->givable) givable.push_back(grasps[one.grasp]);
   grasps = std::move(givable);
@@ -75,8 +80,8 @@ Routine<Outcome> select_givable(Parts& parts, std::vector<Grasp>& grasps, const 
 }
 
 /// Tries grasps until one holds the object, or the object may have moved.
-Routine<Outcome> try_grasps(Parts& parts, const std::string& object, const std::string& for_human, const std::vector<Grasp>& grasps,
-                            Outcome last) {
+Routine<Outcome> try_grasps(Parts& parts, const std::string& object, const std::string& for_human,
+                            const std::vector<Grasp>& grasps, Outcome last) {
   int executed = 0;
   for (const Grasp& grasp : grasps) {
     last = co_await try_grasp(parts, object, for_human, grasp);
@@ -90,7 +95,8 @@ Routine<Outcome> try_grasps(Parts& parts, const std::string& object, const std::
 
 }  // namespace
 
-Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human, const std::string& onto) {
+Routine<Outcome> pick(Parts& parts, const std::string& object, const std::string& for_human,
+                      const std::string& onto) {
   if (parts.held.is_holding() && parts.held.id() == object) co_return Outcome{};
   parts.action.phase = ActionPhase::looking_for_object;
   const auto is_seen = [&] { return parts.now.object(object) != nullptr; };

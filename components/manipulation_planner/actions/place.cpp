@@ -22,25 +22,31 @@ bool is_person_near_hand(const Parts& parts) {
   const Vector3 p = parts.arm.T_world_tool().translation();
   const auto is_near = [&p](const BodyJoint& joint) {
     const Vector3 to_hand = p - joint.position;
-    const double left = to_hand.norm() - kMinPersonDistance, closing = joint.velocity.dot(to_hand.normalized());
+    const double left = to_hand.norm() - kMinPersonDistance,
+                 closing = joint.velocity.dot(to_hand.normalized());
     return left < 0 || (closing > 0 && left < kApproachTime * closing);
   };
   const auto& people = parts.now.people().people;
-  return std::any_of(people.begin(), people.end(),
-                     [&](const Person& person) { return std::any_of(person.joints.begin(), person.joints.end(), is_near); });
+  return std::any_of(people.begin(), people.end(), [&](const Person& person) {
+    return std::any_of(person.joints.begin(), person.joints.end(), is_near);
+  });
 }
 
 }  // namespace
 
-Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object, const std::string& onto) {
+Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
+                                   const std::string& onto) {
   parts.destinations.clear();
   GraspList list = co_await ask_grasps(parts, object, "", parts.settings.max_grasps_onto());
-  if (!list.outcome.good || parts.now.surface(onto) == nullptr || parts.now.object(object) == nullptr) co_return list;
+  if (!list.outcome.good || parts.now.surface(onto) == nullptr ||
+      parts.now.object(object) == nullptr)
+    co_return list;
   parts.action.phase = ActionPhase::choosing_place;
   const DestinationLimits limits{parts.settings.max_grasps(), kMaxPlaces};
   const ServingGrasps found = co_await find_destinations(parts, object, onto, list.grasps, limits);
   if (!found.outcome.good || found.at.empty()) {
-    const std::string none = "no grasp of " + object + " serves on " + onto + " too: " + found.objections;
+    const std::string none =
+        "no grasp of " + object + " serves on " + onto + " too: " + found.objections;
     parts.refuse("place", found.outcome.good ? none : found.outcome.reason);
     co_return list;
   }
@@ -69,22 +75,27 @@ Routine<Outcome> lower(Parts& parts, const PlacingConfiguration& place) {
 }
 
 Routine<Outcome> place(Parts& parts, const std::string& object, const std::string& onto) {
-  if (!parts.held.is_holding() || parts.held.id() != object) co_return Outcome::failure("the hand does not hold " + object);
+  if (!parts.held.is_holding() || parts.held.id() != object)
+    co_return Outcome::failure("the hand does not hold " + object);
   const SceneBox* surface = parts.now.surface(onto);
   if (surface == nullptr) co_return Outcome::failure("there is no surface called " + onto);
-  if (parts.now.model_of(object) == nullptr) co_return Outcome::failure("object " + object + " has no model");
+  if (parts.now.model_of(object) == nullptr)
+    co_return Outcome::failure("object " + object + " has no model");
   parts.action.phase = ActionPhase::choosing_place;
   const Vector open = opening(parts);
   FoundPlaces found = co_await find_places(parts, *surface, open);
   if (!found.outcome.good) co_return found.outcome;
-  if (found.configurations.empty()) co_return Outcome::failure("no free place on " + onto + " within the arm's reach: " + found.objections);
+  if (found.configurations.empty())
+    co_return Outcome::failure("no free place on " + onto +
+                               " within the arm's reach: " + found.objections);
   Outcome last;
   for (const PlacingConfiguration& configuration : found.configurations) {
     last = co_await lower(parts, configuration);
     if (!last.good) continue;
     parts.destinations.clear();
     co_await parts.waiting.until([&parts] { return !is_person_near_hand(parts); }, kPersonTimeout);
-    HandResult released = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+    HandResult released =
+        co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
     if (!released.outcome.good) co_return released.outcome;
     parts.held.release();
     const std::string nobody;

@@ -11,7 +11,8 @@ namespace handsel::manipulation_planner {
 // References must outlive the routines.
 /// Asks for grasps that serve at a free place of the surface too, which place() then tries first;
 /// if there is none, for any.
-Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object, const std::string& surface);
+Routine<GraspList> ask_grasps_onto(Parts& parts, const std::string& object,
+                                   const std::string& surface);
 /// Moves what is held to above its place and down to it.
 Routine<Outcome> lower(Parts& parts, const PlacingConfiguration& place);
 

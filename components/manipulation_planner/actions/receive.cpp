@@ -12,20 +12,22 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kOfferTime = 0.25;      // for which an offer must last [s]
-constexpr double kLateOfferTime = 1.0;   // for which an object before the body must be at rest [s]
-constexpr double kLongWait = 3.0;        // without an offer, before such an object counts as offered [s]
-constexpr double kObserveAgain = 0.02;   // [s]
-constexpr double kMaxShift = 0.03;       // of an object, after which its grasps are outdated [m]
-constexpr double kRetryPeriod = 1.0;     // before an offer out of reach is tried again [s]
-constexpr double kSameDistance = 0.5;    // distances of the arm's farthest axis that count as equal [rad]
+constexpr double kOfferTime = 0.25;     // for which an offer must last [s]
+constexpr double kLateOfferTime = 1.0;  // for which an object before the body must be at rest [s]
+constexpr double kLongWait = 3.0;  // without an offer, before such an object counts as offered [s]
+constexpr double kObserveAgain = 0.02;  // [s]
+constexpr double kMaxShift = 0.03;      // of an object, after which its grasps are outdated [m]
+constexpr double kRetryPeriod = 1.0;    // before an offer out of reach is tried again [s]
+constexpr double kSameDistance =
+    0.5;  // distances of the arm's farthest axis that count as equal [rad]
 constexpr double kMinEpsilon = 0.03;     // of a grasp that does not slip as the object is carried
 constexpr double kWeakPenalty = 1.5;     // distance that avoids a grasp below kMinEpsilon [rad]
 constexpr double kPlacingPenalty = 2.0;  // distance that avoids a grasp without destination [rad]
 constexpr std::size_t kMaxPlaces = 8;    // of a surface that are tried: the giver waits
 
 /// Waits for an offer and clears the offer area if none is made; nullopt: none until `deadline`.
-Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wanted, const std::string& giver, TimePoint deadline) {
+Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wanted,
+                                          const std::string& giver, TimePoint deadline) {
   std::optional<Offer> offer;
   bool has_cleared = false;
   parts.offers.clear();
@@ -34,14 +36,17 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wante
   const TimePoint began = parts.now.time();
   for (TimePoint since = began; parts.now.time() < deadline;) {
     parts.action.phase = ActionPhase::watching_for_offer;
-    const std::optional<Offer> seen = parts.offers.find(wanted, giver, parts.arm.T_world_tool().translation());
+    const std::optional<Offer> seen =
+        parts.offers.find(wanted, giver, parts.arm.T_world_tool().translation());
     if (!seen || seen != offer) since = parts.now.time();
     offer = seen;
     const double lasted = to_seconds(parts.now.time() - since);
-    if (offer && lasted >= (parts.offers.waited_long() ? kLateOfferTime : kOfferTime)) co_return offer;
+    if (offer && lasted >= (parts.offers.waited_long() ? kLateOfferTime : kOfferTime))
+      co_return offer;
     const double waited = to_seconds(parts.now.time() - began);
     parts.offers.set_waited_long(waited > kLongWait);
-    if (!offer && !has_cleared && waited > kLongWait + kLateOfferTime && parts.area.is_occupied(giver)) {
+    if (!offer && !has_cleared && waited > kLongWait + kLateOfferTime &&
+        parts.area.is_occupied(giver)) {
       has_cleared = true;
       Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);
       if (!cleared.good) parts.refuse("making room", cleared.reason);
@@ -60,30 +65,36 @@ Routine<GraspList> ask_clear_grasps(Parts& parts, const Offer& offer) {
   co_return list;
 }
 
-/// Sorts grasps: the arm's shortest motion first, since a giver does not wait long, unless the grasp
-/// is weak or the object cannot be put down by it. Leaves the best.
-Routine<Outcome> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto, std::vector<Grasp>& grasps) {
+/// Sorts grasps: the arm's shortest motion first, since a giver does not wait long, unless the
+/// grasp is weak or the object cannot be put down by it. Leaves the best.
+Routine<Outcome> rank_grasps(Parts& parts, const Offer& offer, const std::string& onto,
+                             std::vector<Grasp>& grasps) {
   const DestinationLimits limits{grasps.size(), kMaxPlaces};
   const ServingGrasps later = co_await find_destinations(parts, offer.object, onto, grasps, limits);
   for (const auto& [grasp, destination] : later.at) parts.destinations.add(destination);
   if (later.at.empty() && !later.objections.empty())
-    parts.refuse("place", "no grasp of " + offer.object + " as it is held serves for putting it down: " + later.objections);
+    parts.refuse("place", "no grasp of " + offer.object +
+                              " as it is held serves for putting it down: " + later.objections);
   const auto rank = [&parts](const Grasp& g) {
     const bool serves = parts.destinations.has(g.id);
-    const double penalty = (g.epsilon < kMinEpsilon ? kWeakPenalty : 0.0) + (serves ? 0.0 : kPlacingPenalty);
+    const double penalty =
+        (g.epsilon < kMinEpsilon ? kWeakPenalty : 0.0) + (serves ? 0.0 : kPlacingPenalty);
     const double distance = (g.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
     return std::floor((distance + penalty) / kSameDistance);
   };
-  std::stable_sort(grasps.begin(), grasps.end(), [&rank](const Grasp& a, const Grasp& b) { return rank(a) < rank(b); });
+  std::stable_sort(grasps.begin(), grasps.end(),
+                   [&rank](const Grasp& a, const Grasp& b) { return rank(a) < rank(b); });
   grasps.resize(std::min<std::size_t>(grasps.size(), parts.settings.max_grasps()));
   co_return Outcome{};
 }
 
 /// Tries grasps until one takes the object or the offer ends. `failed`: ids of grasps that did not.
-Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first, const std::vector<Grasp>& grasps, std::set<std::uint64_t>& failed,
+Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first,
+                            const std::vector<Grasp>& grasps, std::set<std::uint64_t>& failed,
                             Outcome last) {
   TakeAttempt attempt = first;
-  const bool all_failed = std::all_of(grasps.begin(), grasps.end(), [&](const Grasp& g) { return failed.count(g.id) > 0; });
+  const bool all_failed = std::all_of(grasps.begin(), grasps.end(),
+                                      [&](const Grasp& g) { return failed.count(g.id) > 0; });
   if (all_failed) failed.clear();
   for (const Grasp& grasp : grasps) {
     if (failed.count(grasp.id) > 0) continue;
@@ -101,26 +112,30 @@ Routine<Outcome> try_grasps(Parts& parts, const TakeAttempt& first, const std::v
 
 /// Waits for another offer after no grasp of this one is reachable: the giver often offers
 /// elsewhere, nearer, or farther out where there is space.
-Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vector3& p_asked, const Outcome& why, Outcome last) {
+Routine<Outcome> await_other_offer(Parts& parts, const Offer& offer, const Vector3& p_asked,
+                                   const Outcome& why, Outcome last) {
   const auto has_moved = [&] {
     const SceneObject* held = parts.now.object(offer.object);
     return held == nullptr || (held->T_world_object.translation() - p_asked).norm() > kMaxShift;
   };
   if (has_moved()) co_return last;
   if (why.reason != last.reason) parts.refuse("offer", why.reason);
-  if (parts.area.is_occupied(offer.giver)) co_await clear_offer_area(parts, offer.giver, ClearUntil::clear_offer);
+  if (parts.area.is_occupied(offer.giver))
+    co_await clear_offer_area(parts, offer.giver, ClearUntil::clear_offer);
   co_await parts.waiting.until(has_moved, kRetryPeriod);
   co_return why;
 }
 
 Outcome nothing_offered(const std::string& wanted, const std::string& giver, double timeout) {
-  return Outcome::failure((giver.empty() ? "nobody offers " : giver + " does not offer ") + (wanted.empty() ? "anything" : wanted) +
-                          " within " + std::to_string(static_cast<int>(timeout)) + " s");
+  return Outcome::failure((giver.empty() ? "nobody offers " : giver + " does not offer ") +
+                          (wanted.empty() ? "anything" : wanted) + " within " +
+                          std::to_string(static_cast<int>(timeout)) + " s");
 }
 
 }  // namespace
 
-Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver, const std::string& onto) {
+Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::string& giver,
+                         const std::string& onto) {
   if (parts.held.is_holding() && (wanted.empty() || parts.held.id() == wanted)) co_return Outcome{};
   const double timeout = parts.settings.receive_timeout();
   Outcome last = nothing_offered(wanted, giver, timeout);
@@ -148,7 +163,8 @@ Routine<Outcome> receive(Parts& parts, const std::string& wanted, const std::str
     // Who has withdrawn it offers again where the hand leaves space; and from farther back other
     // paths lead to what is still offered.
     const bool again = attempt < parts.settings.receive_attempts() &&
-                       (parts.offers.is_still_offered() ? !last.target_moved() : parts.area.is_occupied(offer->giver));
+                       (parts.offers.is_still_offered() ? !last.target_moved()
+                                                        : parts.area.is_occupied(offer->giver));
     if (again) co_await clear_offer_area(parts, offer->giver, ClearUntil::clear_offer);
     deadline = parts.now.time() + from_seconds(timeout);
   }

@@ -12,10 +12,11 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr int kMaxCloseTries = 2;                         // of a hand on what the other one holds
-constexpr double kAsideDistances[] = {0.15, 0.25, 0.35};  // of what an arm draws to its own side [m]
-constexpr double kMeetingOffsets[] = {0.0, 0.02, 0.04};   // of the place where the hands meet [m]
-constexpr double kAboveRatios[] = {1.0, 0.75};            // of the lift height
+constexpr int kMaxCloseTries = 2;  // of a hand on what the other one holds
+constexpr double kAsideDistances[] = {0.15, 0.25,
+                                      0.35};             // of what an arm draws to its own side [m]
+constexpr double kMeetingOffsets[] = {0.0, 0.02, 0.04};  // of the place where the hands meet [m]
+constexpr double kAboveRatios[] = {1.0, 0.75};           // of the lift height
 
 /// Moves to what the other hand holds and closes on it; where that does not hold, the hand opens
 /// again and moves off.
@@ -33,7 +34,8 @@ Routine<Outcome> take_over(Parts& parts, const std::string& object, const Grasp&
   done = co_await move(parts, reach);
   if (!done.good) co_return done;
   parts.action.phase = ActionPhase::grasp;
-  HandResult closed = co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort);
+  HandResult closed =
+      co_await parts.hand.run(HandAction::grasp, grasp.hand_joints, timeout, &grasp.hand_effort);
   if (closed.outcome.good && closed.state == HandState::grasped) co_return Outcome{};
   co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
   MotionSpec back = reach;
@@ -51,13 +53,16 @@ Routine<Outcome> draw_aside(Parts& parts) {
   const Pose T_now = parts.arm.T_world_tool();
   const Pose& T_world_base = parts.now.T_world_base();
   const Eigen::Matrix3d base = T_world_base.linear();
-  const double side = base.col(1).dot(parts.arm.p_world_shoulder() - T_world_base.translation()) < 0 ? -1 : 1;
-  const std::vector<Vector3> directions{{0, 1, 0.3}, {0, 1, 0}, {0.5, 1, 0}, {-0.5, 1, 0}, {0, 0.3, 1}, {0, 1, -0.5}, {0.7, 0, 0.7}};
+  const double side =
+      base.col(1).dot(parts.arm.p_world_shoulder() - T_world_base.translation()) < 0 ? -1 : 1;
+  const std::vector<Vector3> directions{{0, 1, 0.3}, {0, 1, 0},    {0.5, 1, 0},  {-0.5, 1, 0},
+                                        {0, 0.3, 1}, {0, 1, -0.5}, {0.7, 0, 0.7}};
   for (const Vector3& direction : directions) {
     std::optional<Vector> farthest;
     for (const double distance : kAsideDistances) {
       Pose T = T_now;
-      T.translation() += distance * (base * Vector3(direction.x(), side * direction.y(), direction.z()));
+      T.translation() +=
+          distance * (base * Vector3(direction.x(), side * direction.y(), direction.z()));
       if (auto joints = parts.arm.reach(T)) farthest = std::move(joints);
     }
     if (!farthest) continue;
@@ -78,23 +83,26 @@ Routine<Outcome> draw_aside(Parts& parts) {
 /// arms reach it.
 std::optional<Vector> meeting_configuration(const Parts& parts, const RegraspStep& step) {
   const auto& all = parts.arm.manipulators();
-  const auto taker = std::find_if(all.begin(), all.end(), [&](const Manipulator& m) { return m.name == step.to; });
+  const auto taker =
+      std::find_if(all.begin(), all.end(), [&](const Manipulator& m) { return m.name == step.to; });
   if (taker == all.end() || taker->arm == nullptr) return std::nullopt;
   const RobotModel& robot = parts.arm.robot();
   const Pose T_base_world = parts.now.T_world_base().inverse();
-  const Pose T_grasp_standoff = robot.link_pose(step.q, taker->palm).inverse() * robot.link_pose(step.before, taker->palm);
+  const Pose T_grasp_standoff =
+      robot.link_pose(step.q, taker->palm).inverse() * robot.link_pose(step.before, taker->palm);
   IkOptions near_by;
   near_by.restarts = 0;
   for (const double off : kMeetingOffsets) {
-    for (const Vector3& direction :
-         {Vector3(0, 0, -1), Vector3(-1, 0, 0), Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0)}) {
+    for (const Vector3& direction : {Vector3(0, 0, -1), Vector3(-1, 0, 0), Vector3(0, 0, 1),
+                                     Vector3(1, 0, 0), Vector3(0, 1, 0), Vector3(0, -1, 0)}) {
       Pose T_base_object = T_base_world * step.T_world_object;
       T_base_object.translation() += off * direction;
       const Pose T_base_tool = T_base_object * parts.held.attachment().T_tool_object.inverse();
       auto own = robot.inverse(parts.arm.group(), T_base_tool, step.q, near_by);
       const Pose T_base_hand = T_base_object * step.grasp.T_object_hand;
-      const bool both = own && robot.inverse(*taker->arm, T_base_hand, step.q, near_by) &&
-                        robot.inverse(*taker->arm, T_base_hand * T_grasp_standoff, step.before, near_by);
+      const bool both =
+          own && robot.inverse(*taker->arm, T_base_hand, step.q, near_by) &&
+          robot.inverse(*taker->arm, T_base_hand * T_grasp_standoff, step.before, near_by);
       if (both) return own;
       if (off == 0) break;
     }
@@ -103,12 +111,15 @@ std::optional<Vector> meeting_configuration(const Parts& parts, const RegraspSte
 }
 
 /// Closes the other hand on what the first one holds; `grasp` is how.
-Routine<Outcome> close_other_hand(Parts& parts, const std::string& object, const RegraspStep& step, std::optional<Grasp>& grasp) {
+Routine<Outcome> close_other_hand(Parts& parts, const std::string& object, const RegraspStep& step,
+                                  std::optional<Grasp>& grasp) {
   Outcome done = co_await use_arm(parts, step.to);
   if (!done.good) co_return done;
   for (int tries = 0; tries < kMaxCloseTries; ++tries) {
     grasp = grasp_now(parts, object, step.grasp);
-    if (!grasp) co_return Outcome::failure("the other arm does not reach " + object + " where the first holds it");
+    if (!grasp)
+      co_return Outcome::failure("the other arm does not reach " + object +
+                                 " where the first holds it");
     done = co_await take_over(parts, object, *grasp);
     if (done.good) break;
     parts.refuse("grasp by the other hand", done.reason);
@@ -119,7 +130,9 @@ Routine<Outcome> close_other_hand(Parts& parts, const std::string& object, const
 /// Passes what one hand holds to the other one.
 Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep& step) {
   const std::optional<Vector> meeting = meeting_configuration(parts, step);
-  if (!meeting) co_return Outcome::failure("the arms do not reach the place where " + object + " is to change hands");
+  if (!meeting)
+    co_return Outcome::failure("the arms do not reach the place where " + object +
+                               " is to change hands");
   MotionSpec bring;
   bring.phase = ActionPhase::carry_to_other_hand;
   bring.goals = {*meeting};
@@ -143,7 +156,8 @@ Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep
   done = co_await use_arm(parts, step.to);
   if (!done.good) co_return done;
   parts.held.set_grasp(grasp);
-  const bool taken = co_await parts.waiting.until([&] { return parts.held.is_held_by_hand(object); }, settle_time);
+  const bool taken =
+      co_await parts.waiting.until([&] { return parts.held.is_held_by_hand(object); }, settle_time);
   if (!taken) {
     parts.held.release();
     co_return Outcome::failure("the other hand does not feel the load of " + object);
@@ -154,7 +168,8 @@ Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep
 
 /// Puts what is held down where the step says.
 Routine<Outcome> put_down(Parts& parts, const std::string& object, const RegraspStep& step) {
-  if (!parts.held.is_held_by_hand(object)) co_return Outcome::failure("the hand does not hold " + object);
+  if (!parts.held.is_held_by_hand(object))
+    co_return Outcome::failure("the hand does not hold " + object);
   const RobotModel& robot = parts.arm.robot();
   const Group& arm = parts.arm.group();
   const Pose T_base_world = parts.now.T_world_base().inverse();
@@ -163,8 +178,10 @@ Routine<Outcome> put_down(Parts& parts, const std::string& object, const Regrasp
   options.restarts = 2;
   Pose T_world_object = step.T_world_object;
   T_world_object.translation().z() += kAbovePlace;
-  const auto at = robot.inverse(arm, T_base_world * T_world_object * T_object_tool, step.q, options);
-  if (!at) co_return Outcome::failure("the arm does not reach the place where " + object + " is to stand");
+  const auto at =
+      robot.inverse(arm, T_base_world * T_world_object * T_object_tool, step.q, options);
+  if (!at)
+    co_return Outcome::failure("the arm does not reach the place where " + object + " is to stand");
   std::optional<Vector> above;
   for (const double ratio : kAboveRatios) {
     Pose T_above = T_world_object;
@@ -172,7 +189,9 @@ Routine<Outcome> put_down(Parts& parts, const std::string& object, const Regrasp
     const Vector near = RobotModel::with(step.q, arm, *at);
     if (!above) above = robot.inverse(arm, T_base_world * T_above * T_object_tool, near, options);
   }
-  if (!above) co_return Outcome::failure("the arm does not reach above the place where " + object + " is to stand");
+  if (!above)
+    co_return Outcome::failure("the arm does not reach above the place where " + object +
+                               " is to stand");
   PlacingConfiguration configuration;
   configuration.T_world_object = T_world_object;
   configuration.arm_above = *above;
@@ -184,7 +203,8 @@ Routine<Outcome> put_down(Parts& parts, const std::string& object, const Regrasp
 }
 
 /// Puts what is held down; the hand that passed the object on may be in the way.
-Routine<Outcome> put_down_or_clear(Parts& parts, const std::string& object, const RegraspStep& step) {
+Routine<Outcome> put_down_or_clear(Parts& parts, const std::string& object,
+                                   const RegraspStep& step) {
   Outcome done = co_await put_down(parts, object, step);
   if (!done.good && parts.held.is_held_by_hand(object)) {
     parts.refuse("put down", done.reason);
@@ -195,7 +215,8 @@ Routine<Outcome> put_down_or_clear(Parts& parts, const std::string& object, cons
 }
 
 /// Executes one step of a plan. `is_first_pass`: nothing has to be drawn aside.
-Routine<Outcome> execute_step(Parts& parts, const std::string& object, const RegraspStep& step, bool is_first_pass) {
+Routine<Outcome> execute_step(Parts& parts, const std::string& object, const RegraspStep& step,
+                              bool is_first_pass) {
   Outcome done = co_await use_arm(parts, step.kind == RegraspKind::pick ? step.to : step.from);
   if (!done.good) co_return done;
   switch (step.kind) {
@@ -224,8 +245,9 @@ Routine<Outcome> regrasp(Parts& parts, const ActionGoal& goal) {
   Outcome ready = co_await await_put_down(parts, object);
   if (!ready.good) co_return ready;
   TwoHandPlan plan;
-  plan.outcome = Outcome::failure(goal.surface.empty() ? "it was not said where " + object + " is to stand"
-                                                       : "there is no free place on a surface called " + goal.surface);
+  plan.outcome = Outcome::failure(
+      goal.surface.empty() ? "it was not said where " + object + " is to stand"
+                           : "there is no free place on a surface called " + goal.surface);
   const std::vector<Pose> places = places_for(parts, goal, *parts.now.object(object));
   for (const Pose& place : places) {
     plan = co_await ask_regrasp(parts, object, place, false);

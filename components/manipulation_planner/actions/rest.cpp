@@ -7,7 +7,8 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kAtRest = 0.02;  // an arm this near its rest configuration is there, max norm [rad]
+constexpr double kAtRest =
+    0.02;  // an arm this near its rest configuration is there, max norm [rad]
 
 }  // namespace
 
@@ -19,7 +20,8 @@ Routine<Outcome> rest(Parts& parts) {
   motion.speed = parts.held.is_holding() ? parts.settings.carry_speed() : 1.0;
   const Vector q = RobotModel::with(parts.arm.configuration(), arm, at_rest);
   const Person* person = parts.now.person("");
-  if (person != nullptr && parts.area.is_occupied(*person, q)) motion.goals = parts.area.clear_configurations(*person);
+  if (person != nullptr && parts.area.is_occupied(*person, q))
+    motion.goals = parts.area.clear_configurations(*person);
   if (motion.goals.empty()) motion.goals = {at_rest};
   Outcome outcome = co_await move(parts, motion);
   co_return outcome;
@@ -29,7 +31,8 @@ Routine<Outcome> rest_others(Parts& parts) {
   const std::string used = parts.arm.group().name;
   for (const Manipulator& other : parts.arm.manipulators()) {
     if (other.arm == nullptr || other.name == used) continue;
-    const Vector off = RobotModel::part(parts.now.set_point() - parts.arm.robot().rest_posture(), *other.arm);
+    const Vector off =
+        RobotModel::part(parts.now.set_point() - parts.arm.robot().rest_posture(), *other.arm);
     if (off.cwiseAbs().maxCoeff() < kAtRest) continue;
     const std::optional<Grasp> grasp = parts.held.grasp();
     Outcome done = co_await use_arm(parts, other.name);

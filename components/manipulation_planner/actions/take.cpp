@@ -11,20 +11,20 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kObserveAgain = 0.02;           // [s]
-constexpr double kMaxStandoffError = 0.02;       // of the hand, where the straight motion in begins [m]
-constexpr double kReleaseTime = 0.2;             // with the load, before what was taken is drawn away [s]
-constexpr double kMaxInHandError = 0.05;         // of an object that was put into the hand [m]
-constexpr double kNear = 0.5;                    // to giver or object: the arm retreats straight first [m]
-constexpr double kMaxDetour = 1.3;               // length of a path over that of the straight one
-constexpr double kDetourPerAttempt = 1.0;        // length that each attempt adds [rad, sum of max norms]
+constexpr double kObserveAgain = 0.02;      // [s]
+constexpr double kMaxStandoffError = 0.02;  // of the hand, where the straight motion in begins [m]
+constexpr double kReleaseTime = 0.2;      // with the load, before what was taken is drawn away [s]
+constexpr double kMaxInHandError = 0.05;  // of an object that was put into the hand [m]
+constexpr double kNear = 0.5;             // to giver or object: the arm retreats straight first [m]
+constexpr double kMaxDetour = 1.3;        // length of a path over that of the straight one
+constexpr double kDetourPerAttempt = 1.0;  // length that each attempt adds [rad, sum of max norms]
 constexpr std::uint32_t kMaxDirectAttempts = 2;  // after which a path may have any length
-constexpr double kApproachTimeout = 10;          // people leave so little space that the arm creeps [s]
-constexpr double kReachTimeout = 5;              // likewise on the straight motion in [s]
-constexpr int kMaxAims = 6;                      // times the hand follows before the offer is awaited anew
-constexpr double kMinHandClearance = 0.01;       // to the giver's hand, closing included [m]
-constexpr int kClearanceSteps = 6;               // checks of the straight motion in, and of the closing
-constexpr double kStepBack = 0.15;               // before an approaching giver [m]
+constexpr double kApproachTimeout = 10;  // people leave so little space that the arm creeps [s]
+constexpr double kReachTimeout = 5;      // likewise on the straight motion in [s]
+constexpr int kMaxAims = 6;              // times the hand follows before the offer is awaited anew
+constexpr double kMinHandClearance = 0.01;  // to the giver's hand, closing included [m]
+constexpr int kClearanceSteps = 6;          // checks of the straight motion in, and of the closing
+constexpr double kStepBack = 0.15;          // before an approaching giver [m]
 
 /// How far an attempt has come.
 enum class Progress : std::uint8_t {
@@ -47,8 +47,10 @@ bool is_offered(const Parts& parts, const Offer& offer) {
 bool is_put_into_hand(const Parts& parts, const TakeAttempt& take) {
   const SceneObject* given = parts.now.object(take.offer.object);
   if (given == nullptr || given->holder != Holder::robot) return false;
-  const Vector3 p_tool_object = parts.arm.T_world_tool().inverse() * given->T_world_object.translation();
-  return (p_tool_object - take.chosen.T_object_hand.inverse().translation()).norm() < kMaxInHandError;
+  const Vector3 p_tool_object =
+      parts.arm.T_world_tool().inverse() * given->T_world_object.translation();
+  return (p_tool_object - take.chosen.T_object_hand.inverse().translation()).norm() <
+         kMaxInHandError;
 }
 
 Outcome moved_away(const std::string& why) {
@@ -57,7 +59,9 @@ Outcome moved_away(const std::string& why) {
   return outcome;
 }
 
-Outcome out_of_reach() { return Outcome::failure("no posture of the arm reaches it where it is held now"); }
+Outcome out_of_reach() {
+  return Outcome::failure("no posture of the arm reaches it where it is held now");
+}
 
 /// Returns the motion to the stand-off of a grasp, which follows the object.
 MotionSpec approach_to(const Parts& parts, const TakeAttempt& take, const Grasp& grasp) {
@@ -66,7 +70,8 @@ MotionSpec approach_to(const Parts& parts, const TakeAttempt& take, const Grasp&
   approach.phase = ActionPhase::approach;
   approach.goals = {grasp.approach_joints};
   approach.tolerated = {take.offer.giver};
-  approach.object = ObjectTarget{object, parts.now.object(object)->T_world_object.translation(), parts.settings.approach_slack(), grasp};
+  approach.object = ObjectTarget{object, parts.now.object(object)->T_world_object.translation(),
+                                 parts.settings.approach_slack(), grasp};
   approach.timeout = kApproachTimeout;
   if (take.attempt > kMaxDirectAttempts) return approach;
   const double straight = (grasp.approach_joints - parts.arm.joints()).cwiseAbs().maxCoeff();
@@ -104,7 +109,8 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
 }
 
 /// Opens the hand and moves it back to the stand-off; returns `why`.
-Routine<Outcome> back_off(Parts& parts, const Offer& offer, const Grasp& grasp, const Outcome& why) {
+Routine<Outcome> back_off(Parts& parts, const Offer& offer, const Grasp& grasp,
+                          const Outcome& why) {
   parts.action.phase = ActionPhase::backing_off;
   const double timeout = parts.settings.hand_timeout();
   HandResult opened = co_await parts.hand.run(HandAction::move, grasp.pregrasp_joints, timeout);
@@ -129,8 +135,10 @@ Routine<Outcome> retreat_from_offer(Parts& parts, const Offer& offer) {
   const Person* giver = parts.now.person(offer.giver);
   const auto is_far = [&p_hand](const Vector3& p) { return (p - p_hand).norm() > kNear; };
   const auto is_joint_far = [&is_far](const BodyJoint& joint) { return is_far(joint.position); };
-  const bool is_clear = giver == nullptr || std::all_of(giver->joints.begin(), giver->joints.end(), is_joint_far);
-  if (held == nullptr || (is_clear && is_far(held->T_world_object.translation()))) co_return Outcome{};
+  const bool is_clear =
+      giver == nullptr || std::all_of(giver->joints.begin(), giver->joints.end(), is_joint_far);
+  if (held == nullptr || (is_clear && is_far(held->T_world_object.translation())))
+    co_return Outcome{};
   MotionSpec next;
   next.goals = {RobotModel::part(parts.arm.robot().rest_posture(), parts.arm.group())};
   next.allowed = {offer.object};
@@ -148,17 +156,22 @@ Routine<Step> approach_offer(Parts& parts, const TakeAttempt& take, std::optiona
   if (!moved.good && !moved.target_moved()) co_return Step{Progress::failed, moved};
   if (moved.target_moved()) parts.offers.set_waited_long(false);
   if (moved.end == MotionEnd::giver_approached) co_await step_back(parts, take.offer);
-  const auto is_decided = [&] { return is_offered(parts, take.offer) || is_put_into_hand(parts, take) || parts.offers.is_withdrawn(); };
+  const auto is_decided = [&] {
+    return is_offered(parts, take.offer) || is_put_into_hand(parts, take) ||
+           parts.offers.is_withdrawn();
+  };
   co_await parts.waiting.until(is_decided, parts.settings.sight_timeout());
   if (is_put_into_hand(parts, take)) co_return Step{Progress::in_hand, moved};
-  if (!is_offered(parts, take.offer)) co_return Step{Progress::failed, moved_away(giver + " has drawn " + object + " back")};
+  if (!is_offered(parts, take.offer))
+    co_return Step{Progress::failed, moved_away(giver + " has drawn " + object + " back")};
   grasp = grasp_now(parts, object, take.chosen);
   if (!grasp) co_return Step{Progress::failed, out_of_reach()};
   const Vector q = parts.arm.set_point_with(grasp->approach_joints);
   const RobotModel& robot = parts.arm.robot();
   const Pose T_standoff = parts.now.T_world_base() * robot.link_pose(q, robot.tool_link());
   const double error = (T_standoff.translation() - parts.arm.T_world_tool().translation()).norm();
-  co_return Step{error > kMaxStandoffError ? Progress::again : Progress::at_standoff, moved_away(object + " is moved about")};
+  co_return Step{error > kMaxStandoffError ? Progress::again : Progress::at_standoff,
+                 moved_away(object + " is moved about")};
 }
 
 /// Moves straight in from the stand-off.
@@ -184,7 +197,8 @@ Routine<Step> reach_offer(Parts& parts, const TakeAttempt& take, std::optional<G
   done = co_await move(parts, reach);
   if (done.good) co_return Step{Progress::in_hand, done};
   done = co_await back_off(parts, take.offer, *grasp, done);
-  if (!done.target_moved() || !is_offered(parts, take.offer)) co_return Step{Progress::failed, done};
+  if (!done.target_moved() || !is_offered(parts, take.offer))
+    co_return Step{Progress::failed, done};
   grasp = grasp_now(parts, object, take.chosen);
   co_return Step{grasp ? Progress::again : Progress::failed, done};
 }
@@ -195,11 +209,14 @@ Routine<Outcome> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
   parts.offers.set_hand_at_offer(true);
   const bool is_laid_in = is_put_into_hand(parts, take);
   const Group* present = is_laid_in ? &parts.arm.robot().require_group("hand") : nullptr;
-  const Vector closing = is_laid_in ? RobotModel::part(parts.now.set_point(), *present) : grasp.hand_joints;
+  const Vector closing =
+      is_laid_in ? RobotModel::part(parts.now.set_point(), *present) : grasp.hand_joints;
   const double timeout = parts.settings.hand_timeout();
-  HandResult closed = co_await parts.hand.run(HandAction::grasp, closing, timeout, &grasp.hand_effort);
+  HandResult closed =
+      co_await parts.hand.run(HandAction::grasp, closing, timeout, &grasp.hand_effort);
   if (!closed.outcome.good) co_return closed.outcome;
-  if (closed.state != HandState::grasped && !is_laid_in) co_return Outcome::failure("the hand did not get hold of it");
+  if (closed.state != HandState::grasped && !is_laid_in)
+    co_return Outcome::failure("the hand did not get hold of it");
   co_return Outcome{};
 }
 
@@ -207,20 +224,25 @@ Routine<Outcome> close_on_offer(Parts& parts, const TakeAttempt& take, const Gra
 /// too: it is the robot's when that stays and the giver's hand has gone.
 Routine<Outcome> await_release(Parts& parts, const Offer& offer) {
   parts.action.phase = ActionPhase::waiting_for_release;
-  const auto is_given = [&] { return is_held_by_robot(parts, offer.object) && !parts.held.is_at_hand_of(offer.giver, offer.object); };
+  const auto is_given = [&] {
+    return is_held_by_robot(parts, offer.object) &&
+           !parts.held.is_at_hand_of(offer.giver, offer.object);
+  };
   const TimePoint deadline = parts.now.time() + from_seconds(parts.settings.let_go_timeout());
   TimePoint since = parts.now.time();
   while (parts.now.time() < deadline && to_seconds(parts.now.time() - since) < kReleaseTime) {
     if (!is_given()) since = parts.now.time();
     co_await parts.waiting.pause(kObserveAgain);
   }
-  co_return is_given() ? Outcome{} : Outcome::failure(offer.giver + " does not let go of " + offer.object);
+  co_return is_given() ? Outcome{}
+                       : Outcome::failure(offer.giver + " does not let go of " + offer.object);
 }
 
 /// Plans the approach and begins to open the hand.
 Routine<Outcome> begin_approach(Parts& parts, const TakeAttempt& take, const Grasp& grasp) {
   const MotionSpec approach = approach_to(parts, take, grasp);
-  const Vector opened = RobotModel::with(parts.now.set_point(), parts.arm.fingers(), take.chosen.pregrasp_joints);
+  const Vector opened =
+      RobotModel::with(parts.now.set_point(), parts.arm.fingers(), take.chosen.pregrasp_joints);
   PlannedPath path = co_await plan_path(parts, opened, approach);
   if (!path.outcome.good) co_return path.outcome.of("approach");
   Outcome opening = co_await parts.hand.send(HandAction::move, take.chosen.pregrasp_joints);
@@ -269,30 +291,39 @@ Routine<Outcome> take(Parts& parts, const TakeAttempt& take) {
   co_return Outcome{};
 }
 
-Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer, std::vector<Grasp>& grasps) {
+Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer,
+                                      std::vector<Grasp>& grasps) {
   auto clear = std::make_shared<std::vector<Grasp>>();
   HumanState around = parts.now.people();
   for (Person& person : around.people) {
     if (person.id != offer.giver) continue;
-    if (const SceneObject* held = parts.now.object(offer.object)) person = with_fingers_bent(person, held->T_world_object.translation());
+    if (const SceneObject* held = parts.now.object(offer.object))
+      person = with_fingers_bent(person, held->T_world_object.translation());
     person.inflation += kMinHandClearance;
   }
   const std::function<void()> job = [clear, around, grasps, object = offer.object,
-                                     world = parts.worker.world(parts.arm.robot(), parts.now.objects()), scene = parts.now.scene(),
-                                     q = parts.arm.configuration(), arm = parts.arm.group(), fingers = parts.arm.fingers()] {
+                                     world =
+                                         parts.worker.world(parts.arm.robot(), parts.now.objects()),
+                                     scene = parts.now.scene(), q = parts.arm.configuration(),
+                                     arm = parts.arm.group(), fingers = parts.arm.fingers()] {
     world->set_scene(scene);
     world->set_people(around);
     world->set_attachment({}, {object});
     world->set_moving_axes(arm.axes);
     const auto is_free = [&](const Vector& arm_joints, const Vector& hand_joints) {
-      return world->check_people(RobotModel::with(RobotModel::with(q, arm, arm_joints), fingers, hand_joints)).free;
+      return world
+          ->check_people(
+              RobotModel::with(RobotModel::with(q, arm, arm_joints), fingers, hand_joints))
+          .free;
     };
     for (const Grasp& g : grasps) {
       bool is_clear = true;
       for (int k = kClearanceSteps; k >= 0 && is_clear; --k) {
         const double s = static_cast<double>(k) / kClearanceSteps;
-        is_clear = is_free(g.approach_joints + s * (g.arm_joints - g.approach_joints), g.pregrasp_joints) &&
-                   is_free(g.arm_joints, g.pregrasp_joints + s * (g.hand_joints - g.pregrasp_joints));
+        is_clear =
+            is_free(g.approach_joints + s * (g.arm_joints - g.approach_joints),
+                    g.pregrasp_joints) &&
+            is_free(g.arm_joints, g.pregrasp_joints + s * (g.hand_joints - g.pregrasp_joints));
       }
       if (is_clear) clear->push_back(g);
     }
@@ -300,7 +331,8 @@ Routine<Outcome> select_clear_of_hand(Parts& parts, const Offer& offer, std::vec
   Outcome worked = co_await parts.worker.run(job);
   if (!worked.good) co_return worked;
   grasps = *clear;
-  if (grasps.empty()) worked = Outcome::failure("the hand would come too near to the fingers of " + offer.giver);
+  if (grasps.empty())
+    worked = Outcome::failure("the hand would come too near to the fingers of " + offer.giver);
   co_return worked;
 }
 

@@ -1,5 +1,5 @@
-// Takes an offered object by one grasp: comes to the object clear of the fingers, closes, feels that
-// the giver has released the object, and retreats.
+// Takes an offered object by one grasp: comes to the object clear of the fingers, closes, feels
+// that the giver has released the object, and retreats.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,8 @@ std::vector<Vector3> shoulders_of(const Parts& parts) {
     if (m.arm == nullptr || m.arm->axes.empty()) continue;
     const Axis& first = robot.axes()[static_cast<std::size_t>(m.arm->axes.front())];
     const int link = robot.joints()[static_cast<std::size_t>(first.joint)].child;
-    shoulders.push_back((parts.now.T_world_base() * robot.link_pose(parts.now.set_point(), link)).translation());
+    shoulders.push_back(
+        (parts.now.T_world_base() * robot.link_pose(parts.now.set_point(), link)).translation());
   }
   return shoulders;
 }
@@ -33,7 +34,8 @@ std::vector<Vector3> shoulders_of(const Parts& parts) {
 /// Places for one object on one surface.
 class SurfacePlaces {
  public:
-  SurfacePlaces(const Scene& scene, const SceneBox& box, const SceneObject& seen, const Eigen::AlignedBox3d& extent)
+  SurfacePlaces(const Scene& scene, const SceneBox& box, const SceneObject& seen,
+                const Eigen::AlignedBox3d& extent)
       : scene_(scene), box_(box), seen_(seen), extent_(extent) {
     const Pose& now = seen.T_world_object;
     const double yaw = std::atan2(now.linear()(1, 0), now.linear()(0, 0));
@@ -45,7 +47,8 @@ class SurfacePlaces {
   /// Returns whether the object fits there, away from the edge and from other things.
   bool is_free(const Vector3& p) const {
     const auto is_near = [&](const SceneObject& other) {
-      return other.id != seen_.id && (other.T_world_object.translation() - p).head<2>().norm() < gap_;
+      return other.id != seen_.id &&
+             (other.T_world_object.translation() - p).head<2>().norm() < gap_;
     };
     return std::none_of(scene_.objects.begin(), scene_.objects.end(), is_near) && is_inside(p);
   }
@@ -54,8 +57,11 @@ class SurfacePlaces {
   bool is_inside(const Vector3& p) const {
     for (const double x : {-1.0, 1.0})
       for (const double y : {-1.0, 1.0}) {
-        const Vector3 corner = box_.T_world_box.inverse() * (p + turn_ * (extent_.center() + Vector3(x * half_.x(), y * half_.y(), 0)));
-        if (std::abs(corner.x()) > box_.size.x() / 2 - kMinEdgeDistance || std::abs(corner.y()) > box_.size.y() / 2 - kMinEdgeDistance)
+        const Vector3 corner =
+            box_.T_world_box.inverse() *
+            (p + turn_ * (extent_.center() + Vector3(x * half_.x(), y * half_.y(), 0)));
+        if (std::abs(corner.x()) > box_.size.x() / 2 - kMinEdgeDistance ||
+            std::abs(corner.y()) > box_.size.y() / 2 - kMinEdgeDistance)
           return false;
       }
     return true;
@@ -72,7 +78,8 @@ class SurfacePlaces {
 
 }  // namespace
 
-Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal, bool both) {
+Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal,
+                                 bool both) {
   parts.action.phase = both ? ActionPhase::choosing_two_grasps : ActionPhase::choosing_hands;
   RegraspRequest request;
   parts.clients.regrasp.open(request);
@@ -97,7 +104,8 @@ Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const 
 std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const SceneObject& seen) {
   if (goal.has_goal) return {goal.T_world_goal};
   const Scene& scene = parts.now.scene();
-  const auto box = std::find_if(scene.boxes.begin(), scene.boxes.end(), [&](const SceneBox& b) { return b.id == goal.surface; });
+  const auto box = std::find_if(scene.boxes.begin(), scene.boxes.end(),
+                                [&](const SceneBox& b) { return b.id == goal.surface; });
   if (box == scene.boxes.end() || !box->supports) return {};
   const ObjectModel& model = *parts.now.model_of(seen.id);
   const std::vector<Vector3> shoulders = shoulders_of(parts);
@@ -107,7 +115,8 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
     double off;
   };
   std::vector<Place> all;
-  const double x_end = std::max(0.0, box->size.x() / 2 - kEdge), y_end = std::max(0.0, box->size.y() / 2 - kEdge);
+  const double x_end = std::max(0.0, box->size.x() / 2 - kEdge),
+               y_end = std::max(0.0, box->size.y() / 2 - kEdge);
   const bool both = goal.kind == ActionKind::carry;
   for (double x = -x_end; x <= x_end + 1e-9; x += kGrid) {
     for (double y = -y_end; y <= y_end + 1e-9; y += kGrid) {
@@ -123,10 +132,13 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
       all.push_back({at, both ? farthest : nearest});
     }
   }
-  std::stable_sort(all.begin(), all.end(), [](const Place& a, const Place& b) { return a.off < b.off; });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Place& a, const Place& b) { return a.off < b.off; });
   std::vector<Pose> out;
   for (const Place& p : all) {
-    const auto is_near = [&](const Pose& o) { return (o.translation() - p.at).head<2>().norm() < kMinGap / 2; };
+    const auto is_near = [&](const Pose& o) {
+      return (o.translation() - p.at).head<2>().norm() < kMinGap / 2;
+    };
     if (std::any_of(out.begin(), out.end(), is_near) || out.size() >= kMaxPlaces) continue;
     out.push_back(make_pose(p.at + model.height_above_support * Vector3::UnitZ(), surface.turn()));
   }
@@ -134,7 +146,8 @@ std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const S
 }
 
 Routine<Outcome> await_put_down(Parts& parts, const std::string& object) {
-  if (parts.held.is_holding()) co_return Outcome::failure(parts.held.id() + " is in the hand: it must be put down first");
+  if (parts.held.is_holding())
+    co_return Outcome::failure(parts.held.id() + " is in the hand: it must be put down first");
   parts.action.phase = ActionPhase::looking_for_object;
   const auto is_seen = [&] { return parts.now.object(object) != nullptr; };
   const bool seen = co_await parts.waiting.until(is_seen, parts.settings.sight_timeout());
@@ -145,18 +158,22 @@ Routine<Outcome> await_put_down(Parts& parts, const std::string& object) {
   };
   const bool free = co_await parts.waiting.until(is_put_down, parts.settings.sight_timeout());
   if (!free) co_return Outcome::failure(object + " is held: it must stand first");
-  if (parts.now.model_of(object) == nullptr) co_return Outcome::failure("object " + object + " has no model");
+  if (parts.now.model_of(object) == nullptr)
+    co_return Outcome::failure("object " + object + " has no model");
   co_await parts.waiting.pause(parts.settings.settle_time());
   co_return Outcome{};
 }
 
-Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, const Vector& closed, const Vector& after) {
+Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, const Vector& closed,
+                                     const Vector& after) {
   const Vector open = RobotModel::part(after, parts.arm.fingers());
-  HandResult opened = co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
+  HandResult opened =
+      co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());
   if (!opened.outcome.good) co_return opened.outcome;
   if (parts.held.attachment().hand == parts.arm.hand_name()) parts.held.release();
   const RobotModel& robot = parts.arm.robot();
-  const Pose T_off = robot.link_pose(closed, parts.arm.palm()).inverse() * robot.link_pose(after, parts.arm.palm());
+  const Pose T_off = robot.link_pose(closed, parts.arm.palm()).inverse() *
+                     robot.link_pose(after, parts.arm.palm());
   std::string why = "no posture of the arm lies there";
   for (const double ratio : kRetreatRatios) {
     Pose T = T_off;

@@ -16,7 +16,8 @@ struct TwoHandPlan {
 
 // References must outlive the routines.
 /// Asks for steps that bring an object to a pose. `both`: the hands hold the object together.
-Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal, bool both);
+Routine<TwoHandPlan> ask_regrasp(Parts& parts, const std::string& object, const Pose& T_world_goal,
+                                 bool both);
 /// Waits until an object is at rest somewhere, for a moment: what was just put down may still seem
 /// to be held.
 Routine<Outcome> await_put_down(Parts& parts, const std::string& object);
@@ -24,6 +25,7 @@ Routine<Outcome> await_put_down(Parts& parts, const std::string& object);
 /// surface, the nearest to an arm first.
 std::vector<Pose> places_for(const Parts& parts, const ActionGoal& goal, const SceneObject& object);
 /// Opens the hand in use and retreats as `after` is from `closed`, both of all axes [rad, m].
-Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, const Vector& closed, const Vector& after);
+Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, const Vector& closed,
+                                     const Vector& after);
 
 }  // namespace handsel::manipulation_planner

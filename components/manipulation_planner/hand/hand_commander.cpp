@@ -8,19 +8,24 @@ constexpr double kTryPeriod = 0.3;  // between tries [s]
 
 }  // namespace
 
-Routine<Outcome> HandCommander::send(HandAction action, const Vector& position, const Vector* effort, double mass_ratio) {
+Routine<Outcome> HandCommander::send(HandAction action, const Vector& position,
+                                     const Vector* effort, double mass_ratio) {
   HandCommand command = link_.hand_command();
   command.action = action;
   command.position = position;
   if (effort != nullptr) command.effort = *effort;
   command.pull_force = settings_.pull_force();
-  if (const ObjectModel* grasped = now_.model_of(action_.object); action == HandAction::grasp && grasped != nullptr)
+  if (const ObjectModel* grasped = now_.model_of(action_.object);
+      action == HandAction::grasp && grasped != nullptr)
     command.payload = mass_ratio * grasped->mass;
   const std::uint64_t id = command.id;
-  const auto is_acknowledged = [this, id] { return now_.execution()->hand_command == id && arm_.hand_state() != HandState::refused; };
+  const auto is_acknowledged = [this, id] {
+    return now_.execution()->hand_command == id && arm_.hand_state() != HandState::refused;
+  };
   bool acknowledged = false;
   for (int tries = 0; tries < kMaxTries && !acknowledged; ++tries) {
-    const bool ready = co_await waiting_.until([this] { return link_.may_move(); }, settings_.permission_timeout());
+    const bool ready = co_await waiting_.until([this] { return link_.may_move(); },
+                                               settings_.permission_timeout());
     if (!ready) break;
     command.epoch = now_.execution()->epoch;
     link_.send(command);
@@ -33,19 +38,24 @@ Routine<Outcome> HandCommander::send(HandAction action, const Vector& position, 
 }
 
 Routine<Outcome> HandCommander::await_open() {
-  const bool open = co_await waiting_.until([this] { return arm_.hand_state() != HandState::moving; }, settings_.hand_timeout());
+  const bool open = co_await waiting_.until(
+      [this] { return arm_.hand_state() != HandState::moving; }, settings_.hand_timeout());
   co_return open ? Outcome{} : Outcome::failure("the hand does not open");
 }
 
-Routine<HandResult> HandCommander::run(HandAction action, const Vector& position, double timeout, const Vector* effort, double mass_ratio) {
+Routine<HandResult> HandCommander::run(HandAction action, const Vector& position, double timeout,
+                                       const Vector* effort, double mass_ratio) {
   HandResult result;
   result.outcome = co_await send(action, position, effort, mass_ratio);
   if (!result.outcome.good) co_return result;
   const std::uint64_t id = now_.execution()->hand_command;
   const auto is_lost = [this, id] { return now_.execution()->hand_command != id; };
-  const bool ended = co_await waiting_.until([&] { return is_lost() || arm_.hand_state() != HandState::moving; }, timeout);
+  const bool ended = co_await waiting_.until(
+      [&] { return is_lost() || arm_.hand_state() != HandState::moving; }, timeout);
   const bool waits_for_pull = action == HandAction::release_on_pull;
-  if (ended && waits_for_pull) co_await waiting_.until([&] { return is_lost() || arm_.hand_state() == HandState::released; }, timeout);
+  if (ended && waits_for_pull)
+    co_await waiting_.until([&] { return is_lost() || arm_.hand_state() == HandState::released; },
+                            timeout);
   if (is_lost()) result.outcome = Outcome::failure("the controller lost the hand command");
   if (!ended) result.outcome = Outcome::failure("the hand does not come to an end");
   result.state = arm_.hand_state();

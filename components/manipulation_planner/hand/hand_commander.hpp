@@ -14,17 +14,23 @@ struct HandResult {
 class HandCommander {
  public:
   /// `action`: its object is what the hand grasps. The references must outlive what is made.
-  HandCommander(ActiveArm& arm, ControllerLink& link, const Snapshot& now, Waiting& waiting, const ActionStatus& action,
-                const config::ManipulationPlannerSettings& settings)
-      : arm_(arm), link_(link), now_(now), waiting_(waiting), action_(action), settings_(settings) {}
+  HandCommander(ActiveArm& arm, ControllerLink& link, const Snapshot& now, Waiting& waiting,
+                const ActionStatus& action, const config::ManipulationPlannerSettings& settings)
+      : arm_(arm),
+        link_(link),
+        now_(now),
+        waiting_(waiting),
+        action_(action),
+        settings_(settings) {}
 
   /// Sends a command until the controller has acknowledged it. `position`: axes of the hand
   /// [rad, m]; `effort`: of them, null: none; `mass_ratio`: part of the object's mass that this
   /// hand bears. The references must outlive the routine.
-  Routine<Outcome> send(HandAction action, const Vector& position, const Vector* effort = nullptr, double mass_ratio = 1.0);
+  Routine<Outcome> send(HandAction action, const Vector& position, const Vector* effort = nullptr,
+                        double mass_ratio = 1.0);
   /// Sends a command as send() does and waits for its end, `timeout` [s] at most.
-  Routine<HandResult> run(HandAction action, const Vector& position, double timeout, const Vector* effort = nullptr,
-                          double mass_ratio = 1.0);
+  Routine<HandResult> run(HandAction action, const Vector& position, double timeout,
+                          const Vector* effort = nullptr, double mass_ratio = 1.0);
   /// Waits until the fingers have ended a motion that was sent.
   Routine<Outcome> await_open();
 

@@ -8,13 +8,15 @@ namespace handsel::manipulation_planner {
 namespace {
 
 constexpr double kMaxHandDistance = 0.15;  // middle of a hand to that of what it takes hold of [m]
-constexpr double kMaxOffset = 0.2;         // farther from where the hand would have it: not in the hand [m]
-constexpr double kSlipTime = 0.2;          // so long out of the hand: slipped [s]
+constexpr double kMaxOffset =
+    0.2;                           // farther from where the hand would have it: not in the hand [m]
+constexpr double kSlipTime = 0.2;  // so long out of the hand: slipped [s]
 
 /// Returns whether a hand of the person is within `distance` [m] of a point of the world.
 bool has_hand_near(const Person& person, const Vector3& p_world, double distance) {
   const auto near = [&](const char* hand) {
-    const Vector3& p_hand = person.joints[static_cast<std::size_t>(body_joint_index(hand))].position;
+    const Vector3& p_hand =
+        person.joints[static_cast<std::size_t>(body_joint_index(hand))].position;
     return (p_hand - p_world).norm() < distance;
   };
   return near("l_hand") || near("r_hand");
@@ -47,27 +49,34 @@ bool HeldObject::is_held_by_hand(const std::string& object) const {
 bool HeldObject::is_at_hand_of(const std::string& person, const std::string& object) const {
   const SceneObject* thing = now_.object(object);
   const Person* found = now_.person(person);
-  return thing != nullptr && found != nullptr && has_hand_near(*found, thing->T_world_object.translation(), kMaxHandDistance);
+  return thing != nullptr && found != nullptr &&
+         has_hand_near(*found, thing->T_world_object.translation(), kMaxHandDistance);
 }
 
 bool HeldObject::is_taken_by(const std::string& person) const {
-  const SceneObject* held = person.empty() || !is_holding() ? nullptr : now_.object(attachment_.object);
+  const SceneObject* held =
+      person.empty() || !is_holding() ? nullptr : now_.object(attachment_.object);
   return held != nullptr && held->holder != Holder::surface && is_at_hand_of(person, held->id);
 }
 
 bool HeldObject::is_out_of_hand() const {
   const SceneObject* held = !is_holding() ? nullptr : now_.object(attachment_.object);
-  if (held == nullptr || held->holder == Holder::robot || held->holder == Holder::human) return false;
+  if (held == nullptr || held->holder == Holder::robot || held->holder == Holder::human)
+    return false;
   if (now_.set_point().size() != arm_.robot().dof() || is_in_hand(*held)) return false;
   const Vector3& p = held->T_world_object.translation();
   const auto& people = now_.people().people;
-  return std::none_of(people.begin(), people.end(), [&](const Person& person) { return has_hand_near(person, p, 2 * kMaxHandDistance); });
+  return std::none_of(people.begin(), people.end(), [&](const Person& person) {
+    return has_hand_near(person, p, 2 * kMaxHandDistance);
+  });
 }
 
 void HeldObject::update(TimePoint now) {
   if (!is_out_of_hand()) seen_in_hand_ = now;
 }
 
-bool HeldObject::has_slipped(TimePoint now) const { return to_seconds(now - seen_in_hand_) > kSlipTime; }
+bool HeldObject::has_slipped(TimePoint now) const {
+  return to_seconds(now - seen_in_hand_) > kSlipTime;
+}
 
 }  // namespace handsel::manipulation_planner

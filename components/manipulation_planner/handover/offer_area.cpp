@@ -9,11 +9,11 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinHandDistance = 0.55;                                // level, from a comfortable point of offer [m]
-constexpr double kMinArmDistance = 0.35;                                 // likewise of the arm [m]
-constexpr double kMaxIntrusion = 0.05;                                   // less space than that by more: the arm retreats [m]
-constexpr std::size_t kMaxConfigurations = 6;                            // to wait in
-constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};                         // from rest, away from the person [m]
+constexpr double kMinHandDistance = 0.55;      // level, from a comfortable point of offer [m]
+constexpr double kMinArmDistance = 0.35;       // likewise of the arm [m]
+constexpr double kMaxIntrusion = 0.05;         // less space than that by more: the arm retreats [m]
+constexpr std::size_t kMaxConfigurations = 6;  // to wait in
+constexpr double kBack[] = {0.0, 0.1, 0.2, 0.3};  // from rest, away from the person [m]
 constexpr double kAside[] = {0.0, 0.15, -0.15, 0.3, -0.3, 0.45, -0.45};  // from rest [m]
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
@@ -26,12 +26,15 @@ double OfferArea::clearance(const Person& person, const Vector& q) const {
   for (const Side side : {Side::left, Side::right}) {
     const Vector3 p_offer = comfortable_reach(person, side);
     const double hand = level(p_hand - p_offer).norm() - kMinHandDistance;
-    room = std::min({room, hand, retreat_.distance(q, now_.T_world_base(), p_offer) - kMinArmDistance});
+    room = std::min(
+        {room, hand, retreat_.distance(q, now_.T_world_base(), p_offer) - kMinArmDistance});
   }
   return room;
 }
 
-bool OfferArea::is_occupied(const Person& person, const Vector& q) const { return clearance(person, q) < -kMaxIntrusion; }
+bool OfferArea::is_occupied(const Person& person, const Vector& q) const {
+  return clearance(person, q) < -kMaxIntrusion;
+}
 
 bool OfferArea::is_occupied(const std::string& id) const {
   const Person* person = now_.person(id);
@@ -45,7 +48,8 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
   };
   const Vector q_rest = arm_.robot().rest_posture();
   const Pose T_rest = now_.T_world_base() * arm_.robot().link_pose(q_rest, arm_.palm());
-  const Vector3 p_torso = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const Vector3 p_torso =
+      person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
   const Vector3 away = level(now_.T_world_base().translation() - p_torso).stableNormalized();
   const Vector3 aside = Vector3::UnitZ().cross(away);
   std::vector<Place> places;
@@ -55,7 +59,8 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
     for (const double beside : kAside) {
       Pose T = T_rest;
       T.translation() += back * away + beside * aside;
-      const auto joints = arm_.robot().inverse(arm_.group(), now_.T_world_base().inverse() * T, q_rest, options);
+      const auto joints =
+          arm_.robot().inverse(arm_.group(), now_.T_world_base().inverse() * T, q_rest, options);
       if (!joints) continue;
       const Vector q = RobotModel::with(arm_.configuration(), arm_.group(), *joints);
       places.push_back({*joints, clearance(person, q), std::hypot(back, beside)});

@@ -13,7 +13,8 @@ namespace handsel::manipulation_planner {
 class OfferArea {
  public:
   /// The references must outlive what is made.
-  OfferArea(const ActiveArm& arm, const RetreatPlanner& retreat, const Snapshot& now) : arm_(arm), retreat_(retreat), now_(now) {}
+  OfferArea(const ActiveArm& arm, const RetreatPlanner& retreat, const Snapshot& now)
+      : arm_(arm), retreat_(retreat), now_(now) {}
 
   /// Returns by how much hand and arm, in a configuration of all axes, are farther than they must
   /// be from where the person would comfortably offer something [m].

@@ -20,17 +20,24 @@ constexpr double kMaxObjectDistance = 0.4;  // palm to object while its own moti
 
 Vector3 level(const Vector3& v) { return {v.x(), v.y(), 0}; }
 
-const BodyJoint& torso_of(const Person& person) { return person.joints[static_cast<std::size_t>(body_joint_index("torso"))]; }
+const BodyJoint& torso_of(const Person& person) {
+  return person.joints[static_cast<std::size_t>(body_joint_index("torso"))];
+}
 
 }  // namespace
 
-double OfferDetector::min_distance(const Person& person, const SceneObject& object, bool is_fact) const {
+double OfferDetector::min_distance(const Person& person, const SceneObject& object,
+                                   bool is_fact) const {
   const bool is_accepted = accepted_.object == object.id && accepted_.giver == person.id;
-  const double margin = waited_long_ ? -kLongWaitMargin : is_accepted ? -kAcceptedMargin : is_fact ? 0.0 : kBentArmMargin;
+  const double margin = waited_long_  ? -kLongWaitMargin
+                        : is_accepted ? -kAcceptedMargin
+                        : is_fact     ? 0.0
+                                      : kBentArmMargin;
   return bounds_.min_distance + margin;
 }
 
-bool OfferDetector::is_offered(const Person& person, const SceneObject& object, const Vector3& p_hand) const {
+bool OfferDetector::is_offered(const Person& person, const SceneObject& object,
+                               const Vector3& p_hand) const {
   if (object.holder != Holder::human || object.holder_id != person.id) return false;
   const Vector3 p_torso = torso_of(person).position;
   const Vector3 out = level(object.T_world_object.translation() - p_torso);
@@ -50,7 +57,8 @@ bool OfferDetector::is_offered(const Person& person, const SceneObject& object, 
   return is_asked && out.norm() >= min && (is_toward(p_base) || is_toward(p_hand));
 }
 
-std::optional<Offer> OfferDetector::find(const std::string& object, const std::string& giver, const Vector3& p_hand) const {
+std::optional<Offer> OfferDetector::find(const std::string& object, const std::string& giver,
+                                         const Vector3& p_hand) const {
   for (const SceneObject& held : now_.scene().objects) {
     if (!object.empty() && held.id != object) continue;
     for (const Person& person : now_.people().people) {
@@ -73,16 +81,22 @@ void OfferDetector::update(const Vector3& p_hand) {
   if (person != nullptr && is_offered(*person, *object, p_hand)) offered_at_ = now_.time();
 }
 
-bool OfferDetector::is_still_offered() const { return to_seconds(now_.time() - offered_at_) < kMaxOfferGap; }
+bool OfferDetector::is_still_offered() const {
+  return to_seconds(now_.time() - offered_at_) < kMaxOfferGap;
+}
 
-bool OfferDetector::is_withdrawn() const { return to_seconds(now_.time() - offered_at_) > kWithdrawalTime; }
+bool OfferDetector::is_withdrawn() const {
+  return to_seconds(now_.time() - offered_at_) > kWithdrawalTime;
+}
 
 bool OfferDetector::is_giver_approaching(const Vector3& p_hand) const {
   const Person* person = now_.person(accepted_.giver);
   const SceneObject* object = now_.object(accepted_.object);
   if (person == nullptr || object == nullptr) return false;
   const Vector3 p_object = object->T_world_object.translation();
-  const auto is_fast = [&p_hand](const Vector3& p, const Vector3& v) { return v.dot((p_hand - p).stableNormalized()) > kMaxApproachSpeed; };
+  const auto is_fast = [&p_hand](const Vector3& p, const Vector3& v) {
+    return v.dot((p_hand - p).stableNormalized()) > kMaxApproachSpeed;
+  };
   const BodyJoint& torso = torso_of(*person);
   const double distance = (p_object - p_hand).norm();
   return (distance < kMaxGiverDistance && is_fast(torso.position, torso.velocity)) ||

@@ -40,7 +40,8 @@ class OfferDetector {
   /// world [m].
   bool is_offered(const Person& person, const SceneObject& object, const Vector3& p_hand) const;
   /// Returns the first offer of an object at rest; `object` or `giver` empty: any.
-  std::optional<Offer> find(const std::string& object, const std::string& giver, const Vector3& p_hand) const;
+  std::optional<Offer> find(const std::string& object, const std::string& giver,
+                            const Vector3& p_hand) const;
 
   /// Accepts an offer, which holds from now on until it clearly does not.
   void accept(const Offer& offer);

@@ -12,27 +12,33 @@ namespace {
 constexpr double kMinStep = 0.1;   // a receiver who moved less is where they were [m]
 constexpr double kMinGain = 0.05;  // cost that another object transfer point must save
 
-const Vector3& torso_of(const Person& person) { return person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
+const Vector3& torso_of(const Person& person) {
+  return person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+}
 
 }  // namespace
 
-Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const Pose* T_world_object) {
+Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
+                              const Pose* T_world_object) {
   auto choice = std::make_shared<OtpChoice>();
   const Person* person = parts.now.person(receiver);
   if (person == nullptr) {
     choice->outcome = Outcome::out_of_sight("person " + receiver);
     co_return *choice;
   }
-  const std::optional<Pose> T_present = T_world_object != nullptr ? std::optional<Pose>(*T_world_object) : std::nullopt;
+  const std::optional<Pose> T_present =
+      T_world_object != nullptr ? std::optional<Pose>(*T_world_object) : std::nullopt;
   const auto& grasp = parts.held.grasp();
-  const std::function<void()> job = [choice, T_present, robot = parts.arm.shared_robot(), scene = parts.now.scene(),
-                                     layers = parts.now.layers(), who = *person, q = parts.now.set_point(),
-                                     T_tool_object = parts.held.attachment().T_tool_object, T_now = parts.held.T_world_object(),
-                                     barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{}, settings = parts.settings] {
-    const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred};
-    choice->search = find_otp(*robot, query, q, settings);
-    if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
-  };
+  const std::function<void()> job =
+      [choice, T_present, robot = parts.arm.shared_robot(), scene = parts.now.scene(),
+       layers = parts.now.layers(), who = *person, q = parts.now.set_point(),
+       T_tool_object = parts.held.attachment().T_tool_object, T_now = parts.held.T_world_object(),
+       barred = grasp ? barred_directions(*grasp) : std::vector<Vector3>{},
+       settings = parts.settings] {
+        const OtpQuery query{scene, who, layers, T_now, T_tool_object, barred};
+        choice->search = find_otp(*robot, query, q, settings);
+        if (T_present) choice->present_cost = otp_cost(query, *T_present, settings);
+      };
   choice->outcome = co_await parts.worker.run(job);
   co_return *choice;
 }
@@ -50,8 +56,9 @@ Routine<bool> follow_receiver(Parts& parts, MotionSpec& motion, const Vector& go
   const Vector3 p_torso = torso_of(*person);
   if ((p_torso - motion.receiver->p_world_torso).norm() < kMinStep) co_return false;
   const Vector q = RobotModel::with(parts.arm.configuration(), parts.arm.group(), goal);
-  const Pose T_world_object =
-      parts.now.T_world_base() * parts.arm.robot().link_pose(q, parts.arm.palm()) * parts.held.attachment().T_tool_object;
+  const Pose T_world_object = parts.now.T_world_base() *
+                              parts.arm.robot().link_pose(q, parts.arm.palm()) *
+                              parts.held.attachment().T_tool_object;
   OtpChoice choice = co_await choose_otp(parts, receiver, &T_world_object);
   person = parts.now.person(receiver);
   if (!choice.outcome.good || person == nullptr) co_return false;

@@ -22,7 +22,8 @@ struct OtpChoice {
 // References must outlive the routines.
 /// Searches object transfer points with a person for what is held. `T_world_object`: a pose whose
 /// cost is asked, null: none.
-Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver, const Pose* T_world_object);
+Routine<OtpChoice> choose_otp(Parts& parts, const std::string& receiver,
+                              const Pose* T_world_object);
 /// Sets the goals of a motion to what was found for the receiver as they are now.
 void aim_at(const OtpSearch& search, const Person& receiver, MotionSpec& motion);
 /// Chooses other goals when the receiver has moved so far that `goal`, axes of the arm, is no good

@@ -14,11 +14,11 @@ namespace {
 constexpr double kAhead[] = {0.42, 0.5, 0.58, 0.66, 0.74, 0.82};           // of the torso [m]
 constexpr double kAside[] = {-0.36, -0.24, -0.12, 0.0, 0.12, 0.24, 0.36};  // of the torso [m]
 constexpr double kBelowShoulder[] = {0.05, 0.15, 0.25, 0.35, 0.45, 0.55};  // [m]
-constexpr int kHeadings = 24;                                              // of the object at each place
-constexpr double kMinDistance = 0.05;                                      // between alternatives [m]
-constexpr double kMaxExtraCost = 0.25;                                     // of an alternative, over the best
-constexpr double kMaxBarred = 0.5;                                         // cosine of a finger and the person's pull
-constexpr double kMinFacing = -0.3;                                        // cosine: the hand must not come from the person's side
+constexpr int kHeadings = 24;           // of the object at each place
+constexpr double kMinDistance = 0.05;   // between alternatives [m]
+constexpr double kMaxExtraCost = 0.25;  // of an alternative, over the best
+constexpr double kMaxBarred = 0.5;      // cosine of a finger and the person's pull
+constexpr double kMinFacing = -0.3;     // cosine: the hand must not come from the person's side
 
 struct Candidate {
   Pose T_world_object;
@@ -49,7 +49,8 @@ class OtpCosts {
         settings_(settings),
         barred_(query.barred),
         p_now_(query.T_world_object.translation()),
-        object_in_hand_(query.T_tool_object.linear().transpose() * query.T_tool_object.translation()),
+        object_in_hand_(query.T_tool_object.linear().transpose() *
+                        query.T_tool_object.translation()),
         body_(simplified_body(query.person)),
         furniture_(query.person, query.scene.boxes),
         arms_(placed_arms(query.person)) {
@@ -58,7 +59,9 @@ class OtpCosts {
     apart_ = toward_robot_.norm() >= 1e-3;
     toward_robot_.normalize();
   }
-  Vector3 torso() const { return person_.joints[static_cast<std::size_t>(body_joint_index("torso"))].position; }
+  Vector3 torso() const {
+    return person_.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  }
   const Vector3& toward_robot() const { return toward_robot_; }
   bool apart() const { return apart_; }  ///< false: they stand inside the robot's base
 
@@ -70,8 +73,10 @@ class OtpCosts {
     if (comfort >= 1) return Place::out_of_reach;
     const OutsideCost outside = layers_.outside_cost(p);
     if (outside.forbidden_by != nullptr) return Place::forbidden;
-    cost = settings_.w_comfort() * comfort + settings_.w_safety() * safety_cost(distance_to_body(body_, p), 0.8) +
-           settings_.w_visibility() * visibility_cost(person_, p, 3.0) + settings_.w_effort() * (p - p_now_).norm() + outside.cost +
+    cost = settings_.w_comfort() * comfort +
+           settings_.w_safety() * safety_cost(distance_to_body(body_, p), 0.8) +
+           settings_.w_visibility() * visibility_cost(person_, p, 3.0) +
+           settings_.w_effort() * (p - p_now_).norm() + outside.cost +
            settings_.w_preference() * against_preference(p);
     return Place::good;
   }
@@ -80,17 +85,22 @@ class OtpCosts {
     constexpr double kFull = 0.3;  // [m]
     const auto& people = settings_.people();
     const auto profile =
-        std::find_if(people.begin(), people.end(), [this](const config::PersonProfile& one) { return one.id() == person_.id; });
+        std::find_if(people.begin(), people.end(),
+                     [this](const config::PersonProfile& one) { return one.id() == person_.id; });
     if (profile == people.end()) return 0;
     double cost = 0;
-    const auto joint = [this](const char* name) { return person_.joints[static_cast<std::size_t>(body_joint_index(name))].position; };
+    const auto joint = [this](const char* name) {
+      return person_.joints[static_cast<std::size_t>(body_joint_index(name))].position;
+    };
     if (profile->handed() != config::EITHER) {
       const Vector3 to_left = (joint("l_shoulder") - joint("r_shoulder")).stableNormalized();
-      const double off = (p - torso()).dot(profile->handed() == config::LEFT ? Vector3(-to_left) : to_left);
+      const double off =
+          (p - torso()).dot(profile->handed() == config::LEFT ? Vector3(-to_left) : to_left);
       cost += std::clamp(off / kFull, 0.0, 1.0);
     }
     if (profile->preferred_distance() > 0)
-      cost += std::min(1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance()) / kFull);
+      cost += std::min(
+          1.0, std::abs((p - torso()).head<2>().norm() - profile->preferred_distance()) / kFull);
     return cost;
   }
   /// Cost of how the hand holds the object toward the person; nullopt: they could not take it.
@@ -98,7 +108,8 @@ class OtpCosts {
     const double facing = (R_world_object * object_in_hand_).normalized().dot(-toward_robot_);
     if (facing < kMinFacing) return std::nullopt;
     double in_the_way = 0;
-    for (const Vector3& normal : barred_) in_the_way = std::max(in_the_way, (R_world_object * normal).dot(-toward_robot_));
+    for (const Vector3& normal : barred_)
+      in_the_way = std::max(in_the_way, (R_world_object * normal).dot(-toward_robot_));
     if (in_the_way > kMaxBarred) return std::nullopt;
     return settings_.w_legibility() * ((1 - facing) / 2 + in_the_way);
   }
@@ -125,7 +136,8 @@ struct Candidates {
 
 Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
   Candidates found;
-  const double shoulder_z = query.person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
+  const double shoulder_z =
+      query.person.joints[static_cast<std::size_t>(body_joint_index("r_shoulder"))].position.z();
   const Vector3& toward_robot = costs.toward_robot();
   const Vector3 across(-toward_robot.y(), toward_robot.x(), 0);
   const auto add_headings = [&](const Vector3& p, double cost) {
@@ -134,7 +146,8 @@ Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
       Pose T = query.T_world_object;
       T.linear() = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * query.T_world_object.linear();
       T.translation() = p;
-      if (const std::optional<double> attitude = costs.of_attitude(T.linear())) found.all.push_back({T, cost + *attitude});
+      if (const std::optional<double> attitude = costs.of_attitude(T.linear()))
+        found.all.push_back({T, cost + *attitude});
     }
   };
   for (const double ahead : kAhead) {
@@ -151,7 +164,8 @@ Candidates find_candidates(const OtpQuery& query, const OtpCosts& costs) {
       }
     }
   }
-  std::stable_sort(found.all.begin(), found.all.end(), [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
+  std::stable_sort(found.all.begin(), found.all.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
   return found;
 }
 
@@ -167,7 +181,8 @@ std::vector<Vector3> barred_directions(const Grasp& grasp) {
   return fingers.size() == 2 ? normals : std::vector<Vector3>{};
 }
 
-OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q, const config::ManipulationPlannerSettings& settings) {
+OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
+                   const config::ManipulationPlannerSettings& settings) {
   OtpSearch out;
   const Group& arm = robot.require_group("arm");
   const OtpCosts costs(query, settings);
@@ -182,29 +197,38 @@ OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector&
   for (const Candidate& candidate : candidates.all) {
     if (!out.poses.empty() && candidate.cost > out.poses.front().cost + kMaxExtraCost) break;
     const bool is_near = std::any_of(out.poses.begin(), out.poses.end(), [&](const OtpPose& pose) {
-      return (pose.T_world_object.translation() - candidate.T_world_object.translation()).norm() < kMinDistance;
+      return (pose.T_world_object.translation() - candidate.T_world_object.translation()).norm() <
+             kMinDistance;
     });
     if (is_near) continue;
-    if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.exchange_tries()) break;
+    if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.exchange_tries())
+      break;
     ++out.tried;
-    const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object * query.T_tool_object.inverse();
+    const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object *
+                            query.T_tool_object.inverse();
     if (auto joints = robot.inverse(arm, T_root_tip, q, options))
       out.poses.push_back({candidate.T_world_object, std::move(*joints), candidate.cost});
     else
       ++unreachable;
   }
   if (out.poses.empty())
-    out.reason = "no exchange point with " + query.person.id + ": " + std::to_string(candidates.out_of_reach) +
-                 " places beyond their reach, " + std::to_string(candidates.blocked) + " in, under or behind furniture, " +
-                 (candidates.forbidden > 0 ? std::to_string(candidates.forbidden) + " forbidden by a cost layer, " : "") +
-                 std::to_string(unreachable) + " of " + std::to_string(out.tried) + " poses beyond the robot's reach";
+    out.reason = "no exchange point with " + query.person.id + ": " +
+                 std::to_string(candidates.out_of_reach) + " places beyond their reach, " +
+                 std::to_string(candidates.blocked) + " in, under or behind furniture, " +
+                 (candidates.forbidden > 0
+                      ? std::to_string(candidates.forbidden) + " forbidden by a cost layer, "
+                      : "") +
+                 std::to_string(unreachable) + " of " + std::to_string(out.tried) +
+                 " poses beyond the robot's reach";
   return out;
 }
 
-std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object, const config::ManipulationPlannerSettings& settings) {
+std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object,
+                               const config::ManipulationPlannerSettings& settings) {
   const OtpCosts costs(query, settings);
   double cost = 0;
-  if (!costs.apart() || costs.of_place(T_world_object.translation(), cost) != OtpCosts::Place::good) return std::nullopt;
+  if (!costs.apart() || costs.of_place(T_world_object.translation(), cost) != OtpCosts::Place::good)
+    return std::nullopt;
   const std::optional<double> attitude = costs.of_attitude(T_world_object.linear());
   if (!attitude) return std::nullopt;
   return cost + *attitude;

@@ -48,10 +48,12 @@ std::vector<Vector3> barred_directions(const Grasp& grasp);
 /// The object keeps its tilt; only its place and heading change. Places in, under or behind
 /// furniture as the person sees it, and those an outside layer forbids, are left out. The person
 /// must be able to draw the object toward them.
-OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q, const config::ManipulationPlannerSettings& settings);
+OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector& q,
+                   const config::ManipulationPlannerSettings& settings);
 
 /// Returns the cost of a pose of the object as find_otp() counts it, whether the robot reaches the
 /// pose or not; nullopt: it is no object transfer point.
-std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object, const config::ManipulationPlannerSettings& settings);
+std::optional<double> otp_cost(const OtpQuery& query, const Pose& T_world_object,
+                               const config::ManipulationPlannerSettings& settings);
 
 }  // namespace handsel::manipulation_planner

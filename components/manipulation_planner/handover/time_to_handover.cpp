@@ -21,12 +21,16 @@ double time_to_handover(const ActionStatus& action, const Snapshot& now) {
   if (gives && phase == ActionPhase::offer) return 0;
   if (is_engaged && phase == ActionPhase::waiting_for_release) return 0;
   if (receives && phase == ActionPhase::grasp) return kCloseTime;
-  const bool carries = gives && phase == ActionPhase::carry, reaches = phase == ActionPhase::reaching_object;
+  const bool carries = gives && phase == ActionPhase::carry,
+             reaches = phase == ActionPhase::reaching_object;
   const bool approaches = carries || (receives && (phase == ActionPhase::approach || reaches));
   const auto& status = now.execution();
   const ActiveTrajectory& active = now.active();
-  if (!approaches || !status || status->motion != MotionState::running || active.trajectory != status->trajectory) return kNever;
-  const double left = std::max(0.0, active.rest.duration() - active.time) / std::clamp(active.speed_factor, kMinSpeedFactor, 1.0);
+  if (!approaches || !status || status->motion != MotionState::running ||
+      active.trajectory != status->trajectory)
+    return kNever;
+  const double left = std::max(0.0, active.rest.duration() - active.time) /
+                      std::clamp(active.speed_factor, kMinSpeedFactor, 1.0);
   return left + (phase == ActionPhase::approach ? kReachTime : 0.0) + (receives ? kCloseTime : 0.0);
 }
 

@@ -11,14 +11,19 @@ constexpr double kMaxDuration = 600;  // of a motion whose end is awaited [s]
 
 }  // namespace
 
-bool ControllerLink::may_move() const { return !dropped_stop_ && now_.execution() && now_.execution()->mode < Mode::hold; }
+bool ControllerLink::may_move() const {
+  return !dropped_stop_ && now_.execution() && now_.execution()->mode < Mode::hold;
+}
 
 Routine<bool> ControllerLink::await_permission() {
-  const bool ready = co_await waiting_.until([this] { return may_move() && arm_.at_rest(); }, settings_.permission_timeout());
+  const bool ready = co_await waiting_.until([this] { return may_move() && arm_.at_rest(); },
+                                             settings_.permission_timeout());
   co_return ready;
 }
 
-std::string ControllerLink::reason() const { return now_.execution() ? now_.execution()->reason : "the controller is silent"; }
+std::string ControllerLink::reason() const {
+  return now_.execution() ? now_.execution()->reason : "the controller is silent";
+}
 
 Outcome ControllerLink::not_permitted() const {
   return Outcome::failure("no permission to move: " + reason(), ActionFailure::not_permitted);
@@ -44,7 +49,8 @@ Routine<Outcome> ControllerLink::send(const TrajectoryCommand& command) {
   const std::uint64_t id = command.id;
   for (int tries = 0; tries < kMaxTries; ++tries) {
     outbox_.trajectories.push_back(command);
-    const bool acknowledged = co_await waiting_.until([this, id] { return now_.execution()->trajectory == id; }, kTryPeriod);
+    const bool acknowledged = co_await waiting_.until(
+        [this, id] { return now_.execution()->trajectory == id; }, kTryPeriod);
     if (acknowledged) co_return Outcome{};
   }
   co_return Outcome::failure("the trajectory controller does not acknowledge the trajectory");
@@ -61,7 +67,8 @@ Routine<Outcome> ControllerLink::run(const TrajectoryCommand& command) {
 
 bool ControllerLink::has_ended(std::uint64_t command) const {
   const ExecutionStatus& status = *now_.execution();
-  return status.trajectory != command || (status.motion != MotionState::running && status.motion != MotionState::idle);
+  return status.trajectory != command ||
+         (status.motion != MotionState::running && status.motion != MotionState::idle);
 }
 
 Routine<Outcome> ControllerLink::end_of(std::uint64_t command) {
@@ -71,7 +78,8 @@ Routine<Outcome> ControllerLink::end_of(std::uint64_t command) {
   }
   const MotionState motion = now_.execution()->motion;
   if (motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + reason());
-  if (motion != MotionState::finished) co_return Outcome::failure("stopped on the way: " + reason());
+  if (motion != MotionState::finished)
+    co_return Outcome::failure("stopped on the way: " + reason());
   co_await waiting_.until([this] { return arm_.at_rest(); }, kRestTimeout);
   co_return Outcome{};
 }
@@ -96,7 +104,8 @@ void ControllerLink::drop_motion() {
 void ControllerLink::repeat_stop() {
   if (!dropped_stop_) return;
   const auto& status = now_.execution();
-  const bool acknowledged = status && status->trajectory == dropped_stop_->id && status->motion != MotionState::refused;
+  const bool acknowledged =
+      status && status->trajectory == dropped_stop_->id && status->motion != MotionState::refused;
   if (acknowledged || now_.active().trajectory == 0) return dropped_stop_.reset();
   if (to_seconds(waiting_.now() - stop_sent_) < kStopPeriod) return;
   stop_sent_ = waiting_.now();

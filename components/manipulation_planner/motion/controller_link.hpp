@@ -14,8 +14,8 @@ namespace handsel::manipulation_planner {
 class ControllerLink {
  public:
   /// The references must outlive what is made.
-  ControllerLink(const ActiveArm& arm, const Snapshot& now, Waiting& waiting, Outbox& outbox, Ids& ids,
-                 const config::ManipulationPlannerSettings& settings)
+  ControllerLink(const ActiveArm& arm, const Snapshot& now, Waiting& waiting, Outbox& outbox,
+                 Ids& ids, const config::ManipulationPlannerSettings& settings)
       : arm_(arm), now_(now), waiting_(waiting), outbox_(outbox), ids_(ids), settings_(settings) {}
 
   /// Returns whether commands are permitted now.
@@ -47,7 +47,8 @@ class ControllerLink {
 
   /// Begins to stop what a dropped action has set in motion, without waiting.
   void drop_motion();
-  /// Repeats the stop of drop_motion() until it is acknowledged: at first the epoch may have changed.
+  /// Repeats the stop of drop_motion() until it is acknowledged: at first the epoch may have
+  /// changed.
   void repeat_stop();
 
  private:

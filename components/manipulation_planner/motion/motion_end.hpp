@@ -26,9 +26,13 @@ struct Outcome {
   MotionEnd end{MotionEnd::reached};        ///< failed also where no motion was part of it
   ActionFailure kind{ActionFailure::none};  ///< of a failure: recovery is chosen by it
   /// Returns whether the target of the motion is no longer where it was.
-  bool target_moved() const { return end == MotionEnd::target_moved || end == MotionEnd::giver_approached; }
+  bool target_moved() const {
+    return end == MotionEnd::target_moved || end == MotionEnd::giver_approached;
+  }
   /// Returns whether another attempt at the same motion is of no use.
-  bool is_final() const { return target_moved() || end == MotionEnd::taken || end == MotionEnd::late; }
+  bool is_final() const {
+    return target_moved() || end == MotionEnd::taken || end == MotionEnd::late;
+  }
   /// Makes a failure for a reason of its own; `why`: one sentence.
   static Outcome failure(std::string why, ActionFailure of_kind = ActionFailure::other) {
     return {false, std::move(why), MotionEnd::failed, of_kind};
@@ -40,7 +44,9 @@ struct Outcome {
     return failure("the " + planner + " planner does not answer", ActionFailure::no_answer);
   }
   /// Makes the failure that an object or a person is not seen any more.
-  static Outcome out_of_sight(const std::string& what) { return failure(what + " is out of sight", ActionFailure::not_visible); }
+  static Outcome out_of_sight(const std::string& what) {
+    return failure(what + " is out of sight", ActionFailure::not_visible);
+  }
 };
 
 }  // namespace handsel::manipulation_planner

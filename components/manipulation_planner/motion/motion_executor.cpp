@@ -10,16 +10,17 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kSameGoal = 1e-6;                    // [rad]
-constexpr double kMaxDuration = 600;                  // a motion this long has been forgotten by everybody [s]
-constexpr double kAttemptPause = 0.3;                 // before the next attempt [s]
-constexpr double kMaxRetreatRatio = 1.5;              // of the retreat distance, from people
+constexpr double kSameGoal = 1e-6;        // [rad]
+constexpr double kMaxDuration = 600;      // a motion this long has been forgotten by everybody [s]
+constexpr double kAttemptPause = 0.3;     // before the next attempt [s]
+constexpr double kMaxRetreatRatio = 1.5;  // of the retreat distance, from people
 constexpr double kRetreatRatios[] = {0.5, 1.0, 1.5};  // of the retreat distance, straight
 
 /// Returns the sum of the max norms of the segments [rad].
 double length_of(const std::vector<Vector>& waypoints) {
   double length = 0;
-  for (std::size_t i = 1; i < waypoints.size(); ++i) length += (waypoints[i] - waypoints[i - 1]).cwiseAbs().maxCoeff();
+  for (std::size_t i = 1; i < waypoints.size(); ++i)
+    length += (waypoints[i] - waypoints[i - 1]).cwiseAbs().maxCoeff();
   return length;
 }
 
@@ -39,8 +40,10 @@ PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& mo
   return request;
 }
 
-TrajectoryRequest trajectory_request(Parts& parts, Client<TrajectoryRequest, TrajectoryReply>& client, const std::vector<Vector>& waypoints,
-                                     const Vector& start, const MotionSpec& motion) {
+TrajectoryRequest trajectory_request(Parts& parts,
+                                     Client<TrajectoryRequest, TrajectoryReply>& client,
+                                     const std::vector<Vector>& waypoints, const Vector& start,
+                                     const MotionSpec& motion) {
   TrajectoryRequest request;
   client.open(request);
   request.group = parts.arm.group().name;
@@ -52,13 +55,16 @@ TrajectoryRequest trajectory_request(Parts& parts, Client<TrajectoryRequest, Tra
   return request;
 }
 
-TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory, const MotionSpec& motion) {
+TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory,
+                                     const MotionSpec& motion) {
   TrajectoryCommand command = parts.link.stop_command();
-  for (const int axis : parts.arm.group().axes) command.axes.push_back(static_cast<std::uint32_t>(axis));
+  for (const int axis : parts.arm.group().axes)
+    command.axes.push_back(static_cast<std::uint32_t>(axis));
   command.trajectory = trajectory;
   command.attachment = parts.held.attachment();
   command.allowed_contacts = motion.allowed;
-  command.allowed_contacts.insert(command.allowed_contacts.end(), motion.tolerated.begin(), motion.tolerated.end());
+  command.allowed_contacts.insert(command.allowed_contacts.end(), motion.tolerated.begin(),
+                                  motion.tolerated.end());
   return command;
 }
 
@@ -74,13 +80,17 @@ Routine<PlannedPath> plan_path(Parts& parts, const Vector& start, const MotionSp
   planned.waypoints = reply.path;
   planned.start_touches = reply.start_touches;
   if (!reply.solved) planned.outcome = Outcome::failure(reply.reason);
-  if (length_of(planned.waypoints) > motion.max_length) planned.outcome = Outcome::failure("only a long way around leads there");
+  if (length_of(planned.waypoints) > motion.max_length)
+    planned.outcome = Outcome::failure("only a long way around leads there");
   co_return planned;
 }
 
 /// Replans the running motion until it ends by itself or must end.
-static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSpec& motion, TimePoint began) {
-  const auto is_over = [&] { return parts.link.has_ended(running.command) || parts.monitor.must_end(motion, began); };
+static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSpec& motion,
+                                  TimePoint began) {
+  const auto is_over = [&] {
+    return parts.link.has_ended(running.command) || parts.monitor.must_end(motion, began);
+  };
   const bool is_replanned = parts.settings.live_period() > 0 && !motion.is_straight;
   for (bool done = false; !done;) {
     const double period = is_replanned ? parts.replanner.period(parts.now.time()) : kMaxDuration;
@@ -88,7 +98,8 @@ static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSp
     if (done || !is_replanned) break;
     if (motion.receiver) co_await follow_receiver(parts, motion, running.waypoints.back());
     const bool follows = motion.object && motion.object->grasp;
-    const std::optional<Vector3> p_moved = follows ? parts.monitor.follow_object(motion) : std::nullopt;
+    const std::optional<Vector3> p_moved =
+        follows ? parts.monitor.follow_object(motion) : std::nullopt;
     co_await parts.replanner.check(running, motion);
     if (p_moved && (running.waypoints.back() - motion.goals.front()).norm() < kSameGoal)
       motion.object->p_world = parts.action.exchange_point = *p_moved;
@@ -98,7 +109,8 @@ static Routine<bool> watch_motion(Parts& parts, RunningMotion& running, MotionSp
 
 Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, MotionSpec& motion) {
   auto& timing = parts.clients.trajectory;
-  const TrajectoryRequest request = trajectory_request(parts, timing, waypoints, parts.arm.configuration(), motion);
+  const TrajectoryRequest request =
+      trajectory_request(parts, timing, waypoints, parts.arm.configuration(), motion);
   const bool answered = co_await timing.ask(request);
   if (!answered) co_return Outcome::no_answer("trajectory");
   if (!timing.reply()->solved) co_return Outcome::failure(timing.reply()->reason);
@@ -107,7 +119,8 @@ Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, Mot
   Outcome sent = co_await parts.link.send(command);
   if (!sent.good) co_return sent;
 
-  RunningMotion running{command.id, command.trajectory.duration(), waypoints, timing.reply()->speeds};
+  RunningMotion running{command.id, command.trajectory.duration(), waypoints,
+                        timing.reply()->speeds};
   const TimePoint began = parts.now.time();
   parts.monitor.restart();
   const bool ended = co_await watch_motion(parts, running, motion, began);
@@ -123,7 +136,8 @@ Routine<Outcome> execute(Parts& parts, const std::vector<Vector>& waypoints, Mot
 }
 
 /// Retreats from what ended a motion or is touched at its start; the reason grows if that fails.
-static Routine<bool> free_arm(Parts& parts, const std::string& touched, const MotionSpec& motion, Outcome& last) {
+static Routine<bool> free_arm(Parts& parts, const std::string& touched, const MotionSpec& motion,
+                              Outcome& last) {
   parts.refuse(text_of(motion.phase), last.reason);
   Outcome freed = co_await retreat_from(parts, touched, motion);
   if (!freed.good) last.reason += "; " + freed.reason;
@@ -143,7 +157,8 @@ Routine<Outcome> move(Parts& parts, const MotionSpec& asked) {
     if (planned.outcome.good) {
       last = co_await execute(parts, planned.waypoints, motion);
       if (last.good || last.is_final()) co_return last;
-      const Person* person = last.end == MotionEnd::person_too_near ? parts.now.person("") : nullptr;
+      const Person* person =
+          last.end == MotionEnd::person_too_near ? parts.now.person("") : nullptr;
       if (person != nullptr) in_the_way = person->id;
     } else {
       last = planned.outcome;
@@ -177,11 +192,13 @@ std::vector<Vector3> retreat_directions_from(const Parts& parts, const std::stri
 
 /// Returns goals of a retreat, those that lead away from people first, then in the order of the
 /// search.
-static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& touched, const Vector& start) {
+static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& touched,
+                                         const Vector& start) {
   const double distance = parts.settings.retreat_distance();
   const Pose& T_world_base = parts.now.T_world_base();
   const HumanState& people = parts.now.people();
-  std::vector<Vector> goals = parts.retreat.steps_away(start, T_world_base, people, kMaxRetreatRatio * distance);
+  std::vector<Vector> goals =
+      parts.retreat.steps_away(start, T_world_base, people, kMaxRetreatRatio * distance);
   std::reverse(goals.begin(), goals.end());
   for (const double ratio : kRetreatRatios) {
     for (const Vector3& direction : retreat_directions_from(parts, touched)) {
@@ -191,7 +208,8 @@ static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& 
     }
   }
   std::stable_partition(goals.begin(), goals.end(), [&](const Vector& goal) {
-    return parts.retreat.leads_away(start, RobotModel::with(start, parts.arm.group(), goal), T_world_base, people);
+    return parts.retreat.leads_away(start, RobotModel::with(start, parts.arm.group(), goal),
+                                    T_world_base, people);
   });
   return goals;
 }

@@ -14,10 +14,13 @@ struct Parts;
 /// Opens a request for a path. `start`: all axes [rad, m].
 PathRequest path_request(Parts& parts, const Vector& start, const MotionSpec& motion);
 /// Opens a request of `client` for a trajectory along the waypoints. `start`: all axes [rad, m].
-TrajectoryRequest trajectory_request(Parts& parts, Client<TrajectoryRequest, TrajectoryReply>& client, const std::vector<Vector>& waypoints,
-                                     const Vector& start, const MotionSpec& motion);
+TrajectoryRequest trajectory_request(Parts& parts,
+                                     Client<TrajectoryRequest, TrajectoryReply>& client,
+                                     const std::vector<Vector>& waypoints, const Vector& start,
+                                     const MotionSpec& motion);
 /// Makes a command for the arm in use.
-TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory, const MotionSpec& motion);
+TrajectoryCommand trajectory_command(Parts& parts, const Trajectory& trajectory,
+                                     const MotionSpec& motion);
 
 // References must outlive the routines.
 /// Asks for a path. `start`: all axes [rad, m].

@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::uint32_t kBlocked = bit(Cause::forecast_collision);
 constexpr std::uint32_t kTooNear = bit(Cause::separation) | bit(Cause::attention_slow);
-constexpr double kCreeping = 0.04;            // slower, as a speed factor, the arm does not arrive
-constexpr double kMinFollowed = 0.02;         // shift of an object that the motion follows [m]
-constexpr double kHandLength = 0.3;           // palm to what is beyond the open fingers [m]
-constexpr double kMaxShiftRatio = 0.5;        // of the distance ahead, that an object may shift meanwhile
+constexpr double kCreeping = 0.04;      // slower, as a speed factor, the arm does not arrive
+constexpr double kMinFollowed = 0.02;   // shift of an object that the motion follows [m]
+constexpr double kHandLength = 0.3;     // palm to what is beyond the open fingers [m]
+constexpr double kMaxShiftRatio = 0.5;  // of the distance ahead, that an object may shift meanwhile
 constexpr double kMaxShiftBesideHand = 0.04;  // shift that is always permitted [m]
 
 }  // namespace
@@ -19,7 +19,8 @@ constexpr double kMaxShiftBesideHand = 0.04;  // shift that is always permitted 
 void MotionMonitor::update() {
   const auto& status = now_.execution();
   const ActiveTrajectory& active = now_.active();
-  is_person_too_near_ = status && (status->causes & kTooNear) != 0 && active.trajectory != 0 && std::abs(active.speed_factor) < kCreeping;
+  is_person_too_near_ = status && (status->causes & kTooNear) != 0 && active.trajectory != 0 &&
+                        std::abs(active.speed_factor) < kCreeping;
   // An arm at rest has no collision ahead: it starts, and is held back again.
   if (status && (status->causes & kBlocked) != 0) held_back_at_ = now_.time();
   const bool is_held_back = to_seconds(now_.time() - held_back_at_) <= settings_.blocked_pause();
@@ -43,7 +44,8 @@ bool MotionMonitor::has_target_moved(const MotionSpec& motion) const {
   const double shifted = (p_object - target.p_world).norm();
   if (!target.grasp) return shifted > target.max_shift;
   const double ahead = (p_object - p_tool()).norm() - kHandLength;
-  const double max_shift = std::clamp(kMaxShiftRatio * ahead, kMaxShiftBesideHand, target.max_shift);
+  const double max_shift =
+      std::clamp(kMaxShiftRatio * ahead, kMaxShiftBesideHand, target.max_shift);
   return shifted > max_shift || !offers_.is_still_offered();
 }
 
@@ -51,14 +53,17 @@ bool MotionMonitor::is_area_cleared(const MotionSpec& motion) const {
   const std::string& person = motion.clears_area_for;
   if (person.empty()) return false;
   const Vector3 p_hand = arm_.T_world_tool().translation();
-  return offers_.find(offers_.asked_object(), person, p_hand) && (motion.accepts_any_offer || !area_.is_occupied(person));
+  return offers_.find(offers_.asked_object(), person, p_hand) &&
+         (motion.accepts_any_offer || !area_.is_occupied(person));
 }
 
-bool MotionMonitor::is_late(const MotionSpec& motion, TimePoint began) const { return to_seconds(now_.time() - began) > motion.timeout; }
+bool MotionMonitor::is_late(const MotionSpec& motion, TimePoint began) const {
+  return to_seconds(now_.time() - began) > motion.timeout;
+}
 
 bool MotionMonitor::must_end(const MotionSpec& motion, TimePoint began) const {
-  return is_late(motion, began) || blocked_for_ > settings_.blocked_timeout() || has_target_moved(motion) ||
-         held_.is_taken_by(motion.yields_to) || is_area_cleared(motion);
+  return is_late(motion, began) || blocked_for_ > settings_.blocked_timeout() ||
+         has_target_moved(motion) || held_.is_taken_by(motion.yields_to) || is_area_cleared(motion);
 }
 
 Outcome MotionMonitor::why_ended(const MotionSpec& motion, TimePoint began) const {
@@ -67,7 +72,8 @@ Outcome MotionMonitor::why_ended(const MotionSpec& motion, TimePoint began) cons
     why = Outcome::failure(motion.yields_to + " takes hold of " + held_.id());
     why.end = MotionEnd::taken;
   } else if (has_target_moved(motion)) {
-    const bool is_approached = motion.object->grasp && offers_.is_giver_approaching(arm_.T_world_tool().translation());
+    const bool is_approached =
+        motion.object->grasp && offers_.is_giver_approaching(arm_.T_world_tool().translation());
     why = Outcome::failure(motion.object->object + " was moved away");
     why.end = is_approached ? MotionEnd::giver_approached : MotionEnd::target_moved;
   } else {

@@ -14,7 +14,8 @@ namespace handsel::manipulation_planner {
 class MotionMonitor {
  public:
   /// The references must outlive what is made.
-  MotionMonitor(const ActiveArm& arm, const HeldObject& held, const OfferDetector& offers, const OfferArea& area, const Snapshot& now,
+  MotionMonitor(const ActiveArm& arm, const HeldObject& held, const OfferDetector& offers,
+                const OfferArea& area, const Snapshot& now,
                 const config::ManipulationPlannerSettings& settings)
       : arm_(arm), held_(held), offers_(offers), area_(area), now_(now), settings_(settings) {}
 

@@ -28,20 +28,20 @@ struct ReceiverTarget {
 };
 
 struct MotionSpec {
-  ActionPhase phase{};                                      ///< part of the action
-  std::vector<Vector> goals;                                ///< axes of the arm, alternatives [rad]
-  bool is_straight{false};                                  ///< straight motion of the axes; it is not replanned
-  std::vector<std::string> allowed;                         ///< what may be touched
-  std::vector<std::string> tolerated;                       ///< planned around; a foreseen touch does not hold the arm
-  double speed{1.0};                                        ///< scale of the velocity limits
-  double max_length{1e9};                                   ///< of the path, sum of the max norms of its segments [rad]
+  ActionPhase phase{};                 ///< part of the action
+  std::vector<Vector> goals;           ///< axes of the arm, alternatives [rad]
+  bool is_straight{false};             ///< straight motion of the axes; it is not replanned
+  std::vector<std::string> allowed;    ///< what may be touched
+  std::vector<std::string> tolerated;  ///< planned around; a foreseen touch does not hold the arm
+  double speed{1.0};                   ///< scale of the velocity limits
+  double max_length{1e9};              ///< of the path, sum of the max norms of its segments [rad]
   double timeout{std::numeric_limits<double>::infinity()};  ///< for the motion [s]
 
   std::optional<ObjectTarget> object;      ///< ends when this object is moved
   std::optional<ReceiverTarget> receiver;  ///< goals are handover configurations for this person
   std::string yields_to;                   ///< ends when this person takes hold; empty: nobody
-  std::string clears_area_for;             ///< ends when this person offers the object; empty: nobody
-  bool accepts_any_offer{};                ///< such an offer counts however little space there is
+  std::string clears_area_for;  ///< ends when this person offers the object; empty: nobody
+  bool accepts_any_offer{};     ///< such an offer counts however little space there is
 };
 
 /// A path of the arm, or why there is none.

@@ -11,8 +11,10 @@
 namespace handsel::manipulation_planner {
 namespace {
 
-constexpr double kMinLead = 0.04;       // a command is with the controller this long before it is due [s]
-constexpr double kRetimedReach = 0.3;   // the same path at another speed is joined within this, max norm [rad]
+constexpr double kMinLead =
+    0.04;  // a command is with the controller this long before it is due [s]
+constexpr double kRetimedReach =
+    0.3;  // the same path at another speed is joined within this, max norm [rad]
 constexpr double kReachStep = 0.1;      // or within this more, as often as braking needs it [rad]
 constexpr double kReturnTimeout = 1.0;  // for the controller to report the old command again [s]
 constexpr double kSameTime = 1e-6;      // [s]
@@ -43,20 +45,26 @@ bool OnlineReplanner::is_over(const RunningMotion& running) const {
 
 SwitchPlanner OnlineReplanner::switch_planner() const {
   const auto& settings = parts_.settings;
-  return {parts_.arm.shared_robot(), parts_.arm.group(), {settings.live_slower(), settings.live_gain()}};
+  return {parts_.arm.shared_robot(),
+          parts_.arm.group(),
+          {settings.live_slower(), settings.live_gain()}};
 }
 
-PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion, const SwitchPoint& point) const {
+PlanningSnapshot OnlineReplanner::snapshot(const MotionSpec& motion,
+                                           const SwitchPoint& point) const {
   Snapshot& now = parts_.now;
-  const Vector q = RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
+  const Vector q =
+      RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
   const double gain = period_.heard(now.time()) ? cost_gain_ : 1.0;
-  return {now.scene(), now.people(), now.layers(), parts_.held.attachment(), motion.allowed, q, gain};
+  return {now.scene(), now.people(), now.layers(), parts_.held.attachment(), motion.allowed,
+          q,           gain};
 }
 
 Outcome OnlineReplanner::find_switch_point(const RunningMotion& running, SwitchPoint& point) const {
   const ActiveTrajectory& active = parts_.now.active();
   const double replan_time = parts_.settings.replan_time();
-  if (active.trajectory != running.command || active.rest.size() != static_cast<int>(parts_.arm.group().axes.size()))
+  if (active.trajectory != running.command ||
+      active.rest.size() != static_cast<int>(parts_.arm.group().axes.size()))
     return Outcome::failure("the controller tells of another motion");
   const double duration = active.rest.duration();
   point.offset = duration - running.duration;
@@ -73,14 +81,17 @@ Routine<Outcome> OnlineReplanner::check(RunningMotion& running, const MotionSpec
   SwitchPoint point;
   Outcome found = find_switch_point(running, point);
   if (!found.good) co_return found;
-  const Vector start = RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
+  const Vector start =
+      RobotModel::with(parts_.arm.configuration(), parts_.arm.group(), point.from.position);
   auto& path = parts_.clients.path;
   PathRequest request = path_request(parts_, start, motion);
   request.running = running.waypoints;
   request.time_limit = parts_.settings.live_time();
   ++counts_.checks;
   path.send(request);
-  const auto has_come = [this, &path, &running] { return path.reply().has_value() || is_over(running); };
+  const auto has_come = [this, &path, &running] {
+    return path.reply().has_value() || is_over(running);
+  };
   const bool has_path = co_await parts_.waiting.until(has_come, parts_.settings.replan_time());
   if (!has_path || is_over(running)) co_return Outcome::failure("no path came in time");
   if (!path.reply()->solved) {
@@ -92,18 +103,26 @@ Routine<Outcome> OnlineReplanner::check(RunningMotion& running, const MotionSpec
 }
 
 /// Times the path that has come, and the running one as it would be now, and uses the better one.
-Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point, const Vector& start) {
+Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec& motion,
+                                       const SwitchPoint& point, const Vector& start) {
   const auto& settings = parts_.settings;
   auto& timing = parts_.clients.trajectory;
   auto& comparison = parts_.clients.comparison;
   const PathOutcome outcome = parts_.clients.path.reply()->outcome;
   const std::vector<Vector> waypoints = parts_.clients.path.reply()->path;
-  const bool is_unchanged = outcome == PathOutcome::kept, is_only_cheaper = outcome == PathOutcome::improved;
-  const std::vector<Vector> as_before = remainder(running.waypoints, point.from.position, settings.live_reach());
-  const bool is_compared = is_only_cheaper || (is_unchanged && settings.live_pace() > 0 && !as_before.empty());
-  if (is_compared) comparison.send(trajectory_request(parts_, comparison, as_before, start, motion));
+  const bool is_unchanged = outcome == PathOutcome::kept,
+             is_only_cheaper = outcome == PathOutcome::improved;
+  const std::vector<Vector> as_before =
+      remainder(running.waypoints, point.from.position, settings.live_reach());
+  const bool is_compared =
+      is_only_cheaper || (is_unchanged && settings.live_pace() > 0 && !as_before.empty());
+  if (is_compared)
+    comparison.send(trajectory_request(parts_, comparison, as_before, start, motion));
   if (!is_unchanged) timing.send(trajectory_request(parts_, timing, waypoints, start, motion));
-  const auto have_come = [&] { return ((is_unchanged || timing.reply()) && (!is_compared || comparison.reply())) || is_over(running); };
+  const auto have_come = [&] {
+    return ((is_unchanged || timing.reply()) && (!is_compared || comparison.reply())) ||
+           is_over(running);
+  };
   const bool is_timed = co_await parts_.waiting.until(have_come, settings.replan_time());
   if (!is_timed || is_over(running)) co_return Outcome::failure("no trajectory came in time");
   if (is_unchanged) {
@@ -116,7 +135,8 @@ Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec&
     auto candidate = std::make_shared<SwitchCandidate>();
     candidate->onto = timing.reply()->trajectory;
     candidate->max_reach = settings.live_reach();
-    if (is_only_cheaper && comparison.reply()->solved) candidate->along = comparison.reply()->trajectory;
+    if (is_only_cheaper && comparison.reply()->solved)
+      candidate->along = comparison.reply()->trajectory;
     const RunningMotion next{0, 0, waypoints, timing.reply()->speeds};
     Outcome switched = co_await switch_to_candidate(running, motion, point, candidate, next);
     if (switched.good) ++counts_.switched;
@@ -130,8 +150,10 @@ Routine<Outcome> OnlineReplanner::plan(RunningMotion& running, const MotionSpec&
   co_return Outcome{};
 }
 
-/// Runs the same path slower where a segment ahead must be slower, faster where all the rest then is.
-Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
+/// Runs the same path slower where a segment ahead must be slower, faster where all the rest then
+/// is.
+Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpec& motion,
+                                         const SwitchPoint& point,
                                          const std::vector<Vector>& waypoints) {
   const TrajectoryReply reply = *parts_.clients.comparison.reply();
   auto candidate = std::make_shared<SwitchCandidate>();
@@ -140,16 +162,20 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
   const SwitchPlanner planner = switch_planner();
   Switched along;
   along.trajectory = reply.trajectory;
-  for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach(); reach += kReachStep) {
+  for (double reach = kRetimedReach; !point.at_rest && reach <= parts_.settings.live_reach();
+       reach += kReachStep) {
     candidate->max_reach = reach;
     along = planner.join(point.from, reply.trajectory, *candidate);
     if (along.ok() && !turns_back(along, reply.trajectory)) break;
   }
-  if (!along.ok() || turns_back(along, reply.trajectory)) co_return Outcome::failure("the arm is too fast to go over");
+  if (!along.ok() || turns_back(along, reply.trajectory))
+    co_return Outcome::failure("the arm is too fast to go over");
   const double ratio = 1 - parts_.settings.live_pace();
   if (!is_slower_ahead(running.speeds, reply.speeds, waypoints.size() - 1, ratio)) {
-    const bool is_faster = is_slower_ahead(reply.speeds, running.speeds, waypoints.size() - 1, ratio);
-    if (!is_faster || along.trajectory.duration() > ratio * point.rest) co_return Outcome::failure("it would go as before");
+    const bool is_faster =
+        is_slower_ahead(reply.speeds, running.speeds, waypoints.size() - 1, ratio);
+    if (!is_faster || along.trajectory.duration() > ratio * point.rest)
+      co_return Outcome::failure("it would go as before");
   }
   const RunningMotion next{0, 0, waypoints, reply.speeds};
   Outcome switched = co_await switch_to_candidate(running, motion, point, candidate, next);
@@ -158,16 +184,19 @@ Routine<Outcome> OnlineReplanner::retime(RunningMotion& running, const MotionSpe
 
 bool OnlineReplanner::is_too_late(const SwitchPoint& point) const {
   const double time = parts_.now.active().time;
-  return point.at_rest ? !parts_.arm.at_rest() || time > point.time + kSameTime : time + kMinLead > point.time;
+  return point.at_rest ? !parts_.arm.at_rest() || time > point.time + kSameTime
+                       : time + kMinLead > point.time;
 }
 
 /// Switches to the candidate if it is free of collision, worth the switch and in time. `next`: its
 /// waypoints and speeds.
-Routine<Outcome> OnlineReplanner::switch_to_candidate(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
-                                                      const std::shared_ptr<SwitchCandidate>& candidate, const RunningMotion& next) {
-  const std::function<void()> job = [candidate, point, cost = cost_, planner = switch_planner(),
-                                     world = parts_.worker.world(parts_.arm.robot(), parts_.now.objects()),
-                                     now = snapshot(motion, point)] { planner.evaluate(*candidate, *world, *cost, now, point); };
+Routine<Outcome> OnlineReplanner::switch_to_candidate(
+    RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
+    const std::shared_ptr<SwitchCandidate>& candidate, const RunningMotion& next) {
+  const std::function<void()> job =
+      [candidate, point, cost = cost_, planner = switch_planner(),
+       world = parts_.worker.world(parts_.arm.robot(), parts_.now.objects()),
+       now = snapshot(motion, point)] { planner.evaluate(*candidate, *world, *cost, now, point); };
   Outcome worked = co_await parts_.worker.run(job);
   if (!worked.good) co_return worked;
   if (is_over(running)) co_return Outcome::failure("the motion has ended");
@@ -175,7 +204,8 @@ Routine<Outcome> OnlineReplanner::switch_to_candidate(RunningMotion& running, co
     ++counts_.refused;
     co_return Outcome::failure("no free motion leads over to the new path");
   }
-  if (!candidate->is_worth) co_return Outcome::failure("the new path takes longer than it is worth");
+  if (!candidate->is_worth)
+    co_return Outcome::failure("the new path takes longer than it is worth");
   if (is_too_late(point)) {
     ++counts_.refused;
     co_return Outcome::failure("the new path came too late");
@@ -187,7 +217,9 @@ Routine<Outcome> OnlineReplanner::switch_to_candidate(RunningMotion& running, co
   if (parts_.now.execution()->motion == MotionState::refused) {
     ++counts_.refused;
     const Outcome why = Outcome::failure("the new path was refused: " + parts_.link.reason());
-    const auto is_back = [this, &running] { return parts_.now.execution()->trajectory == running.command; };
+    const auto is_back = [this, &running] {
+      return parts_.now.execution()->trajectory == running.command;
+    };
     co_await parts_.waiting.until(is_back, kReturnTimeout);
     co_return why;
   }

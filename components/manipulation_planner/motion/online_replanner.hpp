@@ -1,6 +1,6 @@
-// Online replanning: a running motion is checked again and again for a better path for the people as
-// they are now, and for a path around what came into it (chapter sections 2.1 and 4.1.1). The path
-// planner keeps what lies before the switch point; the controller is given its time.
+// Online replanning: a running motion is checked again and again for a better path for the people
+// as they are now, and for a path around what came into it (chapter sections 2.1 and 4.1.1). The
+// path planner keeps what lies before the switch point; the controller is given its time.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,11 @@ struct ReplanCounts {
 class OnlineReplanner {
  public:
   /// `parts` must outlive what is made; it is used only when a motion runs.
-  OnlineReplanner(Parts& parts, const config::ManipulationPlannerSettings& settings, std::shared_ptr<HumanCost> cost)
-      : parts_(parts), period_(settings.live_period(), settings.live_longest(), 0.0), cost_(std::move(cost)) {}
+  OnlineReplanner(Parts& parts, const config::ManipulationPlannerSettings& settings,
+                  std::shared_ptr<HumanCost> cost)
+      : parts_(parts),
+        period_(settings.live_period(), settings.live_longest(), 0.0),
+        cost_(std::move(cost)) {}
 
   /// Takes the advised period [s] and gain of the saved cost; both hold for a moment only.
   void advise(double period, double cost_gain, TimePoint now);
@@ -48,10 +51,14 @@ class OnlineReplanner {
 
  private:
   Outcome find_switch_point(const RunningMotion& running, SwitchPoint& point) const;
-  Routine<Outcome> plan(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point, const Vector& start);
-  Routine<Outcome> retime(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point, const std::vector<Vector>& waypoints);
-  Routine<Outcome> switch_to_candidate(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
-                                       const std::shared_ptr<SwitchCandidate>& candidate, const RunningMotion& next);
+  Routine<Outcome> plan(RunningMotion& running, const MotionSpec& motion, const SwitchPoint& point,
+                        const Vector& start);
+  Routine<Outcome> retime(RunningMotion& running, const MotionSpec& motion,
+                          const SwitchPoint& point, const std::vector<Vector>& waypoints);
+  Routine<Outcome> switch_to_candidate(RunningMotion& running, const MotionSpec& motion,
+                                       const SwitchPoint& point,
+                                       const std::shared_ptr<SwitchCandidate>& candidate,
+                                       const RunningMotion& next);
   bool is_over(const RunningMotion& running) const;
   bool is_too_late(const SwitchPoint& point) const;
   SwitchPlanner switch_planner() const;

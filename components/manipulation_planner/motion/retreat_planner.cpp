@@ -10,9 +10,10 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kNear = 0.12;       // nearer, the guard permits only motion away, about [m]
-constexpr double kMinAway = 0.6;     // part of a link's motion that leads away; the guard asks for less
-constexpr double kStep = 0.01;       // of the retreat [m]
+constexpr double kNear = 0.12;  // nearer, the guard permits only motion away, about [m]
+constexpr double kMinAway =
+    0.6;                        // part of a link's motion that leads away; the guard asks for less
+constexpr double kStep = 0.01;  // of the retreat [m]
 constexpr double kLookahead = 0.02;  // of a motion, by its fastest axis [rad, m]
 constexpr double kDamping = 1e-3;    // of the least-squares solution
 constexpr double kMaxTurn = 0.1;     // of one axis for a step [rad, m]
@@ -20,14 +21,16 @@ constexpr double kMaxTurn = 0.1;     // of one axis for a step [rad, m]
 struct Placed {
   Vector3 a, b;
 };
-Placed placed(const LinkCapsule& capsule, const std::vector<Pose>& T_root_link, const Pose& T_world_root) {
+Placed placed(const LinkCapsule& capsule, const std::vector<Pose>& T_root_link,
+              const Pose& T_world_root) {
   const Pose T = T_world_root * T_root_link[static_cast<std::size_t>(capsule.link)];
   return {T * capsule.a, T * capsule.b};
 }
 
 }  // namespace
 
-RetreatPlanner::RetreatPlanner(const RobotModel& robot, const Group& arm) : robot_(robot), arm_(arm), capsules_(robot_capsules(robot)) {}
+RetreatPlanner::RetreatPlanner(const RobotModel& robot, const Group& arm)
+    : robot_(robot), arm_(arm), capsules_(robot_capsules(robot)) {}
 
 bool RetreatPlanner::within_limits(const Vector& q) const {
   return std::all_of(arm_.axes.begin(), arm_.axes.end(), [&](int axis) {
@@ -42,15 +45,18 @@ std::vector<Pose> RetreatPlanner::links(const Vector& q) const {
   return out;
 }
 
-bool RetreatPlanner::leads_away(const Vector& from, const Vector& to, const Pose& T_world_base, const HumanState& people) const {
+bool RetreatPlanner::leads_away(const Vector& from, const Vector& to, const Pose& T_world_base,
+                                const HumanState& people) const {
   const double farthest = (to - from).cwiseAbs().maxCoeff();
   if (farthest < 1e-9) return true;
-  const std::vector<Pose> before = links(from), after = links(from + std::min(1.0, kLookahead / farthest) * (to - from));
+  const std::vector<Pose> before = links(from),
+                          after = links(from + std::min(1.0, kLookahead / farthest) * (to - from));
   Vector3 on_robot, on_person;
   for (const Person& person : people.people) {
     for (const BodyCapsule& part : body_capsules(person)) {
       for (const LinkCapsule& link : capsules_) {
-        const Placed old = placed(link, before, T_world_base), now = placed(link, after, T_world_base);
+        const Placed old = placed(link, before, T_world_base),
+                     now = placed(link, after, T_world_base);
         const double moved = std::max((now.a - old.a).norm(), (now.b - old.b).norm());
         if (moved < 1e-6) continue;
         const double was = nearest_points(old.a, old.b, part.a, part.b, on_robot, on_person);
@@ -63,18 +69,22 @@ bool RetreatPlanner::leads_away(const Vector& from, const Vector& to, const Pose
   return true;
 }
 
-double RetreatPlanner::distance(const Vector& q, const Pose& T_world_base, const Vector3& p_world) const {
+double RetreatPlanner::distance(const Vector& q, const Pose& T_world_base,
+                                const Vector3& p_world) const {
   const std::vector<Pose> T_root_link = links(q);
   double min = std::numeric_limits<double>::infinity();
   Vector3 on_robot, on_point;
   for (const LinkCapsule& link : capsules_) {
     const Placed arm = placed(link, T_root_link, T_world_base);
-    min = std::min(min, std::sqrt(nearest_points(arm.a, arm.b, p_world, p_world, on_robot, on_point)) - link.radius);
+    min = std::min(min,
+                   std::sqrt(nearest_points(arm.a, arm.b, p_world, p_world, on_robot, on_point)) -
+                       link.radius);
   }
   return min;
 }
 
-std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T_world_base, const HumanState& people,
+std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T_world_base,
+                                               const HumanState& people,
                                                double max_distance) const {
   struct Near {
     int link{};
@@ -91,15 +101,18 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
         for (const LinkCapsule& link : capsules_) {
           const Placed arm = placed(link, T_root_link, T_world_base);
           Vector3 on_robot, on_person;
-          const double apart = std::sqrt(nearest_points(arm.a, arm.b, part.a, part.b, on_robot, on_person));
+          const double apart =
+              std::sqrt(nearest_points(arm.a, arm.b, part.a, part.b, on_robot, on_person));
           if (apart < 1e-9 || apart - link.radius - part.radius > kNear) continue;
           const Pose T_world_link = T_world_base * T_root_link[static_cast<std::size_t>(link.link)];
-          near.push_back({link.link, T_world_link.inverse() * on_robot, on_robot, (on_robot - on_person) / apart});
+          near.push_back({link.link, T_world_link.inverse() * on_robot, on_robot,
+                          (on_robot - on_person) / apart});
         }
       }
     }
     if (near.empty()) break;
-    Eigen::MatrixXd rates(static_cast<Eigen::Index>(near.size()), n);  // of each distance, by each axis of the arm
+    Eigen::MatrixXd rates(static_cast<Eigen::Index>(near.size()),
+                          n);  // of each distance, by each axis of the arm
     for (Eigen::Index i = 0; i < n; ++i) {
       constexpr double kSmall = 1e-5;
       Vector turned = q;
@@ -107,15 +120,20 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
       const std::vector<Pose> T_root_turned = links(turned);
       for (Eigen::Index k = 0; k < rates.rows(); ++k) {
         const Near& one = near[static_cast<std::size_t>(k)];
-        const Vector3 there = T_world_base * T_root_turned[static_cast<std::size_t>(one.link)] * one.in_link;
+        const Vector3 there =
+            T_world_base * T_root_turned[static_cast<std::size_t>(one.link)] * one.in_link;
         rates(k, i) = (there - one.at).dot(one.away) / kSmall;
       }
     }
-    const Eigen::MatrixXd normal = rates * rates.transpose() + kDamping * Eigen::MatrixXd::Identity(rates.rows(), rates.rows());
-    const Vector change = rates.transpose() * normal.ldlt().solve(Vector::Constant(rates.rows(), kStep));
+    const Eigen::MatrixXd normal = rates * rates.transpose() +
+                                   kDamping * Eigen::MatrixXd::Identity(rates.rows(), rates.rows());
+    const Vector change =
+        rates.transpose() * normal.ldlt().solve(Vector::Constant(rates.rows(), kStep));
     Vector next = q;
     for (Eigen::Index i = 0; i < n; ++i) next[arm_.axes[static_cast<std::size_t>(i)]] += change[i];
-    if (change.cwiseAbs().maxCoeff() > kMaxTurn || !within_limits(next) || !leads_away(q, next, T_world_base, people)) break;
+    if (change.cwiseAbs().maxCoeff() > kMaxTurn || !within_limits(next) ||
+        !leads_away(q, next, T_world_base, people))
+      break;
     q = next;
     Vector arm(n);
     for (Eigen::Index i = 0; i < n; ++i) arm[i] = q[arm_.axes[static_cast<std::size_t>(i)]];
@@ -124,14 +142,16 @@ std::vector<Vector> RetreatPlanner::steps_away(const Vector& from, const Pose& T
   return out;
 }
 
-std::vector<Vector3> retreat_directions(const Pose& T_world_tool, const Vector3& p_world_from, const Vector3& p_world_base) {
+std::vector<Vector3> retreat_directions(const Pose& T_world_tool, const Vector3& p_world_from,
+                                        const Vector3& p_world_base) {
   const Vector3 p_tool = T_world_tool.translation();
   Vector3 level = p_tool - p_world_from;
   level.z() = 0;
   if (level.norm() < 1e-3) level = p_world_base - p_tool;
   level.z() = 0;
   level.normalize();
-  const Vector3 up = Vector3::UnitZ(), aside = up.cross(level), hand_back = -T_world_tool.linear().col(2);
+  const Vector3 up = Vector3::UnitZ(), aside = up.cross(level),
+                hand_back = -T_world_tool.linear().col(2);
   return {hand_back,
           level,
           (level + up).normalized(),

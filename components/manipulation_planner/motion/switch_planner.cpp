@@ -11,8 +11,9 @@ namespace {
 constexpr double kStep = 0.004;     // checks of the connecting motion [rad, max norm]
 constexpr double kRestStep = 0.01;  // checks of what follows it [rad, max norm]
 constexpr double kMargin = 0.01;    // around furniture and what other axes turn [m]
-constexpr double kReserve = 1.1;    // part of the limits that a switch keeps: so the comfort limits hold
-constexpr double kCostStep = 0.1;   // samples of the cost along a trajectory [s]
+constexpr double kReserve =
+    1.1;  // part of the limits that a switch keeps: so the comfort limits hold
+constexpr double kCostStep = 0.1;  // samples of the cost along a trajectory [s]
 
 /// Returns until when the trajectory has not been farther than `reach` from `from` [s].
 double within_reach(const Trajectory& trajectory, const Vector& from, double reach) {
@@ -28,11 +29,15 @@ double within_reach(const Trajectory& trajectory, const Vector& from, double rea
 
 }  // namespace
 
-bool turns_back(const Switched& motion, const Trajectory& onto) { return motion.ok() && motion.trajectory.duration() > onto.duration(); }
+bool turns_back(const Switched& motion, const Trajectory& onto) {
+  return motion.ok() && motion.trajectory.duration() > onto.duration();
+}
 
-Switched SwitchPlanner::join(const MotionState3& from, const Trajectory& to, const SwitchCandidate& candidate) const {
+Switched SwitchPlanner::join(const MotionState3& from, const Trajectory& to,
+                             const SwitchCandidate& candidate) const {
   KinematicLimits limits = robot_->comfort_limits();
-  for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk}) *part = kReserve * RobotModel::part(*part, arm_);
+  for (Vector* part : {&limits.velocity, &limits.acceleration, &limits.jerk})
+    *part = kReserve * RobotModel::part(*part, arm_);
   if (candidate.speed < 1) {
     const Vector present = limits.velocity.cwiseMin(kReserve * from.velocity.cwiseAbs());
     limits.velocity = (candidate.speed * limits.velocity).cwiseMax(present);
@@ -45,28 +50,36 @@ Switched SwitchPlanner::join(const MotionState3& from, const Trajectory& to, con
 
 bool SwitchPlanner::is_within_limits(const Vector& joints) const {
   for (int i = 0; i < joints.size(); ++i) {
-    const Axis& axis = robot_->axes()[static_cast<std::size_t>(arm_.axes[static_cast<std::size_t>(i)])];
+    const Axis& axis =
+        robot_->axes()[static_cast<std::size_t>(arm_.axes[static_cast<std::size_t>(i)])];
     if (joints[i] < axis.lower || joints[i] > axis.upper) return false;
   }
   return true;
 }
 
-bool SwitchPlanner::is_free(CollisionWorld& world, const Switched& motion, const Vector& q_other) const {
+bool SwitchPlanner::is_free(CollisionWorld& world, const Switched& motion,
+                            const Vector& q_other) const {
   double rate = kReserve * RobotModel::part(robot_->comfort_limits().velocity, arm_).maxCoeff();
-  for (const AxisTrajectory& axis : motion.trajectory.axes) rate = std::max(rate, std::abs(axis.start.velocity));
+  for (const AxisTrajectory& axis : motion.trajectory.axes)
+    rate = std::max(rate, std::abs(axis.start.velocity));
   // Behind the connecting motion the path is known to be free, but its blends are not.
   const double whole = motion.trajectory.duration(), connecting = motion.connecting;
   const int first = std::max(2, static_cast<int>(std::ceil(rate * connecting / kStep)));
-  const int steps = first + static_cast<int>(std::ceil(rate * std::max(0.0, whole - connecting) / kRestStep));
+  const int steps =
+      first + static_cast<int>(std::ceil(rate * std::max(0.0, whole - connecting) / kRestStep));
   for (int k = 0; k <= steps; ++k) {
-    const double t = k <= first ? connecting * k / first : connecting + (whole - connecting) * (k - first) / (steps - first);
+    const double t = k <= first ? connecting * k / first
+                                : connecting + (whole - connecting) * (k - first) / (steps - first);
     const Vector joints = motion.trajectory.at(t).position;
-    if (!is_within_limits(joints) || !world.is_free(RobotModel::with(q_other, arm_, joints))) return false;
+    if (!is_within_limits(joints) || !world.is_free(RobotModel::with(q_other, arm_, joints)))
+      return false;
   }
   return true;
 }
 
-std::optional<Trajectory> SwitchPlanner::free_motion(CollisionWorld& world, const PlanningSnapshot& now, const MotionState3& from,
+std::optional<Trajectory> SwitchPlanner::free_motion(CollisionWorld& world,
+                                                     const PlanningSnapshot& now,
+                                                     const MotionState3& from,
                                                      const SwitchCandidate& candidate) const {
   const Trajectory& to = *candidate.onto;
   const Switched motion = join(from, to, candidate);
@@ -82,30 +95,35 @@ std::optional<Trajectory> SwitchPlanner::free_motion(CollisionWorld& world, cons
   return motion.trajectory;
 }
 
-double SwitchPlanner::cost_at(const HumanCost& cost, const Vector& joints, const Vector& q_other) const {
+double SwitchPlanner::cost_at(const HumanCost& cost, const Vector& joints,
+                              const Vector& q_other) const {
   return cost(RobotModel::with(q_other, arm_, joints));
 }
 
 /// Returns the integral along the trajectory of the human-aware cost above `level` [rad].
-double SwitchPlanner::cost_along(const HumanCost& cost, const Trajectory& trajectory, const Vector& q_other, double level) const {
+double SwitchPlanner::cost_along(const HumanCost& cost, const Trajectory& trajectory,
+                                 const Vector& q_other, double level) const {
   const int samples = std::max(1, static_cast<int>(std::ceil(trajectory.duration() / kCostStep)));
   double sum = 0;
   for (int k = 0; k < samples; ++k) {
-    const auto at = [&](double sample) { return trajectory.at(trajectory.duration() * sample / samples).position; };
+    const auto at = [&](double sample) {
+      return trajectory.at(trajectory.duration() * sample / samples).position;
+    };
     sum += std::max(0.0, cost_at(cost, at(k + 0.5), q_other) - level) * (at(k + 1) - at(k)).norm();
   }
   return sum;
 }
 
-void SwitchPlanner::evaluate(SwitchCandidate& candidate, CollisionWorld& world, HumanCost& cost, const PlanningSnapshot& now,
-                             const SwitchPoint& point) const {
+void SwitchPlanner::evaluate(SwitchCandidate& candidate, CollisionWorld& world, HumanCost& cost,
+                             const PlanningSnapshot& now, const SwitchPoint& point) const {
   const double from_rest = candidate.onto->duration();
   const MotionState3& from = point.from;
   if (!point.at_rest) {
     candidate.onto = free_motion(world, now, from, candidate);
     if (candidate.along) {
       Switched along = join(from, *candidate.along, candidate);
-      if (along.ok() && !turns_back(along, *candidate.along)) candidate.along = std::move(along.trajectory);
+      if (along.ok() && !turns_back(along, *candidate.along))
+        candidate.along = std::move(along.trajectory);
     }
   }
   if (!candidate.onto || !candidate.along) return;
@@ -117,8 +135,11 @@ void SwitchPlanner::evaluate(SwitchCandidate& candidate, CollisionWorld& world, 
   for (const Trajectory* trajectory : {&*candidate.onto, &*candidate.along})
     level = std::min(level, cost_at(cost, trajectory->at(trajectory->duration()).position, now.q));
   const double before = cost_along(cost, *candidate.along, now.q, level);
-  const double saved = before > 0 ? now.cost_gain * (1 - cost_along(cost, *candidate.onto, now.q, level) / before) : 0;
-  const double max_duration = std::min(from_rest, (1 + bounds_.max_slower * saved) * candidate.along->duration());
+  const double saved =
+      before > 0 ? now.cost_gain * (1 - cost_along(cost, *candidate.onto, now.q, level) / before)
+                 : 0;
+  const double max_duration =
+      std::min(from_rest, (1 + bounds_.max_slower * saved) * candidate.along->duration());
   candidate.is_worth = saved >= bounds_.min_saved && candidate.onto->duration() <= max_duration;
 }
 

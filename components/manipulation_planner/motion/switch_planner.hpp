@@ -21,11 +21,12 @@ struct SwitchBounds {
 
 /// A path that is offered while another one runs.
 struct SwitchCandidate {
-  std::optional<Trajectory> onto;   ///< onto it; nullopt: nothing leads there
-  std::optional<Trajectory> along;  ///< the running one, timed for the people now; nullopt: it must be left
-  bool is_worth{true};              ///< switching to it
-  double speed{1};                  ///< scale of the velocity limits that the connecting motion keeps
-  double max_reach{};               ///< joined within this of the switch point, max norm [rad]
+  std::optional<Trajectory> onto;  ///< onto it; nullopt: nothing leads there
+  std::optional<Trajectory>
+      along;            ///< the running one, timed for the people now; nullopt: it must be left
+  bool is_worth{true};  ///< switching to it
+  double speed{1};      ///< scale of the velocity limits that the connecting motion keeps
+  double max_reach{};   ///< joined within this of the switch point, max norm [rad]
 };
 
 /// Where the running path is left.
@@ -55,17 +56,20 @@ class SwitchPlanner {
       : robot_(std::move(robot)), arm_(std::move(arm)), bounds_(bounds) {}
 
   /// Returns the motion from a state onto a trajectory.
-  Switched join(const MotionState3& from, const Trajectory& to, const SwitchCandidate& candidate) const;
+  Switched join(const MotionState3& from, const Trajectory& to,
+                const SwitchCandidate& candidate) const;
   /// Replaces the trajectories of the candidate by what the arm would really do, and compares them.
   /// `world`, `cost`: of the robot; their scene is replaced.
-  void evaluate(SwitchCandidate& candidate, CollisionWorld& world, HumanCost& cost, const PlanningSnapshot& now,
-                const SwitchPoint& point) const;
+  void evaluate(SwitchCandidate& candidate, CollisionWorld& world, HumanCost& cost,
+                const PlanningSnapshot& now, const SwitchPoint& point) const;
 
  private:
-  std::optional<Trajectory> free_motion(CollisionWorld& world, const PlanningSnapshot& now, const MotionState3& from,
+  std::optional<Trajectory> free_motion(CollisionWorld& world, const PlanningSnapshot& now,
+                                        const MotionState3& from,
                                         const SwitchCandidate& candidate) const;
   bool is_free(CollisionWorld& world, const Switched& motion, const Vector& q_other) const;
-  double cost_along(const HumanCost& cost, const Trajectory& trajectory, const Vector& q_other, double level) const;
+  double cost_along(const HumanCost& cost, const Trajectory& trajectory, const Vector& q_other,
+                    double level) const;
   double cost_at(const HumanCost& cost, const Vector& joints, const Vector& q_other) const;
   bool is_within_limits(const Vector& joints) const;
 
@@ -74,8 +78,8 @@ class SwitchPlanner {
   SwitchBounds bounds_;
 };
 
-/// Returns whether a motion onto a trajectory takes longer than from rest: it would go past where it
-/// joins, and come back.
+/// Returns whether a motion onto a trajectory takes longer than from rest: it would go past where
+/// it joins, and come back.
 bool turns_back(const Switched& motion, const Trajectory& onto);
 
 }  // namespace handsel::manipulation_planner

@@ -38,8 +38,8 @@ void set_world(const PlacingJob& job) {
   job.world->set_moving_axes({});
 }
 
-std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface, const std::string& object, const Pose& T_now,
-                            std::size_t max_places) {
+std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface,
+                            const std::string& object, const Pose& T_now, std::size_t max_places) {
   PlacingSettings placing;
   placing.reach = arm_reach(*job.robot, &job.arm, job.palm);
   const PlacingScene in{*job.robot, job.scene, job.people, job.objects};
@@ -48,7 +48,8 @@ std::vector<Pose> places_on(const PlacingJob& job, const SceneBox& surface, cons
 
 }  // namespace
 
-Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object, const std::string& onto, const std::vector<Grasp>& grasps,
+Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object,
+                                         const std::string& onto, const std::vector<Grasp>& grasps,
                                          const DestinationLimits& limits) {
   auto found = std::make_shared<ServingGrasps>();
   const SceneObject* thing = parts.now.object(object);
@@ -56,18 +57,20 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
   for (const SceneBox& box : parts.now.scene().boxes)
     if (box.supports && (onto.empty() || box.id == onto)) surfaces.push_back(box);
   if (thing == nullptr || surfaces.empty()) co_return *found;
-  const std::function<void()> job = [found, surfaces, object, grasps, limits, in = placing_job(parts), T_now = thing->T_world_object] {
+  const std::function<void()> job = [found, surfaces, object, grasps, limits,
+                                     in = placing_job(parts), T_now = thing->T_world_object] {
     set_world(in);
     for (const SceneBox& box : surfaces) {
-      Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, places_on(in, box, object, T_now, limits.max_places),
-                      in.lift_height);
+      Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base,
+                      places_on(in, box, object, T_now, limits.max_places), in.lift_height);
       for (std::size_t i = 0; i < grasps.size() && found->at.size() < limits.max_grasps; ++i) {
         if (found->at.count(i) > 0) continue;
         const Grasp& grasp = grasps[i];
         const Vector reached = RobotModel::with(in.q, in.arm, grasp.arm_joints);
         const Vector closed = RobotModel::with(reached, in.fingers, grasp.hand_joints);
         const Vector opened = RobotModel::with(closed, in.fingers, grasp.pregrasp_joints);
-        const auto all = putting.anywhere(closed, opened, {object, grasp.T_object_hand.inverse()}, 1);
+        const auto all =
+            putting.anywhere(closed, opened, {object, grasp.T_object_hand.inverse()}, 1);
         if (!all.empty()) found->at[i] = {grasp.id, object, box.id, all.front().T_world_object};
       }
       found->objections = putting.objections();
@@ -80,15 +83,18 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
 Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening) {
   const Attachment held = parts.held.attachment();
   const auto& grasp = parts.held.grasp();
-  const std::optional<Pose> T_chosen = grasp ? parts.destinations.find(grasp->id, held.object, surface.id) : std::optional<Pose>();
+  const std::optional<Pose> T_chosen =
+      grasp ? parts.destinations.find(grasp->id, held.object, surface.id) : std::optional<Pose>();
   auto found = std::make_shared<FoundPlaces>();
-  const std::function<void()> job = [found, T_chosen, opening, held, box = surface, in = placing_job(parts),
-                                     T_now = parts.held.T_world_object()] {
+  const std::function<void()> job = [found, T_chosen, opening, held, box = surface,
+                                     in = placing_job(parts), T_now = parts.held.T_world_object()] {
     set_world(in);
     std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
     if (T_chosen) places.insert(places.begin(), *T_chosen);
-    Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, std::move(places), in.lift_height);
-    found->configurations = putting.anywhere(in.q, RobotModel::with(in.q, in.fingers, opening), held, kMaxConfigurations);
+    Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, std::move(places),
+                    in.lift_height);
+    found->configurations = putting.anywhere(in.q, RobotModel::with(in.q, in.fingers, opening),
+                                             held, kMaxConfigurations);
     found->objections = putting.objections();
   };
   found->outcome = co_await parts.worker.run(job);

@@ -37,8 +37,10 @@ struct FoundPlaces {
 
 // References must outlive the routines.
 /// Searches places of a surface for an object taken by one of these grasps. `surface` empty: any.
-Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object, const std::string& surface,
-                                         const std::vector<Grasp>& grasps, const DestinationLimits& limits);
+Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object,
+                                         const std::string& surface,
+                                         const std::vector<Grasp>& grasps,
+                                         const DestinationLimits& limits);
 /// Searches places on a surface for what is held; the one that was found before the grasp comes
 /// first. `opening`: fingers after the release.
 Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Vector& opening);

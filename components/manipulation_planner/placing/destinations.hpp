@@ -28,12 +28,15 @@ class Destinations {
   void add(const Destination& destination) { all_.push_back(destination); }
   /// Returns whether there is one for a grasp.
   bool has(std::uint64_t grasp) const {
-    return std::any_of(all_.begin(), all_.end(), [&](const Destination& d) { return d.grasp == grasp; });
+    return std::any_of(all_.begin(), all_.end(),
+                       [&](const Destination& d) { return d.grasp == grasp; });
   }
   /// Returns the first one of a grasp, an object and a surface; nullopt: none.
-  std::optional<Pose> find(std::uint64_t grasp, const std::string& object, const std::string& surface) const {
-    const auto found = std::find_if(all_.begin(), all_.end(),
-                                    [&](const Destination& d) { return d.grasp == grasp && d.object == object && d.surface == surface; });
+  std::optional<Pose> find(std::uint64_t grasp, const std::string& object,
+                           const std::string& surface) const {
+    const auto found = std::find_if(all_.begin(), all_.end(), [&](const Destination& d) {
+      return d.grasp == grasp && d.object == object && d.surface == surface;
+    });
     return found == all_.end() ? std::nullopt : std::optional<Pose>(found->T_world_object);
   }
 

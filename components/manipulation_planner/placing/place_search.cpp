@@ -11,9 +11,11 @@ namespace handsel::manipulation_planner {
 
 namespace {
 
-constexpr double kRoomy = 0.20;                              // farther from other things is no better [m]
-constexpr double kPersonNear = 0.8;                          // from a person is no worse [m]
-constexpr double kTurns[] = {0, 0.25, -0.25, 0.5, -0.5, 1};  // of the object from how the arm would turn it by itself [half turns]
+constexpr double kRoomy = 0.20;      // farther from other things is no better [m]
+constexpr double kPersonNear = 0.8;  // from a person is no worse [m]
+constexpr double kTurns[] = {
+    0,   0.25, -0.25,
+    0.5, -0.5, 1};  // of the object from how the arm would turn it by itself [half turns]
 
 /// Of the circle about its frame's vertical axis that it stands inside [m].
 double footprint(const ObjectModel* model, const Primitive& primitive) {
@@ -24,18 +26,24 @@ double footprint(const ObjectModel* model, const Primitive& primitive) {
 
 }  // namespace
 
-std::vector<Pose> free_places(const PlacingScene& in, const std::string& object, const SceneBox& surface, const Pose& T_world_object,
+std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
+                              const SceneBox& surface, const Pose& T_world_object,
                               std::size_t max_places, const PlacingSettings& settings) {
   const auto& [robot, scene, people, library] = in;
-  const auto thing = std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == object; });
+  const auto thing = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                  [&](const SceneObject& o) { return o.id == object; });
   const ObjectModel* model = thing == scene.objects.end() ? nullptr : library(thing->model);
   const ArmReach reach = settings.reach ? *settings.reach : arm_reach(robot);
   if (model == nullptr || reach.shoulder < 0) return {};
   const double radius = footprint(model, {});
-  const Vector& q = scene.robot_position.size() == robot.dof() ? scene.robot_position : robot.rest_posture();
-  const Vector3 p_shoulder = (scene.T_world_base * robot.link_pose(q, reach.shoulder)).translation();
+  const Vector& q =
+      scene.robot_position.size() == robot.dof() ? scene.robot_position : robot.rest_posture();
+  const Vector3 p_shoulder =
+      (scene.T_world_base * robot.link_pose(q, reach.shoulder)).translation();
   const double top = surface.size.z() / 2;
-  const auto bearing = [&](const Vector3& p) { return std::atan2(p.y() - p_shoulder.y(), p.x() - p_shoulder.x()); };
+  const auto bearing = [&](const Vector3& p) {
+    return std::atan2(p.y() - p_shoulder.y(), p.x() - p_shoulder.x());
+  };
 
   struct Place {
     Pose T_world_object;
@@ -43,17 +51,20 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
   };
   std::vector<Place> places;
   const Vector3 room = surface.size / 2 - Vector3::Constant(settings.edge + std::min(radius, 0.06));
-  const int nx = static_cast<int>(std::floor(room.x() / settings.grid)), ny = static_cast<int>(std::floor(room.y() / settings.grid));
+  const int nx = static_cast<int>(std::floor(room.x() / settings.grid)),
+            ny = static_cast<int>(std::floor(room.y() / settings.grid));
   for (int ix = -nx; ix <= nx && room.x() >= 0; ++ix) {
     for (int iy = -ny; iy <= ny && room.y() >= 0; ++iy) {
       const Vector3 p =
-          surface.T_world_box * Vector3(ix * settings.grid, iy * settings.grid, top + model->height_above_support + settings.above);
+          surface.T_world_box * Vector3(ix * settings.grid, iy * settings.grid,
+                                        top + model->height_above_support + settings.above);
       double nearest = kRoomy, person = kPersonNear;
       bool taken = false;
       for (const SceneObject& other : scene.objects) {
-        if (other.id == object || std::abs(other.T_world_object.translation().z() - p.z()) > 0.5) continue;
-        const double gap =
-            (other.T_world_object.translation() - p).head<2>().norm() - radius - footprint(library(other.model), other.primitive);
+        if (other.id == object || std::abs(other.T_world_object.translation().z() - p.z()) > 0.5)
+          continue;
+        const double gap = (other.T_world_object.translation() - p).head<2>().norm() - radius -
+                           footprint(library(other.model), other.primitive);
         taken = taken || gap < settings.beside;
         nearest = std::min(nearest, gap);
       }
@@ -62,17 +73,24 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
         taken = taken || (box.id != surface.id && beyond.maxCoeff() < radius);
       }
       for (const Person& who : people.people)
-        person = std::min(person, (who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position - p).head<2>().norm());
+        person = std::min(
+            person, (who.joints[static_cast<std::size_t>(body_joint_index("torso"))].position - p)
+                        .head<2>()
+                        .norm());
       const double away = (p - p_shoulder).norm() / reach.length;
       if (taken || away > 1) continue;
       const double turn = bearing(p) - bearing(T_world_object.translation());
       places.push_back(
-          {make_pose(p, Eigen::Quaterniond(Eigen::AngleAxisd(
-                            std::atan2(T_world_object.linear()(1, 0), T_world_object.linear()(0, 0)) + turn, Vector3::UnitZ()))),
+          {make_pose(
+               p,
+               Eigen::Quaterniond(Eigen::AngleAxisd(
+                   std::atan2(T_world_object.linear()(1, 0), T_world_object.linear()(0, 0)) + turn,
+                   Vector3::UnitZ()))),
            std::abs(away - settings.at_reach) + (kRoomy - nearest) + 0.5 * (kPersonNear - person)});
     }
   }
-  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.cost < b.cost; });
+  std::stable_sort(places.begin(), places.end(),
+                   [](const Place& a, const Place& b) { return a.cost < b.cost; });
   std::vector<Pose> out;
   for (const Place& place : places) {
     if (out.size() >= max_places) break;
@@ -84,11 +102,17 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
   return out;
 }
 
-Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm, const Pose& T_world_base, std::vector<Pose> places,
-                 double from_above)
-    : world_(world), robot_(robot), arm_(arm), T_base_world_(T_world_base.inverse()), places_(std::move(places)), from_above_(from_above) {}
+Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
+                 const Pose& T_world_base, std::vector<Pose> places, double from_above)
+    : world_(world),
+      robot_(robot),
+      arm_(arm),
+      T_base_world_(T_world_base.inverse()),
+      places_(std::move(places)),
+      from_above_(from_above) {}
 
-std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held) {
+std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector& q,
+                                                const Vector& opened, const Attachment& held) {
   std::optional<PlacingConfiguration> closed_only;
   IkOptions options;
   options.restarts = 0;
@@ -100,7 +124,8 @@ std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector&
     const auto at = robot_.inverse(arm_, T_base_world_ * T * T_object_tool, q, options);
     Pose T_above = T;
     T_above.translation().z() += from_above_;
-    const auto above = at ? robot_.inverse(arm_, T_base_world_ * T_above * T_object_tool, RobotModel::with(q, arm_, *at), options)
+    const auto above = at ? robot_.inverse(arm_, T_base_world_ * T_above * T_object_tool,
+                                           RobotModel::with(q, arm_, *at), options)
                           : std::optional<Vector>();
     if (!above) {
       ++objections_["out of reach"];
@@ -119,11 +144,13 @@ std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector&
   return closed_only;
 }
 
-std::vector<PlacingConfiguration> Putting::anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t max_count) {
+std::vector<PlacingConfiguration> Putting::anywhere(const Vector& q, const Vector& opened,
+                                                    const Attachment& held, std::size_t max_count) {
   std::vector<PlacingConfiguration> out, closed_only;
   for (const Pose& place : places_) {
     if (out.size() >= max_count) break;
-    if (auto posture = at(place, q, opened, held)) (posture->opens ? out : closed_only).push_back(std::move(*posture));
+    if (auto posture = at(place, q, opened, held))
+      (posture->opens ? out : closed_only).push_back(std::move(*posture));
   }
   for (PlacingConfiguration& posture : closed_only)
     if (out.size() < max_count) out.push_back(std::move(posture));
@@ -134,7 +161,8 @@ std::string Putting::objections() const {
   if (places_.empty()) return "all of it is taken or too far away";
   constexpr std::size_t kMaxReasons = 3;
   std::vector<std::pair<std::string, int>> often(objections_.begin(), objections_.end());
-  std::stable_sort(often.begin(), often.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(often.begin(), often.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text;
   for (std::size_t i = 0; i < std::min(often.size(), kMaxReasons); ++i)
     text += (i > 0 ? ", " : "") + std::to_string(often[i].second) + " " + often[i].first;

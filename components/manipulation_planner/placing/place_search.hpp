@@ -39,29 +39,34 @@ struct PlacingScene {
 /// first, at most `max_places`: where the arm reaches well, away from other things and from people.
 /// The object is turned about the vertical by as much as the arm turns to get there from
 /// `T_world_object`.
-std::vector<Pose> free_places(const PlacingScene& in, const std::string& object, const SceneBox& surface, const Pose& T_world_object,
+std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
+                              const SceneBox& surface, const Pose& T_world_object,
                               std::size_t max_places, const PlacingSettings& settings = {});
 
 /// Configurations that put what the hand holds at a place: from above, then down to it.
 struct PlacingConfiguration {
   Pose T_world_object{Pose::Identity()};  ///< at the place
   Vector arm_above, arm_at;               ///< arm axes [rad]
-  bool opens{};                           ///< the hand can open there without touching anything else
+  bool opens{};  ///< the hand can open there without touching anything else
 };
 
 /// Puts what is held on a surface, somewhere.
 class Putting {
  public:
-  /// The references must outlive what is made; `world` knows scene and people; its attachment is changed. `places` as from free_places().
-  Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm, const Pose& T_world_base, std::vector<Pose> places,
-          double from_above);
+  /// The references must outlive what is made; `world` knows scene and people; its attachment is
+  /// changed. `places` as from free_places().
+  Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
+          const Pose& T_world_base, std::vector<Pose> places, double from_above);
 
-  /// Returns configurations for this place, its object turned about the vertical as is best for the arm, where the hand can
-  /// open if possible; nullopt: the reason is counted for objections(). `q`: all axes, the hand
-  /// closed on the object; `opened`: all axes, after the release.
-  std::optional<PlacingConfiguration> at(const Pose& place, const Vector& q, const Vector& opened, const Attachment& held);
-  /// Returns configurations for the first `max_count` places where the object can be, those where the hand can open before the others.
-  std::vector<PlacingConfiguration> anywhere(const Vector& q, const Vector& opened, const Attachment& held, std::size_t max_count);
+  /// Returns configurations for this place, its object turned about the vertical as is best for the
+  /// arm, where the hand can open if possible; nullopt: the reason is counted for objections().
+  /// `q`: all axes, the hand closed on the object; `opened`: all axes, after the release.
+  std::optional<PlacingConfiguration> at(const Pose& place, const Vector& q, const Vector& opened,
+                                         const Attachment& held);
+  /// Returns configurations for the first `max_count` places where the object can be, those where
+  /// the hand can open before the others.
+  std::vector<PlacingConfiguration> anywhere(const Vector& q, const Vector& opened,
+                                             const Attachment& held, std::size_t max_count);
   /// Returns the most frequent reasons so far, with their counts: "12 out of reach, 3 because link
   /// forearm would touch box table".
   std::string objections() const;
