@@ -88,6 +88,7 @@ Routine<Outcome> place(Parts& parts, const std::string& object, const std::strin
   if (found.configurations.empty())
     co_return Outcome::failure("no free place on " + onto +
                                " within the arm's reach: " + found.objections);
+  if (found.is_lying) parts.refuse("place upright", found.objections);
   Outcome last;
   for (const PlacingConfiguration& configuration : found.configurations) {
     last = co_await lower(parts, configuration);

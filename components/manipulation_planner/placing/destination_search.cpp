@@ -62,7 +62,7 @@ Routine<ServingGrasps> find_destinations(Parts& parts, const std::string& object
     set_world(in);
     for (const SceneBox& box : surfaces) {
       Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base,
-                      places_on(in, box, object, T_now, limits.max_places), in.lift_height);
+                      {places_on(in, box, object, T_now, limits.max_places)}, in.lift_height);
       for (std::size_t i = 0; i < grasps.size() && found->at.size() < limits.max_grasps; ++i) {
         if (found->at.count(i) > 0) continue;
         const Grasp& grasp = grasps[i];
@@ -87,15 +87,21 @@ Routine<FoundPlaces> find_places(Parts& parts, const SceneBox& surface, const Ve
       grasp ? parts.destinations.find(grasp->id, held.object, surface.id) : std::optional<Pose>();
   auto found = std::make_shared<FoundPlaces>();
   const std::function<void()> job = [found, T_chosen, opening, held, box = surface,
+                                     model = parts.now.model_of(held.object),
                                      in = placing_job(parts), T_now = parts.held.T_world_object()] {
     set_world(in);
     std::vector<Pose> places = places_on(in, box, held.object, T_now, kMaxPlaces);
     if (T_chosen) places.insert(places.begin(), *T_chosen);
-    Putting putting(*in.world, *in.robot, in.arm, in.scene.T_world_base, std::move(places),
-                    in.lift_height);
-    found->configurations = putting.anywhere(in.q, RobotModel::with(in.q, in.fingers, opening),
-                                             held, kMaxConfigurations);
-    found->objections = putting.objections();
+    const Vector opened = RobotModel::with(in.q, in.fingers, opening);
+    Putting upright(*in.world, *in.robot, in.arm, in.scene.T_world_base, {places}, in.lift_height);
+    found->configurations = upright.anywhere(in.q, opened, held, kMaxConfigurations);
+    found->objections = upright.objections();
+    if (!found->configurations.empty()) return;
+    // Taken from where the object lay, the hand may be below the object when that stands.
+    Putting lying(*in.world, *in.robot, in.arm, in.scene.T_world_base,
+                  lying_places(places, *model, PlacingSettings{}.min_tipping), in.lift_height);
+    found->configurations = lying.anywhere(in.q, opened, held, kMaxConfigurations);
+    found->is_lying = !found->configurations.empty();
   };
   found->outcome = co_await parts.worker.run(job);
   co_return *found;

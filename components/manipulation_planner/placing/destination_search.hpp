@@ -32,7 +32,8 @@ struct DestinationLimits {
 struct FoundPlaces {
   Outcome outcome;                                   ///< whether the search ended
   std::vector<PlacingConfiguration> configurations;  ///< best first
-  std::string objections;                            ///< why others do not serve
+  std::string objections;                            ///< why others do not serve, upright
+  bool is_lying{};  ///< none stands upright: the object rests on another side
 };
 
 // References must outlive the routines.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/geometry/placement.hpp"
 #include "common/model/human/human_body.hpp"
 #include "common/model/object_extent.hpp"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kRoomy = 0.20;      // farther from other things is no better [m]
 constexpr double kPersonNear = 0.8;  // from a person is no worse [m]
+constexpr double kUpright = 0.9998;  // cosine of the tilt up to which an object stands upright
 constexpr double kTurns[] = {
     0,   0.25, -0.25,
     0.5, -0.5, 1};  // of the object from how the arm would turn it by itself [half turns]
@@ -102,8 +104,22 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
   return out;
 }
 
+RestingPlaces lying_places(const std::vector<Pose>& upright_places, const ObjectModel& model,
+                           double min_tipping) {
+  RestingPlaces out{{}, model.com};
+  for (const Placement& side : stable_placements(model.mesh, model.com, min_tipping)) {
+    if ((side.T_support_object.linear() * Vector3::UnitZ()).z() > kUpright) continue;
+    for (const Pose& upright : upright_places) {
+      Pose T_world_support = upright;
+      T_world_support.translation().z() -= model.height_above_support;
+      out.T_world_object.push_back(T_world_support * side.T_support_object);
+    }
+  }
+  return out;
+}
+
 Putting::Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
-                 const Pose& T_world_base, std::vector<Pose> places, double from_above)
+                 const Pose& T_world_base, RestingPlaces places, double from_above)
     : world_(world),
       robot_(robot),
       arm_(arm),
@@ -121,6 +137,7 @@ std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector&
   for (const double turn : kTurns) {
     Pose T = place;
     T.linear() = Eigen::AngleAxisd(turn * std::numbers::pi, Vector3::UnitZ()) * place.linear();
+    T.translation() += (place.linear() - T.linear()) * places_.p_object_turn;
     const auto at = robot_.inverse(arm_, T_base_world_ * T * T_object_tool, q, options);
     Pose T_above = T;
     T_above.translation().z() += from_above_;
@@ -147,7 +164,7 @@ std::optional<PlacingConfiguration> Putting::at(const Pose& place, const Vector&
 std::vector<PlacingConfiguration> Putting::anywhere(const Vector& q, const Vector& opened,
                                                     const Attachment& held, std::size_t max_count) {
   std::vector<PlacingConfiguration> out, closed_only;
-  for (const Pose& place : places_) {
+  for (const Pose& place : places_.T_world_object) {
     if (out.size() >= max_count) break;
     if (auto posture = at(place, q, opened, held))
       (posture->opens ? out : closed_only).push_back(std::move(*posture));
@@ -158,7 +175,7 @@ std::vector<PlacingConfiguration> Putting::anywhere(const Vector& q, const Vecto
 }
 
 std::string Putting::objections() const {
-  if (places_.empty()) return "all of it is taken or too far away";
+  if (places_.T_world_object.empty()) return "all of it is taken or too far away";
   constexpr std::size_t kMaxReasons = 3;
   std::vector<std::pair<std::string, int>> often(objections_.begin(), objections_.end());
   std::stable_sort(often.begin(), often.end(),

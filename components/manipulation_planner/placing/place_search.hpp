@@ -24,6 +24,7 @@ struct PlacingSettings {
   double apart{0.12};               ///< those that are given are at least so far apart [m]
   double at_reach{0.6};             ///< fraction of the arm's reach at which it works best
   double above{kAbovePlace};        ///< lowered to this above the surface [m]
+  double min_tipping{0.2};          ///< tilt that an object laid on its side must withstand [rad]
   std::optional<ArmReach> reach{};  ///< of the arm that puts it down; left out: of the group "arm"
 };
 
@@ -43,6 +44,19 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
                               const SceneBox& surface, const Pose& T_world_object,
                               std::size_t max_places, const PlacingSettings& settings = {});
 
+/// Poses at which an object rests on a surface.
+struct RestingPlaces {
+  std::vector<Pose> T_world_object;  ///< the best first
+  /// Point of the object whose vertical the object may turn about, in its frame [m].
+  Vector3 p_object_turn{Vector3::Zero()};
+};
+
+/// Returns the other sides that the object can lie on at `upright_places` (as from free_places()),
+/// the most stable side first, those that tip over below `min_tipping` [rad] left out. The mass
+/// centre is above the point where the object's origin would stand.
+RestingPlaces lying_places(const std::vector<Pose>& upright_places, const ObjectModel& model,
+                           double min_tipping);
+
 /// Configurations that put what the hand holds at a place: from above, then down to it.
 struct PlacingConfiguration {
   Pose T_world_object{Pose::Identity()};  ///< at the place
@@ -54,9 +68,9 @@ struct PlacingConfiguration {
 class Putting {
  public:
   /// The references must outlive what is made; `world` knows scene and people; its attachment is
-  /// changed. `places` as from free_places().
+  /// changed. `places` as from free_places() or lying_places().
   Putting(CollisionWorld& world, const RobotModel& robot, const Group& arm,
-          const Pose& T_world_base, std::vector<Pose> places, double from_above);
+          const Pose& T_world_base, RestingPlaces places, double from_above);
 
   /// Returns configurations for this place, its object turned about the vertical as is best for the
   /// arm, where the hand can open if possible; nullopt: the reason is counted for objections().
@@ -76,7 +90,7 @@ class Putting {
   const RobotModel& robot_;
   const Group& arm_;
   Pose T_base_world_;
-  std::vector<Pose> places_;
+  RestingPlaces places_;
   double from_above_;
   std::map<std::string, int> objections_;
 };

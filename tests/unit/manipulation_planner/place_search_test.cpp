@@ -22,6 +22,24 @@ class Placing : public testing::Test {
     return free_places(in, "mug", scene_.boxes.front(), scene_.objects.front().T_world_object, max_places);
   }
 
+  /// Returns a configuration whose palm is above the table with the mug below it, turned by `R_world_mug`.
+  Vector held_above_table(CollisionWorld& world, const Eigen::Matrix3d& R_world_mug, Attachment& held) const {
+    std::mt19937 random(5);
+    Vector q = robot_.rest_posture();
+    for (;;) {
+      for (const int axis : robot_.require_group("arm").axes) {
+        const Axis& a = robot_.axes()[static_cast<std::size_t>(axis)];
+        q[axis] = std::uniform_real_distribution<double>(a.lower, a.upper)(random);
+      }
+      const Pose T = robot_.link_pose(q, robot_.tool_link());
+      Pose T_mug = make_pose(T.translation() - Vector3(0, 0, 0.2));
+      T_mug.linear() = R_world_mug;
+      held.T_tool_object = T.inverse() * T_mug;
+      world.set_attachment(held, {"mug"});
+      if ((T_mug.translation() - Vector3(0.7, 0, 0.9)).cwiseAbs().maxCoeff() < 0.1 && world.is_free(q)) return q;
+    }
+  }
+
   RobotModel robot_ = RobotModel::load(robot_description("jido"));
   ObjectModel mug_ = ObjectModel::load(object_description("mug"));
   ObjectLibrary library_ = [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; };
@@ -65,22 +83,9 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   CollisionWorld world(robot_, library_);
   world.set_scene(scene_);
   world.set_people(people_);
-  // Somewhere above the table, the mug upright under the palm.
-  std::mt19937 random(5);
-  Vector q = robot_.rest_posture();
   Attachment held{"mug"};
-  for (bool found = false; !found;) {
-    for (const int axis : arm.axes) {
-      const Axis& a = robot_.axes()[static_cast<std::size_t>(axis)];
-      q[axis] = std::uniform_real_distribution<double>(a.lower, a.upper)(random);
-    }
-    const Pose T = robot_.link_pose(q, robot_.tool_link());
-    const Vector3 p = T.translation() - Vector3(0, 0, 0.2);
-    held.T_tool_object = T.inverse() * make_pose(p);
-    world.set_attachment(held, {"mug"});
-    found = (p - Vector3(0.7, 0, 0.9)).cwiseAbs().maxCoeff() < 0.1 && world.is_free(q);
-  }
-  Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, places(), 0.1);
+  const Vector q = held_above_table(world, Eigen::Matrix3d::Identity(), held);
+  Putting putting(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {places()}, 0.1);
   int reached = 0;
   for (const Pose& T : places()) {
     const auto posture = putting.at(T, q, q, held);
@@ -96,9 +101,38 @@ TEST_F(Placing, a_posture_puts_it_there_and_what_would_touch_is_named) {
   EXPECT_GT(reached, 3);
   Pose inside = places(1).front();
   inside.translation().z() -= 0.2;
-  Putting into(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {inside}, 0.1);
+  Putting into(world, robot_, robot_.require_group("arm"), scene_.T_world_base, {{inside}}, 0.1);
   EXPECT_TRUE(into.anywhere(q, q, held, 1).empty());
   EXPECT_FALSE(into.objections().empty());
+}
+
+TEST_F(Placing, lays_what_cannot_stand_upright_on_another_side_that_is_stable) {
+  CollisionWorld world(robot_, library_);
+  world.set_scene(scene_);
+  world.set_people(people_);
+  const Eigen::Matrix3d upside_down = Eigen::AngleAxisd(M_PI, Vector3::UnitX()).toRotationMatrix();
+  Attachment held{"mug"};
+  const Vector q = held_above_table(world, upside_down, held);
+  const Group& arm = robot_.require_group("arm");
+  Putting upright(world, robot_, arm, scene_.T_world_base, {places()}, 0.1);
+  EXPECT_TRUE(upright.anywhere(q, q, held, 1).empty()) << "the hand would be below the mug, in the table";
+
+  Putting lying(world, robot_, arm, scene_.T_world_base, lying_places(places(), mug_, PlacingSettings{}.min_tipping), 0.1);
+  const std::vector<PlacingConfiguration> found = lying.anywhere(q, q, held, 5);
+  ASSERT_FALSE(found.empty()) << lying.objections();
+  for (const PlacingConfiguration& posture : found) {
+    const Pose& T = posture.T_world_object;
+    EXPECT_LT((T.linear() * Vector3::UnitZ()).z(), 0.9) << "upright";
+    double lowest = 1.0;
+    for (const Vector3& p : mug_.mesh.vertices) lowest = std::min(lowest, (T * p).z());
+    EXPECT_NEAR(lowest, 0.7 + kAbovePlace, 1e-3);
+    const Vector3 com = T * mug_.com;
+    EXPECT_LT(std::abs(com.x() - 0.75), 0.3 - 0.03);
+    EXPECT_LT(std::abs(com.y()), 0.5 - 0.03);
+    const Vector at = RobotModel::with(q, arm, posture.arm_at);
+    EXPECT_LT(((robot_.link_pose(at, robot_.tool_link()) * held.T_tool_object).translation() - T.translation()).norm(), 1e-3);
+    EXPECT_TRUE(world.check(at).free);
+  }
 }
 
 }  // namespace
