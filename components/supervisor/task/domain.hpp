@@ -67,7 +67,7 @@ struct CompiledMethod {
   std::vector<CompiledStep> steps;  ///< in order; none: nothing has to be done
   std::vector<std::string> names;   ///< of the frame's variables; the task's parameters come first
   std::vector<Type> types;          ///< of the frame's variables
-  double least{};                   ///< lower bound of the cost with everything the method leads to
+  double min_cost{};                ///< lower bound of the cost with everything the method leads to
 };
 
 /// A task with its methods.
@@ -77,7 +77,7 @@ struct CompiledTask {
   std::vector<Type> types;              ///< of the parameters
   std::vector<CompiledMethod> methods;  ///< alternatives, of which the cheapest is taken
   std::vector<Test> achieved;           ///< tested after the last action; false: planned again
-  double least{};                       ///< lower bound of the cost over all methods
+  double min_cost{};                    ///< lower bound of the cost over all methods
 };
 
 /// An action of the robot with its conditions and effects.

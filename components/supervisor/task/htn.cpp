@@ -126,7 +126,7 @@ class Search {
     Item root;
     root.call.index = task;
     root.frame = std::make_shared<const Frame>(frame_of(world_, args));
-    root.least = domain_.tasks[static_cast<std::size_t>(task)].least;
+    root.min_cost = domain_.tasks[static_cast<std::size_t>(task)].min_cost;
     State start = world_.state;
     step(start, push(root, nullptr), 0);
     best_.nodes = nodes_;
@@ -148,14 +148,14 @@ class Search {
     const CompiledStep* step{};  // of all and one
     std::shared_ptr<const Frame> frame;
     std::uint32_t depth{};
-    double least{};
+    double min_cost{};
   };
   struct Link;
   using Agenda = std::shared_ptr<const Link>;
   struct Link {
     Item item;
     Agenda rest;
-    double least;        // of all of it
+    double min_cost;     // of all of it
     std::uint64_t hash;  // of all of it
   };
 
@@ -165,8 +165,8 @@ class Search {
     mix(static_cast<std::uint64_t>(item.kind) * 2 + (item.call.action ? 1 : 0));
     mix(item.kind == Item::Kind::call ? static_cast<std::uint64_t>(item.call.index) : reinterpret_cast<std::uintptr_t>(item.step));
     for (const Symbol s : *item.frame) mix(static_cast<std::uint64_t>(s) + 1000003);
-    const double least = item.least + (rest ? rest->least : 0);
-    return std::make_shared<const Link>(Link{std::move(item), rest, least, h});
+    const double min_cost = item.min_cost + (rest ? rest->min_cost : 0);
+    return std::make_shared<const Link>(Link{std::move(item), rest, min_cost, h});
   }
 
   Item call_item(const Call& call, const Frame& frame, std::uint32_t depth) const {
@@ -176,8 +176,8 @@ class Search {
     for (const Term& t : call.args) args.push_back(ground_.symbol(t, frame));
     item.frame = std::make_shared<const Frame>(std::move(args));
     item.depth = depth;
-    item.least = call.action ? domain_.actions[static_cast<std::size_t>(call.index)].cost
-                             : domain_.tasks[static_cast<std::size_t>(call.index)].least;
+    item.min_cost = call.action ? domain_.actions[static_cast<std::size_t>(call.index)].cost
+                                : domain_.tasks[static_cast<std::size_t>(call.index)].min_cost;
     return item;
   }
 
@@ -198,8 +198,8 @@ class Search {
   void step(State& state, const Agenda& agenda, double cost) {
     if (nodes_ >= limits_.nodes) return;
     ++nodes_;
-    const double least = cost + (agenda ? agenda->least : 0);
-    if (best_.found && least >= best_.cost - kAsMuch) return;
+    const double min_cost = cost + (agenda ? agenda->min_cost : 0);
+    if (best_.found && min_cost >= best_.cost - kAsMuch) return;
     if (!agenda) {
       best_.found = true;
       best_.cost = cost;
@@ -270,7 +270,7 @@ class Search {
       lacking_.clear();
       bind(method.tests, 0, frame, method.types, state, method.names, [&] {
         const double own = method.cost + ground_.extra(method.extra, frame, state);
-        choices.push_back({&method, frame, own, own + method.least - method.cost});
+        choices.push_back({&method, frame, own, own + method.min_cost - method.cost});
       });
       if (choices.size() == before) blame(lacking_);
     }
@@ -368,8 +368,8 @@ class Search {
       one.step = &s;
       one.frame = std::make_shared<const Frame>(std::move(o->frame));
       one.depth = item.depth;
-      for (const Call& call : s.calls) one.least += call_item(call, *one.frame, 0).least;
-      if (s.skip_cost > 0) one.least = std::min(one.least, s.skip_cost);
+      for (const Call& call : s.calls) one.min_cost += call_item(call, *one.frame, 0).min_cost;
+      if (s.skip_cost > 0) one.min_cost = std::min(one.min_cost, s.skip_cost);
       next = push(one, next);
     }
     step(state, next, cost);
@@ -400,7 +400,8 @@ class Search {
   Ground ground_;
   const Forbidden& forbidden_;
   const PlanLimits limits_;
-  std::unordered_map<std::uint64_t, double> seen_;                            // least cost a state with what is to be done was reached at
+  // The min cost at which a state was reached with the same calls left to do.
+  std::unordered_map<std::uint64_t, double> seen_;
   std::unordered_map<const CompiledStep*, const CompiledMethod*> method_of_;  // of an all
   std::vector<PlannedAction> actions_;
   std::vector<PlanLine> tree_;
