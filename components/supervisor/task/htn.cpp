@@ -5,95 +5,12 @@
 #include <memory>
 #include <unordered_map>
 
+#include "components/supervisor/task/grounding.hpp"
+
 namespace handsel::supervisor {
 namespace {
 
-using Frame = std::vector<Symbol>;  // by variable; kUnbound where nothing is bound yet
-constexpr Symbol kUnbound = -2;
-constexpr double kAsMuch = 1e-9;
-
-struct Ground {
-  World& world;
-
-  Symbol symbol(const Term& term, const Frame& frame) const {
-    if (term.variable >= 0) return frame[static_cast<std::size_t>(term.variable)];
-    if (term.text == "*") return kAny;
-    return term.text == "-" ? kNothing : world.symbol(term.text);
-  }
-  Atom atom(const Literal& literal, const Frame& frame) const {
-    Atom out{literal.predicate, {kNothing, kNothing}};
-    for (std::size_t i = 0; i < literal.args.size(); ++i) out.args[i] = symbol(literal.args[i], frame);
-    return out;
-  }
-  /// All variables bound.
-  bool holds(const Literal& literal, const Frame& frame, const State& state) const {
-    const Atom a = atom(literal, frame);
-    bool is = false;
-    if (a.predicate == predicate_of(Derived::given))
-      is = a.args[0] != kNothing;
-    else if (a.predicate == predicate_of(Derived::same))
-      is = a.args[0] == a.args[1];
-    else
-      is = state.holds(a);
-    return is != literal.negated;
-  }
-  double extra(const std::vector<Extra>& extras, const Frame& frame, const State& state) const {
-    double sum = 0;
-    for (const Extra& e : extras) {
-      if (!holds(e.when, frame, state)) continue;
-      const double* value = e.when.negated ? nullptr : state.find(atom(e.when, frame));
-      sum += e.cost + (value != nullptr ? std::max(0.0, e.per_value * *value) : 0.0);
-    }
-    return sum;
-  }
-  /// What people read: "?x" by what x is.
-  std::string fill(const std::string& text, const std::vector<std::string>& names, const std::vector<Type>& types,
-                   const Frame& frame) const {
-    std::string out = text;
-    std::vector<std::size_t> order(names.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return names[a].size() > names[b].size(); });
-    for (const std::size_t i : order) {
-      const Symbol s = i < frame.size() ? frame[i] : kUnbound;
-      const bool left_out = s == kNothing || s == kUnbound;
-      const std::string by = !left_out                   ? world.text(s)
-                             : types[i] == Type::human   ? "somebody"
-                             : types[i] == Type::surface ? "where there is room"
-                                                         : "something";
-      for (std::size_t at = out.find(names[i]); at != std::string::npos; at = out.find(names[i], at + by.size()))
-        out.replace(at, names[i].size(), by);
-    }
-    return out;
-  }
-};
-
-Frame frame_of(World& world, const std::vector<std::string>& args) {
-  Frame frame;
-  for (const auto& arg : args) frame.push_back(arg.empty() || arg == "-" ? kNothing : world.symbol(arg));
-  return frame;
-}
-
-/// The first condition that does not hold; nullptr: all do.
-const Test* failing(const Ground& ground, const std::vector<Test>& tests, const Frame& frame, const State& state) {
-  for (const Test& test : tests)
-    if (test.enumerate < 0 && !ground.holds(test.literal, frame, state)) return &test;
-  return nullptr;
-}
-
-void change(const Ground& ground, const CompiledAction& action, const Frame& frame, State& state) {
-  for (const Literal& l : action.removes) state.remove(ground.atom(l, frame));
-  for (const Literal& l : action.adds) state.set(ground.atom(l, frame));
-  for (const auto& c : action.changes) {
-    const Atom atom = ground.atom(c.of, frame);
-    if (atom.args[0] == kNothing) continue;
-    const double* now = state.find(atom);
-    const double value = (now != nullptr ? *now : 0.0) + c.by;
-    if (value > 0)
-      state.set(atom, value);
-    else
-      state.remove(atom);
-  }
-}
+constexpr double kAsMuch = 1e-9;  // costs closer than this are equal
 
 /// Without tasks that need no action.
 std::vector<PlanLine> with_something_to_do(const std::vector<PlanLine>& tree) {
@@ -103,17 +20,6 @@ std::vector<PlanLine> with_something_to_do(const std::vector<PlanLine>& tree) {
     for (std::size_t k = i + 1; k < tree.size() && tree[k].depth > tree[i].depth && !any; ++k) any = tree[k].action >= 0 || tree[k].skipped;
     if (any) out.push_back(tree[i]);
   }
-  return out;
-}
-
-PlannedAction planned(const Domain& domain, const Ground& ground, int index, const Frame& frame) {
-  const CompiledAction& action = domain.actions[static_cast<std::size_t>(index)];
-  const auto text = [&](const Term& term) {
-    const Symbol s = ground.symbol(term, frame);
-    return s == kNothing ? std::string() : ground.world.text(s);
-  };
-  PlannedAction out{action.kind, text(action.object), text(action.human), text(action.surface), index, {}, 0};
-  for (std::size_t i = 0; i < action.types.size(); ++i) out.args.push_back(ground.world.text(frame[i]));
   return out;
 }
 
@@ -186,7 +92,7 @@ class Search {
     return ground_.fill(task.text, task.parameters, task.types, args);
   }
 
-  /// Of the ways that lead farthest the first reason counts.
+  /// Of the alternatives that lead farthest the first reason counts.
   void blame(const std::string& reason) {
     if (reason.empty()) return;
     if (here_ != nullptr && here_->empty()) *here_ = reason;
@@ -268,10 +174,11 @@ class Search {
       frame.resize(method.names.size(), kUnbound);
       const std::size_t before = choices.size();
       lacking_.clear();
-      bind(method.tests, 0, frame, method.types, state, method.names, [&] {
+      const std::function<void()> found = [&] {
         const double own = method.cost + ground_.extra(method.extra, frame, state);
         choices.push_back({&method, frame, own, own + method.min_cost - method.cost});
-      });
+      };
+      bind({method.tests, method, state, found}, 0, frame);
       if (choices.size() == before) blame(lacking_);
     }
     std::stable_sort(choices.begin(), choices.end(), [](const Choice& a, const Choice& b) { return a.estimate < b.estimate; });
@@ -296,19 +203,30 @@ class Search {
     }
   }
 
-  void lack(const Test& test, const std::vector<std::string>& names, const std::vector<Type>& types, const Frame& frame) {
-    if (lacking_.empty() && !test.otherwise.empty()) lacking_ = ground_.fill(test.otherwise, names, types, frame);
+  void lack(const Test& test, const CompiledMethod& method, const Frame& frame) {
+    if (lacking_.empty() && !test.otherwise.empty())
+      lacking_ = ground_.fill(test.otherwise, method.names, method.types, frame);
   }
 
-  void bind(const std::vector<Test>& tests, std::size_t at, Frame& frame, const std::vector<Type>& types, const State& state,
-            const std::vector<std::string>& names, const std::function<void()>& found) {
-    if (at == tests.size()) return found();
-    const Test& test = tests[at];
+  /// Tests that bind the variables of a method in one state.
+  struct BindingProblem {
+    const std::vector<Test>& tests;      // of the method or of one of its steps
+    const CompiledMethod& method;        // whose variables the frame holds
+    const State& state;                  // in which literals are looked up
+    const std::function<void()>& found;  // called for every binding
+  };
+
+  /// Finds every binding of the frame's variables that passes the tests from `at` on.
+  void bind(const BindingProblem& problem, std::size_t at, Frame& frame) {
+    if (at == problem.tests.size()) return problem.found();
+    const Test& test = problem.tests[at];
+    const State& state = problem.state;
     if (test.enumerate >= 0) {
       Symbol& slot = frame[static_cast<std::size_t>(test.enumerate)];
-      for (const Symbol s : world_.all(types[static_cast<std::size_t>(test.enumerate)])) {
+      for (const Symbol s :
+           world_.all(problem.method.types[static_cast<std::size_t>(test.enumerate)])) {
         slot = s;
-        bind(tests, at + 1, frame, types, state, names, found);
+        bind(problem, at + 1, frame);
       }
       slot = kUnbound;
       return;
@@ -318,9 +236,9 @@ class Search {
       if (t.variable >= 0 && frame[static_cast<std::size_t>(t.variable)] == kUnbound) open.push_back(t.variable);
     if (open.empty()) {
       if (ground_.holds(test.literal, frame, state))
-        bind(tests, at + 1, frame, types, state, names, found);
+        bind(problem, at + 1, frame);
       else
-        lack(test, names, types, frame);
+        lack(test, problem.method, frame);
       return;
     }
     bool any = false;
@@ -338,11 +256,11 @@ class Search {
       }
       if (fits) {
         any = true;
-        bind(tests, at + 1, frame, types, state, names, found);
+        bind(problem, at + 1, frame);
       }
       for (const int v : open) frame[static_cast<std::size_t>(v)] = kUnbound;
     }
-    if (!any) lack(test, names, types, frame);
+    if (!any) lack(test, problem.method, frame);
   }
 
   void each(State& state, const Agenda& agenda, double cost) {
@@ -356,10 +274,11 @@ class Search {
     Frame frame = *item.frame;
     for (const int v : s.own) frame[static_cast<std::size_t>(v)] = kUnbound;
     const CompiledMethod& method = *method_of_[&s];
-    bind(s.tests, 0, frame, method.types, state, method.names, [&] {
+    const std::function<void()> found = [&] {
       const double* value = s.ordered ? state.find(ground_.atom(s.order, frame)) : nullptr;
       ones.push_back({frame, s.ordered && value == nullptr ? 1e9 : value != nullptr ? *value : 0.0});
-    });
+    };
+    bind({s.tests, method, state, found}, 0, frame);
     std::stable_sort(ones.begin(), ones.end(), [](const One& a, const One& b) { return a.order < b.order; });
     Agenda next = agenda->rest;
     for (auto o = ones.rbegin(); o != ones.rend(); ++o) {
@@ -442,47 +361,6 @@ std::string PlannedAction::text() const {
 Plan make_plan(const Domain& domain, const World& world, int task, const std::vector<std::string>& args, const Forbidden& forbidden,
                const PlanLimits& limits) {
   return Search(domain, world, forbidden, limits).run(task, args);
-}
-
-namespace {
-/// What its first condition among `conditions` that does not hold says; empty: all hold.
-std::string objection(const Domain& domain, World& world, const PlannedAction& planned, const State& state,
-                      std::vector<Test> CompiledAction::*conditions, const char* otherwise) {
-  const CompiledAction& action = domain.actions[static_cast<std::size_t>(planned.action)];
-  const Frame frame = frame_of(world, planned.args);
-  const Ground ground{world};
-  const Test* test = failing(ground, action.*conditions, frame, state);
-  if (test == nullptr) return "";
-  return test->otherwise.empty() ? planned.text() + otherwise : ground.fill(test->otherwise, action.parameters, action.types, frame);
-}
-}  // namespace
-
-std::string why_not(const Domain& domain, World& world, const PlannedAction& planned, const State& state) {
-  return objection(domain, world, planned, state, &CompiledAction::when, " is not possible any more");
-}
-
-void apply(const Domain& domain, World& world, const PlannedAction& planned, State& state) {
-  change(Ground{world}, domain.actions[static_cast<std::size_t>(planned.action)], frame_of(world, planned.args), state);
-}
-
-bool shows(const Domain& domain, World& world, const PlannedAction& planned, const State& state) {
-  const CompiledAction& action = domain.actions[static_cast<std::size_t>(planned.action)];
-  const Frame frame = frame_of(world, planned.args);
-  const Ground ground{world};
-  return std::all_of(action.adds.begin(), action.adds.end(), [&](const Literal& l) { return ground.holds(l, frame, state); });
-}
-
-std::string broken(const Domain& domain, World& world, const PlannedAction& planned, const State& state) {
-  return objection(domain, world, planned, state, &CompiledAction::keep, " makes no sense any more");
-}
-
-std::string unachieved(const Domain& domain, World& world, int task, const std::vector<std::string>& args, const State& state) {
-  const CompiledTask& t = domain.tasks[static_cast<std::size_t>(task)];
-  const Frame frame = frame_of(world, args);
-  const Ground ground{world};
-  const Test* test = failing(ground, t.achieved, frame, state);
-  if (test == nullptr) return "";
-  return test->otherwise.empty() ? "not all of it was done" : ground.fill(test->otherwise, t.parameters, t.types, frame);
 }
 
 }  // namespace handsel::supervisor

@@ -61,15 +61,4 @@ using Forbidden = std::map<std::string, std::string>;
 Plan make_plan(const Domain& domain, const World& world, int task, const std::vector<std::string>& args, const Forbidden& forbidden,
                const PlanLimits& limits);
 
-/// Why an action cannot be done in this state; empty: it can.
-std::string why_not(const Domain& domain, World& world, const PlannedAction& action, const State& state);
-/// Changes the state by the effects of the action, whose conditions are not tested.
-void apply(const Domain& domain, World& world, const PlannedAction& action, State& state);
-/// Does all that it adds hold already?
-bool shows(const Domain& domain, World& world, const PlannedAction& action, const State& state);
-/// Which condition that must hold while it runs does not; empty: all do.
-std::string broken(const Domain& domain, World& world, const PlannedAction& action, const State& state);
-/// Which condition of a task that was done does not hold; empty: all do.
-std::string unachieved(const Domain& domain, World& world, int task, const std::vector<std::string>& args, const State& state);
-
 }  // namespace handsel::supervisor

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/messages/names.hpp"
+#include "components/supervisor/task/action_check.hpp"
 
 namespace handsel::supervisor {
 namespace {
