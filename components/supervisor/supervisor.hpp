@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -15,10 +13,13 @@
 #include "common/messages/task.hpp"
 #include "common/messages/world.hpp"
 #include "components/supervisor/goal_inbox.hpp"
+#include "components/supervisor/orphan_watch.hpp"
+#include "components/supervisor/safety/go_sender.hpp"
 #include "components/supervisor/safety/lost_people.hpp"
 #include "components/supervisor/safety/permission.hpp"
 #include "components/supervisor/safety/safety_latches.hpp"
-#include "components/supervisor/task/task_run.hpp"
+#include "components/supervisor/safety/state_keeper.hpp"
+#include "components/supervisor/task_slot.hpp"
 
 namespace handsel::supervisor {
 
@@ -69,55 +70,38 @@ class Supervisor {
   /// Scene and facts have come: tasks can be evaluated.
   bool knows_world() const { return situation_.known(); }
   /// The state of this revision has been stored.
-  void on_stored(std::uint64_t revision);
+  void on_stored(std::uint64_t revision) { keeper_.on_stored(revision); }
   /// It has not; `reason` names the file, one sentence.
   void on_store_failure(const std::string& reason, TimePoint now);
   /// Why the state cannot be stored, one sentence; empty: the last attempt succeeded.
-  const std::string& store_failure() const { return store_failure_; }
+  const std::string& store_failure() const { return keeper_.store_failure(); }
   /// Runs one cycle: controls, goals, the running task, permission and storage; fills `out`.
   /// `stamp`: system clock, from which stored ages count.
   void step(TimePoint now, Stamp stamp, Outbox& out);
 
  private:
   bool begin(const TaskGoal& goal, TimePoint now, Outbox& out);
-  void refuse(const TaskGoal& goal, const std::string& reason, Outbox& out);
   void control(const TaskGoal& goal, Outbox& out);
-  void heed(TimePoint now, TaskWishes& wishes);
-  void look_for_orphan(TimePoint now, Outbox& out);
+  void follow_advice(TimePoint now, TaskWishes& wishes);
+  std::optional<std::uint64_t> unasked_task() const;
   void suspend(bool suspended);
-  void show_pause();
-  void keep(TimePoint now, Stamp stamp, Outbox& out);
-  void answer(Outbox& out);
-  void send_go(const Go& go, TimePoint now, Outbox& out);
   bool halted() const { return !latches_.permits() || suspended_; }
-  void report(Outbox& out);
 
   config::SupervisorSettings settings_;
   Domain domain_;
   Permission permission_;
+  GoSender go_sender_;
   SafetyLatches latches_;
   LostPeople lost_;
+  StateKeeper keeper_;
   Situation situation_;
   std::uint64_t next_action_;
   GoalInbox inbox_;
-  std::unique_ptr<TaskRun> task_;
-  std::optional<TaskStatus> last_;
+  TaskSlot slot_;
+  OrphanWatch orphans_;
   AttentionAdvice advice_;
-  TaskChange heeded_{TaskChange::none};
-  bool suspended_{false};            ///< by attention
-  std::set<std::uint64_t> orphans_;  // already reported
-  std::optional<TimePoint> orphan_since_;
-  TimePoint go_sent_{}, status_sent_{};
-  Go sent_go_;
-  std::uint64_t stored_{}, published_{};  // revisions
-  bool storing_{false};
-  std::optional<TimePoint> lost_noted_, safety_sent_, store_failed_at_;
-  std::string store_failure_;
-  struct Answer {
-    std::uint64_t revision{};  // that must be stored before a person is answered
-    TaskStatus status;
-  };
-  std::vector<Answer> answers_;
+  TaskChange followed_{TaskChange::none};  ///< change of the advice that was acted on last
+  bool suspended_{false};                  ///< by attention
 };
 
 }  // namespace handsel::supervisor

@@ -1,0 +1,29 @@
+#include "components/supervisor/orphan_watch.hpp"
+
+namespace handsel::supervisor {
+namespace {
+
+constexpr std::size_t kMaxReported = 64;  // tasks that are remembered
+constexpr double kTimeout = 5.0;          // time in which a goal may come again [s]
+
+}  // namespace
+
+std::optional<TaskStatus> OrphanWatch::step(std::optional<std::uint64_t> id, TimePoint now) {
+  if (!id || reported_.contains(*id)) {
+    since_.reset();
+    return std::nullopt;
+  }
+  if (!since_) since_ = now;
+  if (to_seconds(now - *since_) < kTimeout) return std::nullopt;
+  reported_.insert(*id);
+  if (reported_.size() > kMaxReported) reported_.erase(reported_.begin());
+  TaskStatus status;
+  status.id = *id;
+  status.state = TaskState::failed;
+  status.reason =
+      "the supervisor was started anew while this task ran, and nobody asked for it again; its "
+      "last action runs to its end";
+  return status;
+}
+
+}  // namespace handsel::supervisor

@@ -1,0 +1,62 @@
+// When the durable state is stored and published, and when a person is answered. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/time.hpp"
+#include "common/config/schema/supervisor.pb.h"
+#include "common/messages/task.hpp"
+#include "components/supervisor/safety/lost_people.hpp"
+#include "components/supervisor/safety/safety_latches.hpp"
+
+namespace handsel::supervisor {
+
+/// What the keeper asks for in one cycle.
+struct StateOutput {
+  std::optional<DurableState> store;  ///< to be stored; until the answer no other comes
+  std::optional<SafetyState> safety;  ///< to be published; ages count from now
+};
+
+/// Keeps storage and readers up to date with the latches, and holds answers to people back until
+/// the state they depend on is stored.
+class StateKeeper {
+ public:
+  /// `stored`: revision that the store holds at the start.
+  StateKeeper(const config::SupervisorSettings& settings, std::uint64_t stored);
+
+  /// The state of this revision has been stored.
+  void on_stored(std::uint64_t revision);
+  /// The state could not be stored; `reason` names the file, one sentence.
+  void on_store_failure(const std::string& reason, TimePoint now);
+  /// Returns whether this revision, or a later one, is stored.
+  bool is_stored(std::uint64_t revision) const { return stored_ >= revision; }
+  /// Why the state cannot be stored, one sentence; empty: the last attempt succeeded.
+  const std::string& store_failure() const { return failure_; }
+
+  /// Notes the lost people in the latches, then returns what has to be stored and published.
+  /// `stamp`: system clock, from which stored ages count.
+  StateOutput step(TimePoint now, Stamp stamp, SafetyLatches& latches, LostPeople& lost);
+
+  /// Holds back an answer to a person until the revision is stored or cannot be stored.
+  void answer_when_stored(std::uint64_t revision, const TaskStatus& status);
+  /// Moves the answers that are due to the end of `out`, in order.
+  void take_answers(std::vector<TaskStatus>& out);
+
+ private:
+  struct Answer {
+    std::uint64_t revision{};
+    TaskStatus status;
+  };
+
+  double lost_period_, store_retry_, safety_period_;  // [s]
+  std::uint64_t stored_, published_{};                // revisions
+  bool storing_{false};
+  std::optional<TimePoint> lost_noted_, safety_sent_, failed_at_;
+  std::string failure_;
+  std::vector<Answer> answers_;
+};
+
+}  // namespace handsel::supervisor
