@@ -12,7 +12,7 @@ void TaskSlot::refuse(const TaskGoal& goal, const std::string& reason, Statuses&
   status.id = goal.id;
   status.kind = goal.kind;
   status.state = TaskState::refused;
-  status.reason = cut(reason, kMostReason);
+  status.reason = cut(reason, kMaxReason);
   out.push_back(status);
   if (!task_) last_ = status;
 }

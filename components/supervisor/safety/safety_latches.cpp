@@ -35,7 +35,7 @@ DurableState fresh_state(std::uint64_t revision, double override_factor) {
 DurableState unknown_state(std::uint64_t revision, const std::string& reason) {
   DurableState state = fresh_state(revision, 1.0);
   state.safety.paused = state.safety.awaits_person = true;
-  state.safety.reason = cut(reason, kMostReason - 40) + kHint + "resume";
+  state.safety.reason = cut(reason, kMaxReason - 40) + kHint + "resume";
   return state;
 }
 

@@ -5,7 +5,7 @@
 namespace handsel::supervisor {
 namespace {
 
-constexpr std::uint32_t kMostDepth = 16;  // idl/task.idl
+constexpr std::uint32_t kMaxDepth = 16;  // idl/task.idl
 
 bool over(StepState state) { return state == StepState::done || state == StepState::failed || state == StepState::dropped; }
 
@@ -32,7 +32,9 @@ std::size_t end_of(const std::vector<PlanStep>& tree, std::size_t line) {
 
 }  // namespace
 
-std::string cut(const std::string& text, std::size_t most) { return text.size() <= most ? text : text.substr(0, most - 3) + "..."; }
+std::string cut(const std::string& text, std::size_t max_size) {
+  return text.size() <= max_size ? text : text.substr(0, max_size - 3) + "...";
+}
 
 void Progress::mark(StepState state, const std::string& reason) {
   if (next_ >= marks_.size()) return;
@@ -104,25 +106,26 @@ void Progress::adopt_after_running(Plan plan, const std::function<std::string(co
 
 void Progress::write(const std::string& goal, TaskStatus& out) const {
   out.plan = past_plan_;
-  for (const auto& action : plan_.actions) out.plan.push_back(cut(action.text(), kMostText));
+  for (const auto& action : plan_.actions) out.plan.push_back(cut(action.text(), kMaxText));
   out.step = static_cast<std::uint32_t>(past_plan_.size() + next_);
-  if (out.plan.size() > kMostSteps) {  // what was done first goes
-    const std::size_t gone = std::min<std::size_t>(out.step > 8 ? out.step - 8 : 0, out.plan.size() - kMostSteps);
+  if (out.plan.size() > kMaxSteps) {  // what was done first goes
+    const std::size_t gone =
+        std::min<std::size_t>(out.step > 8 ? out.step - 8 : 0, out.plan.size() - kMaxSteps);
     out.plan.erase(out.plan.begin(), out.plan.begin() + static_cast<std::ptrdiff_t>(gone));
     out.step -= static_cast<std::uint32_t>(gone);
-    if (out.plan.size() > kMostSteps) out.plan.resize(kMostSteps);
-    out.step = std::min<std::uint32_t>(out.step, kMostSteps);
+    if (out.plan.size() > kMaxSteps) out.plan.resize(kMaxSteps);
+    out.step = std::min<std::uint32_t>(out.step, kMaxSteps);
   }
   out.cost = 0;
   for (const auto& action : left()) out.cost += action.cost;
 
-  std::vector<PlanStep> tree{{cut(goal, kMostText), 0, StepState::waiting, ""}};
+  std::vector<PlanStep> tree{{cut(goal, kMaxText), 0, StepState::waiting, ""}};
   tree.insert(tree.end(), past_.begin(), past_.end());
   std::vector<bool> leaf(tree.size(), false);
   for (std::size_t i = 1; i < past_.size() + 1; ++i) leaf[i] = end_of(tree, i) == i + 1;
   for (std::size_t i = 1; i < plan_.tree.size(); ++i) {
     const PlanLine& line = plan_.tree[i];
-    PlanStep step{cut(line.text, kMostText), line.depth, StepState::done, line.reason};
+    PlanStep step{cut(line.text, kMaxText), line.depth, StepState::done, line.reason};
     if (line.action >= 0) {
       step.state = marks_[static_cast<std::size_t>(line.action)].state;
       step.reason = marks_[static_cast<std::size_t>(line.action)].reason;
@@ -136,14 +139,14 @@ void Progress::write(const std::string& goal, TaskStatus& out) const {
     const std::size_t end = end_of(tree, i);
     if (!leaf[i] && end > i + 1) tree[i].state = together(tree, i + 1, end, leaf);
   }
-  if (tree.size() > kMostLines) {
-    const std::size_t gone = std::min(past_.size(), tree.size() - kMostLines);
+  if (tree.size() > kMaxLines) {
+    const std::size_t gone = std::min(past_.size(), tree.size() - kMaxLines);
     tree.erase(tree.begin() + 1, tree.begin() + 1 + static_cast<std::ptrdiff_t>(gone));
-    if (tree.size() > kMostLines) tree.resize(kMostLines);
+    if (tree.size() > kMaxLines) tree.resize(kMaxLines);
   }
   for (PlanStep& step : tree) {
-    step.depth = std::min(step.depth, kMostDepth);
-    step.reason = cut(step.reason, kMostReason);
+    step.depth = std::min(step.depth, kMaxDepth);
+    step.reason = cut(step.reason, kMaxReason);
   }
   out.tree = std::move(tree);
 }

@@ -11,10 +11,11 @@
 namespace handsel::supervisor {
 
 /// What one TaskStatus has room for (idl/task.idl).
-inline constexpr std::size_t kMostSteps = 64, kMostLines = 128, kMostText = 128, kMostReason = 256, kMostPhase = 64;
-/// Returns the text if it has at most `most` bytes, else its beginning with "..." at that length.
-/// `most` >= 3.
-std::string cut(const std::string& text, std::size_t most);
+inline constexpr std::size_t kMaxSteps = 64, kMaxLines = 128, kMaxText = 128, kMaxReason = 256,
+                             kMaxPhase = 64;
+/// Returns the text if it has at most `max_size` bytes, else its beginning with "..." at that
+/// length. `max_size` >= 3.
+std::string cut(const std::string& text, std::size_t max_size);
 
 class Progress {
  public:

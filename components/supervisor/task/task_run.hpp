@@ -2,15 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/config/schema/supervisor.pb.h"
 #include "components/supervisor/situation.hpp"
+#include "components/supervisor/task/action_dispatch.hpp"
+#include "components/supervisor/task/expected_effects.hpp"
+#include "components/supervisor/task/failure_record.hpp"
+#include "components/supervisor/task/persistent.hpp"
+#include "components/supervisor/task/planning_problem.hpp"
 #include "components/supervisor/task/progress.hpp"
-#include "components/supervisor/task/task_planner.hpp"
 
 namespace handsel::supervisor {
 
@@ -43,23 +45,28 @@ class TaskRun {
   bool give_instead(const std::string& person, TimePoint now, TaskWishes& wishes);
 
   /// Returns whether the task has succeeded, failed or was cancelled.
-  bool over() const { return over_; }
+  bool over() const { return stage_ == Stage::over; }
   /// Returns the status with plan and tree brought up to date and texts cut to the size of the
   /// message.
   const TaskStatus& status();
   /// Goal of the task, with the destination filled in where `surface` named it.
-  const TaskGoal& goal() const { return goal_; }
+  const TaskGoal& goal() const { return problem_.goal(); }
 
  private:
-  void look_for_somebody(TimePoint now, TaskWishes& wishes);
-  void take_up(Plan plan);
-  State believed(TimePoint now);
-  Plan plan_from(const State& state);
+  enum class Stage {
+    searching,  // for a person; there is no plan yet
+    planned,
+    over,
+  };
+
+  void search(TimePoint now, TaskWishes& wishes);
+  void adopt(Plan plan);
+  Plan plan_from(const State& state) const;
+  State believed(TimePoint now) const { return effects_.believed(situation_.world(), now); }
   bool replan(TimePoint now);
-  std::string why_impossible(std::vector<PlannedAction> actions, State state);
   void send(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
+  void follow(TimePoint now, std::uint64_t go_epoch, std::uint64_t& next_id, TaskWishes& wishes);
   void watch(TimePoint now, TaskWishes& wishes);
-  void stop_action(TaskWishes& wishes);
   void ended(TimePoint now);
   void answer_failure(ActionFailure failure, const std::string& reason, TimePoint now);
   void give_up(const std::string& reason, TimePoint now);
@@ -67,33 +74,20 @@ class TaskRun {
   void finish(TaskState state, const std::string& reason);
   void say(const std::string& phase, TaskWishes& wishes);
   bool is_stranded(TimePoint now, const std::vector<std::string>& missing);
-  bool lasts(std::optional<TimePoint>& since, bool is, TimePoint now, double time) const;
-  std::string held_for(const PlannedAction& action);
 
   const config::SupervisorSettings& settings_;
-  const Domain& domain_;
   Situation& situation_;
-  TaskGoal goal_;
-  TimePoint accepted_;
-  std::string text_;
-  TaskQuery query_;
-  TaskStatus status_;
+  PlanningProblem problem_;
+  ExpectedEffects effects_;
+  ActionDispatch dispatch_;
+  FailureRecord failures_;
   Progress progress_;
-  bool planned_{false}, over_{false};
-
-  bool begun_{false}, stopping_{false}, moved_{false};
-  std::uint64_t action_{};
-  TimePoint sent_{}, not_before_{}, ended_at_{};
-  std::string stop_reason_;
-  std::optional<PlannedAction> last_;  // succeeded; the facts may not show it yet
-  std::optional<TimePoint> broken_, obsolete_, hopeless_, missing_;
-
-  Forbidden forbidden_;
-  std::map<std::string, std::uint32_t> tries_;
-  std::map<std::string, std::string> homes_;  // object: surface it came from
-  std::string failure_;                       // set once it is given up; what is left only recovers
-  std::string first_failure_;
-  std::uint32_t replans_{0}, failed_recoveries_{0};
+  TimePoint accepted_;
+  TaskStatus status_;
+  Stage stage_{Stage::searching};
+  TimePoint not_before_{};  // when the next action may be sent
+  Persistent broken_, obsolete_, hopeless_, missing_;
+  std::uint32_t replans_{0};
 };
 
 }  // namespace handsel::supervisor
