@@ -23,6 +23,18 @@ std::string why_not_live(const Source& source, TimePoint now, double max_age) {
   return text;
 }
 
+std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
+                                 double max_age) {
+  constexpr double kMaxAge = 1e9;  // HumanState has room for [s]
+  std::vector<SourceView> out;
+  for (const auto& [name, source] : sources) {
+    const std::string why = why_not_live(source, now, max_age);
+    out.push_back({name, source.coverage.low, source.coverage.high,
+                   std::clamp(source.age(now), 0.0, kMaxAge), why.empty(), why});
+  }
+  return out;
+}
+
 bool covers(const std::vector<Coverage>& boxes, const Coverage& box) {
   std::array<std::vector<double>, 3> cuts;  // the box falls into cells that lie wholly inside or outside of each of the others
   for (std::size_t i = 0; i < 3; ++i) {
@@ -48,6 +60,11 @@ bool looks_at(const Source& source, const Obstacles& obstacles, const Vector3& p
   const auto between = [&](const auto& thing) { return hides(thing, *source.eye, point); };
   return std::none_of(obstacles.robot.begin(), obstacles.robot.end(), between) &&
          std::none_of(obstacles.boxes.begin(), obstacles.boxes.end(), between);
+}
+
+bool at_boundary(const Source& source, const Vector3& place, double margin) {
+  const bool observes = (source.coverage.low.array() < source.coverage.high.array()).all();
+  return observes && !contains(source.coverage, place, margin);
 }
 
 }  // namespace handsel::spark

@@ -2,6 +2,7 @@
 // stand. Pure.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/base/time.hpp"
 #include "common/geometry/line_of_sight.hpp"
 #include "common/messages/perception.hpp"
+#include "common/messages/world.hpp"
 
 namespace handsel::spark {
 
@@ -41,6 +43,10 @@ struct Source {
 /// of its newest new picture [s].
 std::string why_not_live(const Source& source, TimePoint now, double max_age);
 
+/// Returns what every source observes now; `max_age` as for why_not_live().
+std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
+                                 double max_age);
+
 /// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the
 /// floor: the margin is horizontal.
 bool contains(const Coverage&, const Vector3& point, double margin);
@@ -50,5 +56,9 @@ bool covers(const std::vector<Coverage>& boxes, const Coverage& box);
 
 /// Whether the source looked at this point and nothing fixed or of the robot stood between.
 bool looks_at(const Source&, const Obstacles&, const Vector3& point);
+
+/// Returns whether a place is nearer the sides of what the source observes than `margin` [m], or
+/// beyond; false for a source that observes nothing.
+bool at_boundary(const Source& source, const Vector3& place, double margin);
 
 }  // namespace handsel::spark

@@ -14,20 +14,20 @@ bool is_complete(const Person& person) {
 }  // namespace
 
 /// Returns the track of the same person: the same id, or a body seen where they were last seen; nullptr: there is none.
-PeopleTracker::Track* PeopleTracker::same_as(const Person& lost) {
+Track* PeopleTracker::same_as(const Person& lost) {
   ObservedPerson body;
   for (const BodyJoint& joint : lost.joints) body.joints.push_back({joint.name, joint.position, 1.0});
   Track* nearest = nullptr;
-  double least = settings_.association_distance();
+  double min_distance = settings_.association_distance();
   for (Track& track : tracks_) {
     if (track.person.joints.empty()) continue;
     const double away = distance(track, body);
     const double walked = settings_.association_distance() + settings_.lost_speed() * lost.age;
     if (track.person.id == lost.id && away <= walked) return &track;
     const bool taken = track.adopted || std::any_of(tracks_.begin(), tracks_.end(), [&](const Track& t) { return t.person.id == lost.id; });
-    if (taken || away > least) continue;
+    if (taken || away > min_distance) continue;
     nearest = &track;
-    least = away;
+    min_distance = away;
   }
   return nearest;
 }

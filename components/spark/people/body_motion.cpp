@@ -22,13 +22,13 @@ const std::array<std::size_t, 7> kTrunkJoints = trunk_joints();
 
 bool of_trunk(std::size_t joint) { return std::find(kTrunkJoints.begin(), kTrunkJoints.end(), joint) != kTrunkJoints.end(); }
 
-void BodyMotion::Point::look(const Vector3& position, double noise, TimePoint at) {
-  const double since = told ? to_seconds(at - *told) : 2 * kGap;
+void BodyMotion::Point::add(const Vector3& position, double noise, TimePoint at) {
+  const double since = sampled ? to_seconds(at - *sampled) : 2 * kGap;
   if (since > kGap)
     motion.reset(position, noise);
   else if (since > 1e-4)
     motion.update(position, since, noise);
-  told = at;
+  sampled = at;
 }
 
 void BodyMotion::update(std::vector<BodyJoint>& body, const std::array<double, kBodyJoints.size()>& noise, TimePoint at) {
@@ -41,9 +41,10 @@ void BodyMotion::update(std::vector<BodyJoint>& body, const std::array<double, k
   }
   for (const std::size_t i : kTrunkJoints) variance += std::pow(noise[i] > 0 ? noise[i] : noisiest, 2);
   const double of_middle = std::sqrt(variance) / kCount;
-  if (noisiest > 0) trunk_.look(middle, of_middle, at);
+  if (noisiest > 0) trunk_.add(middle, of_middle, at);
   for (std::size_t i = 0; i < body.size(); ++i) {
-    if (noise[i] > 0) joints_[i].look(body[i].position - middle, std::hypot(noise[i], of_middle), at);
+    if (noise[i] > 0)
+      joints_[i].add(body[i].position - middle, std::hypot(noise[i], of_middle), at);
     body[i].velocity = trunk_.motion.velocity() + joints_[i].motion.velocity();
   }
 }

@@ -28,9 +28,9 @@ class BodyMotion {
  private:
   struct Point {
     explicit Point(const JointMotion::Agility& agility) : motion(agility) {}
-    void look(const Vector3& position, double noise, TimePoint at);
+    void add(const Vector3& position, double noise, TimePoint at);
     JointMotion motion;
-    std::optional<TimePoint> told;
+    std::optional<TimePoint> sampled;
   };
   // A body starts to walk, and a hand to reach, at some m/s^2; a trunk bends slowly, and what was
   // seen wrongly jumps.

@@ -63,9 +63,9 @@ void BodySize::see(const ObservedPerson& body) {
   const auto middle = said.begin() + static_cast<std::ptrdiff_t>(said.size() / 2);
   std::nth_element(said.begin(), middle, said.end());
   if (!(*middle >= kLeast && *middle <= kMost)) return;
-  looks_ = std::min(looks_ + 1, kAverageOver);
-  mean_ += (*middle - mean_) / looks_;
-  if (std::abs(mean_ - told_) > kCorrection) told_ = mean_;
+  samples_ = std::min(samples_ + 1, kAverageOver);
+  mean_ += (*middle - mean_) / samples_;
+  if (std::abs(mean_ - stature_) > kCorrection) stature_ = mean_;
 }
 
 }  // namespace handsel::spark

@@ -14,11 +14,11 @@ class BodySize {
   /// 2.2] m is left out.
   void see(const ObservedPerson& body);
   /// [m]; 1.75 until a bone was seen; follows the average in steps above 0.02.
-  double stature() const { return told_; }
+  double stature() const { return stature_; }
 
  private:
-  double mean_{}, told_{1.75};
-  int looks_{0};
+  double mean_{}, stature_{1.75};
+  int samples_{0};
 };
 
 }  // namespace handsel::spark

@@ -2,9 +2,7 @@
 // Pure.
 #pragma once
 
-#include <array>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,10 +10,7 @@
 #include "common/base/time.hpp"
 #include "common/config/schema/spark.pb.h"
 #include "common/messages/world.hpp"
-#include "common/model/human/human_body.hpp"
-#include "components/spark/people/body_motion.hpp"
-#include "components/spark/people/body_size.hpp"
-#include "components/spark/people/hand_predictor.hpp"
+#include "components/spark/people/track.hpp"
 #include "components/spark/quotas.hpp"
 #include "components/spark/sources.hpp"
 
@@ -71,47 +66,17 @@ class PeopleTracker {
   std::string trouble(TimePoint now) const;
 
  private:
-  static constexpr std::size_t kJoints = kBodyJoints.size();
-  struct Track {
-    Person person;
-    std::map<std::string, std::string> bodies;  // id by source
-    TimePoint born{}, seen{};
-    std::optional<TimePoint> gaze_seen;
-    std::array<std::optional<TimePoint>, kJoints> joint_seen;
-    BodyMotion motion;
-    BodySize size;
-    std::array<HandPredictor, 2> hands;  // left, right
-    std::array<std::optional<TimePoint>, 2> hand_seen;
-    double doubt{};  // [m], until doubted_until
-    TimePoint doubted_until{};
-    std::optional<TimePoint> empty_since;
-    bool adopted{};  // from the safety state, and not seen by this process yet
-    // appeared at the field-of-view boundary, and nobody who had left is known to be it
-    bool came_in{};
-    std::string left_by;   // source through whose edge they left; empty: they did not
-    TimePoint confined{};  // when that source last showed that they had not come back
-  };
-
   std::vector<int> associate(const HumanObservation& observation, TimePoint seen) const;
-  double distance(const Track& track, const ObservedPerson& body) const;
   double inflation(const Track& track, TimePoint now) const;
   bool room_for_source(TimePoint seen);
   Source* find_source(const HumanObservation& observation, TimePoint seen);
-  std::vector<SourceView> views(TimePoint now) const;
   bool live(const Source& source, TimePoint now) const { return source.age(now) <= settings_.max_view_age(); }
-  double age(const Track& track, TimePoint now) const { return to_seconds(now - track.seen); }
   bool recent(const Source& source, TimePoint now) const { return to_seconds(now - source.seen) <= settings_.coverage_memory(); }
   bool seen_empty(const Track& track, TimePoint now, const Obstacles& obstacles) const;
-  double height(const std::string& id) const;
-  bool at_edge(const Source& source, const Vector3& place) const;
   void confine(Track& track, TimePoint now) const;
-  Track* heir(const Track& gone, TimePoint now);
-  Track* comer(const Track& gone, TimePoint now);
+  Track* successor(const Track& gone, TimePoint now);
+  Track* re_entered(const Track& gone, TimePoint now);
   void erase(std::size_t index, Track* name_goes_to);
-  void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump) const;
-  void guess_unseen(const Track& track, std::vector<BodyJoint>& body) const;
-  void follow_hands(Track& track, const std::array<bool, kJoints>& told, TimePoint at) const;
-  std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) const;
   Track* same_as(const Person& lost);
   void add(const ObservedPerson& body, const std::string& source, TimePoint seen);
   void forget(TimePoint now, const Obstacles& obstacles);

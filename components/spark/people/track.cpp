@@ -1,0 +1,199 @@
+#include "components/spark/people/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/cost/human_cost.hpp"
+
+namespace handsel::spark {
+namespace {
+
+constexpr double kFresh = 0.1;       // sights of joints this much apart are one body [s]
+constexpr double kFastest = 2.2;     // [m/s]
+constexpr double kSettled = 0.08;    // a body moves by this between two samples without a doubt [m]
+constexpr double kConfirmed = 0.15;  // the volume of a lost person counts on after the return [s]
+constexpr double kGapOfHand = 0.5;   // beyond this a hand's motion is found anew [s]
+constexpr double kMinConfidence = 0.05;
+constexpr double kGuessed = 3;  // a joint that was not seen is this much noisier
+constexpr int kAheads = 5;      // predictions of a hand
+constexpr double kAhead = 0.1;  // this far apart [s]
+constexpr std::size_t kJoints = kBodyJoints.size();
+
+int index(const char* name) { return body_joint_index(name); }
+const std::array kHands = {index("l_hand"), index("r_hand")},
+                 kWrists = {index("l_wrist"), index("r_wrist")},
+                 kShoulders = {index("l_shoulder"), index("r_shoulder")};
+const std::array kTrunkMiddle = {index("neck"), index("torso"), index("waist"), index("l_shoulder"),
+                                 index("r_shoulder")};
+const std::vector<const char*> kLimbs[] = {{"l_shoulder", "l_elbow", "l_wrist", "l_hand"},
+                                           {"r_shoulder", "r_elbow", "r_wrist", "r_hand"},
+                                           {"l_hip", "l_knee", "l_ankle"},
+                                           {"r_hip", "r_knee", "r_ankle"}};
+
+const Vector3& position(const Person& person, int joint) {
+  return person.joints[static_cast<std::size_t>(joint)].position;
+}
+
+/// Returns the height of the person's profile [m]; 0: there is none.
+double height(const config::SparkSettings& settings, const std::string& id) {
+  for (const config::PersonProfile& one : settings.people())
+    if (one.id() == id) return one.height();
+  return 0;
+}
+
+/// Places joints that were never seen by those that were, once these show which way the body faces.
+/// The first observation may have shown that wrongly.
+void guess_unseen(const Track& track, std::vector<BodyJoint>& body) {
+  const auto seen = [&](const char* joint) {
+    return track.joint_seen[static_cast<std::size_t>(index(joint))].has_value();
+  };
+  const auto at = [&](const std::vector<BodyJoint>& b, const char* joint) -> Vector3 {
+    return b[static_cast<std::size_t>(index(joint))].position;
+  };
+  const bool shoulders = seen("l_shoulder") && seen("r_shoulder");
+  if (!shoulders && !(seen("l_hip") && seen("r_hip"))) return;
+  const Vector3 left = shoulders ? at(body, "l_shoulder") - at(body, "r_shoulder")
+                                 : at(body, "l_hip") - at(body, "r_hip");
+  const auto model =
+      standing_body(Vector3::Zero(), std::atan2(-left.x(), left.y()), track.person.stature);
+  const Vector3 trunk =
+      shoulders ? at(body, "l_shoulder") + at(body, "r_shoulder") - at(model, "l_shoulder") -
+                      at(model, "r_shoulder")
+                : at(body, "l_hip") + at(body, "r_hip") - at(model, "l_hip") - at(model, "r_hip");
+  for (const char* joint :
+       {"head", "neck", "torso", "waist", "l_shoulder", "r_shoulder", "l_hip", "r_hip"})
+    if (!seen(joint))
+      body[static_cast<std::size_t>(index(joint))].position = at(model, joint) + trunk / 2;
+  for (const auto& limb : kLimbs) {
+    if (std::any_of(limb.begin() + 1, limb.end(), seen)) continue;
+    for (auto joint = limb.begin() + 1; joint != limb.end(); ++joint)
+      body[static_cast<std::size_t>(index(*joint))].position =
+          at(body, limb.front()) + at(model, *joint) - at(model, limb.front());
+  }
+}
+
+/// Takes a sample of each hand that was seen; a wrist shows where the hand is, too.
+void follow_hands(Track& track, const std::array<bool, kJoints>& sighted, TimePoint at,
+                  double noise) {
+  Vector3 trunk = Vector3::Zero();
+  for (const int joint : kTrunkMiddle)
+    trunk += position(track.person, joint) / static_cast<double>(kTrunkMiddle.size());
+  for (std::size_t side = 0; side < kHands.size(); ++side) {
+    if (!sighted[static_cast<std::size_t>(kHands[side])] &&
+        !sighted[static_cast<std::size_t>(kWrists[side])])
+      continue;
+    const Vector3& hand = position(track.person, kHands[side]);
+    std::optional<TimePoint>& last = track.hand_seen[side];
+    const double dt = last ? to_seconds(at - *last) : kGapOfHand;
+    if (dt >= kGapOfHand)
+      track.hands[side].reset(hand, trunk, noise);
+    else if (dt > 1e-4)
+      track.hands[side].update(hand, trunk, dt, noise);
+    else
+      continue;
+    last = at;
+  }
+}
+
+}  // namespace
+
+double distance(const Track& track, const ObservedPerson& body) {
+  Vector3 sum = Vector3::Zero();
+  double weight = 0;
+  for (const ObservedJoint& joint : body.joints) {
+    const int i = body_joint_index(joint.name);
+    if (i < 0 || !joint.position.allFinite()) continue;
+    const double w = joint.confidence * (of_trunk(static_cast<std::size_t>(i)) ? 5 : 1);
+    sum += w * (joint.position - position(track.person, i));
+    weight += w;
+  }
+  return weight > 0 ? std::hypot(sum.x(), sum.y()) / weight
+                    : std::numeric_limits<double>::infinity();
+}
+
+void update(Track& track, const ObservedPerson& body, TimePoint seen, double jump,
+            const config::SparkSettings& settings) {
+  if (body.has_gaze && (!track.gaze_seen || seen >= *track.gaze_seen)) {
+    track.person.gaze_origin = body.gaze_origin;
+    track.person.gaze_direction = body.gaze_direction;
+    track.gaze_seen = seen;
+  }
+  Person& person = track.person;
+  const bool known = !person.joints.empty();
+  if (body.joints.empty()) return;
+
+  // A slower source shows an earlier instant: what nobody saw since counts, moved on to now.
+  const TimePoint at = known ? std::max(seen, track.seen) : seen;
+  const double behind = to_seconds(at - seen);
+  if (behind > kFresh) return;
+  ObservedPerson merged = body;
+  merged.joints.clear();
+  std::array<bool, kJoints> sighted{};
+  for (const ObservedJoint& joint : body.joints) {
+    const int i = body_joint_index(joint.name);
+    if (i < 0 || !(joint.confidence >= kMinConfidence)) continue;
+    const auto k = static_cast<std::size_t>(i);
+    if (track.joint_seen[k] && *track.joint_seen[k] > seen) continue;
+    merged.joints.push_back(joint);
+    if (behind > 0) merged.joints.back().position += behind * person.joints[k].velocity;
+    track.joint_seen[k] = seen;
+    sighted[k] = true;
+  }
+  if (merged.joints.empty()) return;
+  const double dt = known ? to_seconds(at - track.seen) : 0.0;
+  std::array<bool, kJoints> lately{};  // sighted in another observation
+  for (std::size_t i = 0; known && i < kJoints; ++i) {
+    if (sighted[i] || !track.joint_seen[i] || to_seconds(at - *track.joint_seen[i]) > kFresh)
+      continue;
+    merged.joints.push_back(
+        {kBodyJoints[i], person.joints[i].position + dt * person.joints[i].velocity, 0.5});
+    lately[i] = true;
+  }
+  track.size.see(body);
+  const double known_height = height(settings, person.id);
+  person.stature = known_height > 0 ? known_height : track.size.stature();
+  const Person previous = person;
+  std::vector<BodyJoint> fitted = fit_body(merged, known ? &previous : nullptr, person.stature);
+  if (fitted.empty()) return;
+  guess_unseen(track, fitted);
+  std::array<double, kJoints> noise{};
+  for (std::size_t i = 0; i < kJoints; ++i)
+    noise[i] = lately[i] ? 0.0 : settings.joint_noise() * (sighted[i] ? 1.0 : kGuessed);
+  track.motion.update(fitted, noise, at);
+  const auto doubt = [&](double by, double time) {
+    track.doubt = seen < track.doubted_until ? track.doubt + by : by;
+    track.doubted_until = std::max(track.doubted_until, seen + from_seconds(time));
+  };
+  if (known && dt > settings.lost_after())
+    doubt(settings.lost_speed() * dt + jump, kConfirmed);
+  else if (known && jump > kFastest * (dt + behind) + kSettled)
+    doubt(jump, settings.doubt_time());
+  person.joints = std::move(fitted);
+  follow_hands(track, sighted, at, settings.joint_noise());
+  track.seen = at;
+  track.empty_since.reset();
+  track.left_by.clear();
+  track.adopted = false;
+}
+
+std::vector<HandPrediction> hands_ahead(const Track& track, const Person& person, TimePoint now) {
+  std::vector<HandPrediction> out;
+  for (std::size_t side = 0; side < kHands.size(); ++side) {
+    if (!track.hand_seen[side]) continue;
+    const double since = std::max(0.0, to_seconds(now - *track.hand_seen[side]));
+    HandPrediction hand{kBodyJoints[static_cast<std::size_t>(kHands[side])], {}};
+    for (int k = 1; k <= kAheads; ++k) {
+      const HandPredictor::Ball ball = track.hands[side].at(since + k * kAhead);
+      // The hand is no farther from the shoulder than the arm reaches, which may have moved.
+      const double arm = (ball.centre - position(person, kShoulders[side])).norm() +
+                         arm_length(person) + kFastest * (since + k * kAhead);
+      hand.ahead.push_back(
+          {k * kAhead, ball.centre, std::min(ball.radius, arm) + person.inflation});
+    }
+    out.push_back(std::move(hand));
+  }
+  return out;
+}
+
+}  // namespace handsel::spark
