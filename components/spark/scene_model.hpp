@@ -4,9 +4,7 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,13 +16,11 @@
 #include "common/model/robot_capsules.hpp"
 #include "common/model/robot_model.hpp"
 #include "components/spark/quotas.hpp"
+#include "components/spark/scene/object_track.hpp"
+#include "components/spark/scene/robot_placement.hpp"
 #include "components/spark/sources.hpp"
 
 namespace handsel::spark {
-
-/// Where a robot at `base` could reach, and some more: the room in which people must be watched
-/// [m].
-Coverage reach_of(const RobotModel& robot, const Vector3& base);
 
 /// An object stays when nobody sees it: `uncertainty` grows from then on, faster where somebody's
 /// hand could reach it, until it is seen again. In a hand out of sight it moves with the hand, and
@@ -55,81 +51,33 @@ class SceneModel {
   std::string trouble(TimePoint now) const;
   /// Takes the state of the robot, which must be this one's: configuration, base pose, payload of
   /// each hand.
-  void update(const RobotState& state);
+  void update(const RobotState& state) { robot_.update(state); }
   /// Decides who holds what from geometry, the hand's load and the people's hands.
   Scene scene(TimePoint now, const HumanState& people);
 
   /// Returns whether update() was called.
-  bool robot_known() const { return robot_known_; }
+  bool robot_known() const { return robot_.known(); }
   /// Returns the base pose of the last update(); identity before.
-  const Pose& T_world_base() const { return T_world_base_; }
+  const Pose& T_world_base() const { return robot_.T_world_base(); }
   /// Returns the pose of the first hand's palm as of the last observe(), scene() or obstacles();
   /// identity before the robot is known.
-  const Pose& T_world_tool() const { return hands_.front().T_world_palm; }
+  const Pose& T_world_tool() const { return robot_.hands().front().T_world_palm; }
   /// The box around everything the robot can reach: what must be covered for "nobody" to be a fact.
-  Coverage reach() const;
+  Coverage reach() const { return robot_.reach(); }
   /// What hides people from a source: the robot as it stands and the fixed boxes.
   const Obstacles& obstacles();
 
  private:
-  struct Known {
-    SceneObject object;
-    std::size_t by{};                      ///< the robot's hand it is with, or was last
-    Pose T_palm_object{Pose::Identity()};  ///< of that hand
-    TimePoint seen{};
-    int looks{};  ///< that make up the estimate
-    Vector3 last_seen_at{Vector3::Zero()};
-    std::vector<ObservedGrip> grips;
-    std::string source;  ///< that is believed
-    double spread{};     ///< how far from there another sees it [m]
-    TimePoint spread_until{};
-    double jump{};  ///< faster than anybody carries [m]
-    TimePoint jump_until{};
-    int hand{};                              ///< joint of the person who holds it
-    Vector3 p_hand_object{Vector3::Zero()};  ///< from there, world axes [m]
-    std::optional<TimePoint> gripped;        ///< the sample p_hand_object is of
-    double wandered{};                       ///< how far it may have gone since it was seen [m]
-    TimePoint judged{};                      ///< when that was
-  };
-  /// A hand of the robot.
-  struct Hand {
-    std::string name;  ///< as SceneObject::holder_id has it: empty for the first
-    int palm{-1};      ///< link
-    double payload{};  ///< felt [kg]
-    Pose T_world_palm{Pose::Identity()};
-  };
-  void locate_hands();
   Rank rank(const SceneObject& object) const;
   void shorten(std::vector<ObservedObject>& seen);
   void forget_least_relevant();
   std::string left_out_in_reach() const;
-  /// Of the hands that feel it together, the one that has it: whoever had it, while it feels some
-  /// of the load; else who feels most of it.
-  std::optional<std::size_t> loaded_hand(const Known& known) const;
-  void follow(Known& known, const ObservedObject& observed, TimePoint seen) const;
-  bool known_shape(ObservedObject& observed) const;
-  void unswap(std::vector<ObservedObject>& seen, TimePoint at) const;
-  bool believes(Known& known, const ObservedObject& observed, const std::string& source, TimePoint seen) const;
-  void mislay(Known& known, const HumanState& people, TimePoint now) const;
-  /// Whether it is out of sight in somebody's hand, and moves with it.
-  bool carry(Known& known, const HumanState& people) const;
-  void attribute_grips(Known& known, const HumanState& people) const;
-  void assign_holder(Known& known, const HumanState& people) const;
-  bool keep_gripped(SceneObject& object) const;
-  /// The box it stands on, its bottom no more than `gap` [m] from the top.
-  const SceneBox* support_under(const SceneObject& object, double gap) const;
 
   config::SparkSettings settings_;
-  std::shared_ptr<const RobotModel> robot_;
   ObjectLibrary library_;
   std::vector<SceneBox> boxes_;
-  std::map<std::string, Known> objects_;
-  bool robot_known_{false};
-  Vector position_;
-  std::vector<Hand> hands_;  ///< never empty; the first is that of the tool link
-  Pose T_world_base_{Pose::Identity()};
-  double arm_length_{1.0};
-  std::vector<Pose> links_;
+  RobotPlacement robot_;
+  ObjectTracks objects_;
   std::vector<LinkCapsule> capsules_;
   Obstacles obstacles_;
   std::uint64_t revision_{0};

@@ -1,0 +1,146 @@
+#include "components/spark/scene/object_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/model/object_extent.hpp"
+#include "components/spark/directed.hpp"
+
+namespace handsel::spark {
+namespace {
+
+constexpr double kSameMove = 0.004;       // [m] a sample this near the estimate is averaged
+constexpr double kSameTurn = 0.06;        // [rad] and turned by no more
+constexpr int kAverageOver = 15;          // [samples]
+constexpr double kVelocityMemory = 0.06;  // [s]
+constexpr double kFastest = 2.5;          // [m/s] of what somebody carries
+constexpr double kLeap = 0.1;             // [m] beyond that a thing has jumped
+constexpr double kTrust = 0.2;            // [s] a source silent for longer is not believed
+constexpr double kAgree = 0.01;           // [m] two sources may differ by this
+
+/// Averages the place of an object at rest over several noisy samples; a moving object is where it
+/// was seen.
+Pose averaged(const Pose& estimate, const Pose& seen, int& samples) {
+  const Eigen::AngleAxisd turn(estimate.linear().transpose() * seen.linear());
+  if ((seen.translation() - estimate.translation()).norm() > kSameMove ||
+      std::abs(turn.angle()) > kSameTurn) {
+    samples = 1;
+    return seen;
+  }
+  samples = std::min(samples + 1, kAverageOver);
+  Pose out = estimate;
+  out.translation() += (seen.translation() - estimate.translation()) / samples;
+  out.linear() =
+      estimate.linear() * Eigen::AngleAxisd(turn.angle() / samples, turn.axis()).toRotationMatrix();
+  return out;
+}
+
+/// Filters the velocity by a first-order filter over the samples; steps of the averaged place would
+/// look like jerks.
+void follow(ObjectTrack& track, const ObservedObject& observed, TimePoint seen) {
+  const Vector3 at = observed.T_world_object.translation();
+  const double dt = to_seconds(seen - track.seen);
+  if (track.samples == 0 || dt > kVelocityGap) {
+    track.object.velocity.setZero();
+  } else if (dt > 0) {
+    track.object.velocity += -std::expm1(-dt / kVelocityMemory) *
+                             ((at - track.last_seen_at) / dt - track.object.velocity);
+  }
+  track.last_seen_at = at;
+  track.grips = observed.grips;
+}
+
+}  // namespace
+
+bool has_shape(ObservedObject& observed, const ObjectLibrary& library) {
+  const bool described =
+      !observed.model.empty() && (!library || library(observed.model) != nullptr);
+  if (described) {
+    observed.primitive = {};
+    return true;
+  }
+  if (!primitive_shape(observed.primitive)) return false;
+  observed.model.clear();
+  return true;
+}
+
+void unswap(std::vector<ObservedObject>& observed, const ObjectTracks& tracks, TimePoint at) {
+  for (std::size_t i = 0; i < observed.size(); ++i) {
+    for (std::size_t k = i + 1; k < observed.size(); ++k) {
+      const auto a = tracks.find(observed[i].id), b = tracks.find(observed[k].id);
+      if (a == tracks.end() || b == tracks.end() || observed[i].model != observed[k].model)
+        continue;
+      if (observed[i].primitive.kind != observed[k].primitive.kind ||
+          !observed[i].primitive.size.isApprox(observed[k].primitive.size, 0.1))
+        continue;
+      const auto apart = [&](const ObservedObject& sample, const ObjectTrack& track) {
+        return (sample.T_world_object.translation() - track.last_seen_at).norm();
+      };
+      const double possible =
+          kLeap + kFastest * to_seconds(at - std::min(a->second.seen, b->second.seen));
+      const bool leapt =
+          apart(observed[i], a->second) > possible && apart(observed[k], b->second) > possible;
+      if (leapt && apart(observed[i], b->second) < possible &&
+          apart(observed[k], a->second) < possible)
+        std::swap(observed[i].id, observed[k].id);
+    }
+  }
+}
+
+bool believes(ObjectTrack& track, const ObservedObject& observed, const std::string& source,
+              TimePoint seen, double doubt_time) {
+  if (track.samples == 0 || track.source == source || to_seconds(seen - track.seen) > kTrust) {
+    track.source = source;
+    return true;
+  }
+  const double between = std::abs(to_seconds(seen - track.seen)) * track.object.velocity.norm();
+  const double apart =
+      (observed.T_world_object.translation() - track.last_seen_at).norm() - between;
+  const bool wider = apart > track.spread || seen > track.spread_until;
+  if (apart > kAgree && wider) track.spread = apart;
+  if (apart > kAgree) track.spread_until = seen + from_seconds(doubt_time);
+  return false;
+}
+
+void add_sample(ObjectTrack& track, const ObservedObject& observed, TimePoint seen,
+                double doubt_time) {
+  const double leap = (observed.T_world_object.translation() - track.last_seen_at).norm();
+  if (track.samples > 0 && leap > kLeap + kFastest * to_seconds(seen - track.seen)) {
+    track.jump = leap;
+    track.jump_until = seen + from_seconds(doubt_time);
+  }
+  follow(track, observed, seen);
+  track.object.id = observed.id;
+  track.object.model = observed.model;
+  track.object.primitive = observed.primitive;
+  track.object.T_world_object = track.samples > 0 ? averaged(track.object.T_world_object,
+                                                             observed.T_world_object, track.samples)
+                                                  : observed.T_world_object;
+  track.samples = std::max(track.samples, 1);
+  track.seen = seen;
+  track.wandered = 0;
+}
+
+void mislay(ObjectTrack& track, const HumanState& people, TimePoint now,
+            const config::SparkSettings& settings) {
+  const double unseen = to_seconds(now - track.seen) - settings.unseen_after();
+  const double since = std::clamp(to_seconds(now - track.evaluated), 0.0, std::max(0.0, unseen));
+  track.evaluated = now;
+  SceneObject& object = track.object;
+  if (object.holder == Holder::robot) track.wandered = 0;
+  double speed = object.holder == Holder::robot ? 0 : settings.unseen_drift(), with = 0;
+  for (const Person& person : people.people) {
+    if (object.holder == Holder::human && object.holder_id == person.id) with = person.inflation;
+    for (const char* hand : {"l_hand", "r_hand"})
+      if ((joint_of(person, hand).position - object.T_world_object.translation()).norm() <
+              2 * settings.near_distance() + person.inflation &&
+          object.holder != Holder::robot)
+        speed = settings.touched_drift();
+  }
+  track.wandered = std::min(track.wandered + since * speed, settings.unseen_most());
+  object.uncertainty = track.wandered + with;
+  if (now < track.spread_until) object.uncertainty += track.spread;
+  if (now < track.jump_until) object.uncertainty = std::max(object.uncertainty, track.jump);
+}
+
+}  // namespace handsel::spark

@@ -1,0 +1,63 @@
+#include "components/spark/scene/robot_placement.hpp"
+
+#include <algorithm>
+
+#include "common/model/manipulator.hpp"
+
+namespace handsel::spark {
+namespace {
+
+double arm_length(const RobotModel& robot) {
+  double length = 0;
+  for (int link = robot.tool_link(); link > 0;) {
+    const Joint& joint = robot.joints()[static_cast<std::size_t>(
+        robot.links()[static_cast<std::size_t>(link)].parent_joint)];
+    if (joint.kind != JointKind::fixed || length == 0)
+      length += joint.T_parent_joint.translation().norm();
+    link = joint.parent;
+  }
+  return std::max(length, 0.5);
+}
+
+Coverage around(const Vector3& centre, double arm) {
+  const double r = arm + 0.3;
+  return {{centre.x() - r, centre.y() - r, 0.1}, {centre.x() + r, centre.y() + r, 1.9}};
+}
+
+}  // namespace
+
+RobotPlacement::RobotPlacement(std::shared_ptr<const RobotModel> robot) : robot_(std::move(robot)) {
+  arm_length_ = arm_length(*robot_);
+  for (const Manipulator& hand : hands_of(*robot_)) {
+    Hand out;
+    if (!hands_.empty() && hand.fingers != nullptr) out.name = hand.fingers->name;
+    out.palm = hand.palm;
+    hands_.push_back(std::move(out));
+  }
+  if (hands_.empty()) hands_.emplace_back();
+}
+
+void RobotPlacement::update(const RobotState& state) {
+  known_ = true;
+  position_ = state.position;
+  hands_.front().payload = state.payload;
+  for (std::size_t i = 1; i < hands_.size(); ++i)
+    hands_[i].payload = i <= state.other_hands.size() ? state.other_hands[i - 1].payload : 0;
+  T_world_base_ = state.T_world_base;
+}
+
+void RobotPlacement::locate() {
+  if (!known_) return;
+  robot_->forward(position_, links_);
+  for (Hand& hand : hands_)
+    if (hand.palm >= 0)
+      hand.T_world_palm = T_world_base_ * links_[static_cast<std::size_t>(hand.palm)];
+}
+
+Coverage RobotPlacement::reach() const { return around(T_world_base_.translation(), arm_length_); }
+
+Coverage reach_of(const RobotModel& robot, const Vector3& base) {
+  return around(base, arm_length(robot));
+}
+
+}  // namespace handsel::spark
