@@ -12,6 +12,7 @@
 #include "common/messages/task.hpp"
 #include "components/spark/calibration.hpp"
 #include "components/spark/facts/fact_finder.hpp"
+#include "components/spark/left_out_report.hpp"
 #include "components/spark/people/people_tracker.hpp"
 #include "components/spark/scene_model.hpp"
 
@@ -26,7 +27,6 @@ class Node {
   void observe(const HumanObservation& observation, const Receipt& receipt);
   HumanState people(TimePoint now, LeftOut* left_out = nullptr) const;
   void publish_people(TimePoint now);
-  void count_left_out(const std::string& what, std::uint64_t so_far, std::uint64_t& counted);
   std::string trouble(TimePoint now) const;
   void publish(const Scene& scene, TimePoint now);
   // the scene, when it has changed in a way that matters to a planner
@@ -40,14 +40,11 @@ class Node {
   PeopleTracker tracker_;
   SceneModel scene_;
   FactFinder facts_;
-  Pace facts_pace_, scene_pace_, news_pace_;
+  Pace facts_period_, scene_period_, news_period_;
   std::unique_ptr<Publisher<HumanState>> human_out_;
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<Facts>> facts_out_;
-  Quotas quotas_;
-  RecentCount bodies_left_out_;  // of an observation
-  LeftOut people_left_out_;      // of the last HumanState
-  std::uint64_t refused_counted_{0}, forgotten_counted_{0};
+  LeftOutReport left_out_;
   TimePoint started_, people_published_{};
   // the safety state was received: the people lost before the start are known
   bool knows_lost_{false};

@@ -1,0 +1,45 @@
+#include "components/spark/place.hpp"
+
+#include "common/geometry/pose.hpp"
+
+namespace handsel::spark {
+namespace {
+
+/// The floor of every place, z = 0 in the world: no arm goes there. What stands on it, the robot's
+/// own feet too, does not touch the floor.
+SceneBox floor() {
+  constexpr double kSize = 12.0, kThick = 0.1, kBelow = 0.002;  // [m]
+  return {"floor", make_pose({0, 0, -kBelow - 0.5 * kThick}), {kSize, kSize, kThick}, false};
+}
+
+}  // namespace
+
+std::vector<SceneBox> boxes_of(const config::Scenario& scenario) {
+  std::vector<SceneBox> boxes{floor()};
+  for (const auto& box : scenario.boxes()) {
+    const auto& xyz = box.pose().xyz();
+    const auto& rpy = box.pose().rpy();
+    const Eigen::Quaterniond q = Eigen::AngleAxisd(rpy.z(), Vector3::UnitZ()) *
+                                 Eigen::AngleAxisd(rpy.y(), Vector3::UnitY()) *
+                                 Eigen::AngleAxisd(rpy.x(), Vector3::UnitX());
+    boxes.push_back({box.id(),
+                     make_pose({xyz.x(), xyz.y(), xyz.z()}, q),
+                     {box.size().x(), box.size().y(), box.size().z()},
+                     box.supports()});
+  }
+  return boxes;
+}
+
+std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario,
+                                       const Calibration& calibration) {
+  std::map<std::string, Vector3> eyes;
+  for (const auto& [name, source] : calibration.sources())
+    if (source.own_frame) eyes[name] = source.T_world_camera.translation();
+  for (const auto& sensor : scenario.human_sensors()) {
+    const auto& xyz = sensor.pose().xyz();
+    if (sensor.occlusion()) eyes[sensor.source()] = {xyz.x(), xyz.y(), xyz.z()};
+  }
+  return eyes;
+}
+
+}  // namespace handsel::spark

@@ -1,0 +1,21 @@
+// What a scenario says about the place: its fixed boxes and the viewpoints of the sources. Pure.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/config/schema/scenario.pb.h"
+#include "common/messages/world.hpp"
+#include "components/spark/calibration.hpp"
+
+namespace handsel::spark {
+
+/// Returns the floor and the boxes of the scenario, in this order.
+std::vector<SceneBox> boxes_of(const config::Scenario& scenario);
+/// Returns the viewpoint of each source that has one, by name, world [m]: of a calibrated camera,
+/// or of a sensor of the scenario that things can hide people from.
+std::map<std::string, Vector3> eyes_of(const config::Scenario& scenario,
+                                       const Calibration& calibration);
+
+}  // namespace handsel::spark
