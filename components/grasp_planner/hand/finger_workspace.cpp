@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kSeedsPerCell = 3;
 constexpr double kDistinct = 0.35;  // [rad] seeds of one cell differ by more in some axis
-constexpr std::int64_t kMostSamples = 1'000'000;
+constexpr std::int64_t kMaxSamples = 1'000'000;
 
 // How many samples each axis needs so that the tip moves less than `step` between two of them.
 std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chain, double step) {
@@ -18,9 +18,9 @@ std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chai
     const int a = chain.axes()[k];
     double lever = 0;
     std::vector<Pose> T;
-    for (const double share : {0.0, 0.5, 1.0}) {
+    for (const double ratio : {0.0, 0.5, 1.0}) {
       Vector q = hand.rest();
-      for (const int b : chain.axes()) q[b] = lower[b] + share * (upper[b] - lower[b]);
+      for (const int b : chain.axes()) q[b] = lower[b] + ratio * (upper[b] - lower[b]);
       chain.forward(q, T);
       lever = std::max(lever, chain.jacobian(T).col(static_cast<Eigen::Index>(k)).norm());
     }
@@ -33,15 +33,21 @@ std::vector<int> samples_per_axis(const HandModel& hand, const FingerChain& chai
 
 FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain, const WorkspaceSettings& settings)
     : step_(settings.step) {
+  sample(hand, chain);
+  cover(settings);
+}
+
+/// Finds box, cells and seeds from samples over all axes.
+void FingerWorkspace::sample(const HandModel& hand, const FingerChain& chain) {
   const Vector &lower = hand.lower_contact(), &upper = hand.upper_contact();
-  double fine = 0.7 * settings.step;
+  double fine = 0.7 * step_;
   std::vector<int> counts = samples_per_axis(hand, chain, fine);
   const auto total = [&counts] {
     std::int64_t n = 1;
     for (const int c : counts) n *= c;
     return n;
   };
-  while (total() > kMostSamples) {
+  while (total() > kMaxSamples) {
     fine *= 1.1;
     counts = samples_per_axis(hand, chain, fine);
   }
@@ -53,10 +59,11 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
     double centrality = 1;
     for (std::size_t k = 0; k < n; ++k) {
       const int a = chain.axes()[k];
-      const double share = counts[k] > 1 ? static_cast<double>(index % counts[k]) / (counts[k] - 1) : 0.5;
+      const double ratio =
+          counts[k] > 1 ? static_cast<double>(index % counts[k]) / (counts[k] - 1) : 0.5;
       index /= counts[k];
-      q[a] = lower[a] + share * (upper[a] - lower[a]);
-      centrality = std::min(centrality, 2 * std::min(share, 1 - share));
+      q[a] = lower[a] + ratio * (upper[a] - lower[a]);
+      centrality = std::min(centrality, 2 * std::min(ratio, 1 - ratio));
     }
     return centrality;
   };
@@ -95,7 +102,10 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
         std::upper_bound(seeds.begin(), seeds.end(), seed, [](const Seed& a, const Seed& b) { return a.centrality > b.centrality; }), seed);
     if (seeds.size() > kSeedsPerCell) seeds.pop_back();
   }
+}
 
+/// Covers the cells that were reached with spheres.
+void FingerWorkspace::cover(const WorkspaceSettings& settings) {
   // Boundary cells have a neighbour that was not reached; the others are inner.
   std::vector<Vector3> boundary, inner, all;
   const auto reached = [&](int x, int y, int z) {
@@ -117,13 +127,14 @@ FingerWorkspace::FingerWorkspace(const HandModel& hand, const FingerChain& chain
   for (const Vector3& c : all) centroid_ += c / static_cast<double>(all.size());
   std::vector<double> room(inner.size(), 0.0);
   for (std::size_t i = 0; i < inner.size(); ++i) {
-    double least = 1e9;
-    for (const Vector3& b : boundary) least = std::min(least, (inner[i] - b).squaredNorm());
-    room[i] = std::sqrt(least) - 0.5 * step_;  // a boundary cell may be reached in part only
+    double min_square = 1e9;
+    for (const Vector3& b : boundary)
+      min_square = std::min(min_square, (inner[i] - b).squaredNorm());
+    room[i] = std::sqrt(min_square) - 0.5 * step_;  // a boundary cell may be reached in part only
   }
   while (spheres_.size() < settings.max_spheres && !inner.empty()) {
     const auto best = static_cast<std::size_t>(std::max_element(room.begin(), room.end()) - room.begin());
-    if (room[best] < settings.least_radius) break;
+    if (room[best] < settings.min_radius) break;
     const WorkspaceSphere s{inner[best], room[best]};
     spheres_.push_back(s);
     for (std::size_t i = 0; i < inner.size(); ++i) room[i] = std::min(room[i], (inner[i] - s.centre).norm() - s.radius);

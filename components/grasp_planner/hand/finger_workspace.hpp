@@ -12,7 +12,7 @@ namespace handsel::grasp_planner {
 
 struct WorkspaceSettings {
   double step{0.005};             ///< edge of a grid cell [m]
-  double least_radius{0.004};     ///< spheres smaller than this are not made [m]
+  double min_radius{0.004};       ///< spheres smaller than this are not made [m]
   std::uint32_t max_spheres{60};  ///< at most so many are made; smaller ones are left out
 };
 
@@ -37,7 +37,7 @@ class FingerWorkspace {
   /// clearly different, the farthest from the joint bounds first. Empty outside the workspace.
   struct Seed {
     Vector q;             ///< values of the chain's axes [rad]
-    double centrality{};  ///< least distance to a bound / half range, [0, 1]
+    double centrality{};  ///< min distance to a bound / half range, [0, 1]
     /// Hand frame, unit.
     Vector3 tip_direction{Vector3::UnitZ()}, closing_direction{Vector3::UnitX()};
   };
@@ -52,6 +52,8 @@ class FingerWorkspace {
   Vector3 centroid() const { return centroid_; }
 
  private:
+  void sample(const HandModel& hand, const FingerChain& chain);
+  void cover(const WorkspaceSettings& settings);
   std::int64_t cell(const Vector3& p) const;
   Vector3 centre(std::int64_t cell) const;
 
