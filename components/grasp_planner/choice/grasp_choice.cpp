@@ -113,7 +113,7 @@ GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_
     throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + kit_->hand.name() +
                       " in the order of its fingers");
   }
-  retreats_ = retreat_ways(kit_->hand);
+  retreats_ = retreat_directions(kit_->hand);
 }
 
 Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene,

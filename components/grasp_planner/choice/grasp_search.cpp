@@ -253,14 +253,14 @@ double GraspChooser::Search::stand_off() const { return settings().stand_off - (
 std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q, const Grasp& g) {
   const Pose T_world_hand = site.T_world_object * g.T_object_hand;
   self.kit_->forward(g.pregrasp_joints, T_open);
-  std::vector<Vector3> ways = self.retreats_;
-  ways.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
-  for (const Vector3& way : ways) {
-    if (!retreat_free(*self.kit_, T_open, object, g.T_object_hand, way, stand_off(), settings().approach_clearance, &out.touch_tests)) {
+  std::vector<Vector3> directions = self.retreats_;
+  directions.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
+  for (const Vector3& direction : directions) {
+    const RetreatPath path{direction, stand_off(), settings().approach_clearance};
+    if (!retreat_free(*self.kit_, T_open, object, g.T_object_hand, path, &out.touch_tests))
       continue;
-    }
     Pose T = T_world_hand;
-    T.translate(Vector3(stand_off() * way));
+    T.translate(Vector3(stand_off() * direction));
     const auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
     if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > kLargestApproach) continue;
     if (way_in_free(site, *q, grasp_q, g)) return q;

@@ -28,7 +28,7 @@ class Side {
     taken_ = taken_grasps(*side.list, settings.most_of_each, settings.taken, settings.p_object_middle, side.also);
     const std::size_t count = taken_.size();
     placed_.resize(count);
-    ways_ = retreat_ways(side.kit->hand);
+    ways_ = retreat_directions(side.kit->hand);
     Steps T_closed;
     for (std::size_t i = 0; i < count; ++i) {
       side.kit->forward(grasp(i).hand_joints, T_closed);
@@ -60,7 +60,8 @@ class Side {
     Placed& p = placed_[i];
     side_.kit->forward(grasp(i).pregrasp_joints, p.T_open);
     const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const Vector3& w) {
-      return retreat_free(*side_.kit, p.T_open, *settings_.passed, grasp(i).T_object_hand, w, settings_.stand_off, settings_.way_clearance);
+      return retreat_free(*side_.kit, p.T_open, *settings_.passed, grasp(i).T_object_hand,
+                          {w, settings_.stand_off, settings_.way_clearance});
     });
     if (way == ways_.end()) return;
     p.direction = *way;

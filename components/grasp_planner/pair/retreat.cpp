@@ -5,26 +5,28 @@
 
 namespace handsel::grasp_planner {
 
-std::vector<Vector3> retreat_ways(const HandModel& hand) {
+std::vector<Vector3> retreat_directions(const HandModel& hand) {
   const Vector3 away = -hand.T_hand_grasp().translation().normalized();
   const Vector3 side = away.unitOrthogonal(), other = away.cross(side);
-  std::vector<Vector3> ways{away};
+  std::vector<Vector3> directions{away};
   for (const double tilt : {0.45, 0.9}) {
     for (int k = 0; k < 6; ++k) {
       const double turn = std::numbers::pi / 3 * k;
-      ways.push_back(std::cos(tilt) * away + std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
+      directions.push_back(std::cos(tilt) * away +
+                           std::sin(tilt) * (std::cos(turn) * side + std::sin(turn) * other));
     }
   }
-  return ways;
+  return directions;
 }
 
-bool retreat_free(const HandKit& kit, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
-                  const Vector3& way, double length, double clearance, std::uint64_t* tests) {
-  for (double s = length; s > 0; s -= 2 * kSweepStep) {
+bool retreat_free(const HandKit& kit, const std::vector<std::vector<Pose>>& T_hand_step,
+                  const Graspable& object, const Pose& T_object_hand, const RetreatPath& path,
+                  std::uint64_t* tests) {
+  for (double s = path.length; s > 0; s -= 2 * kSweepStep) {
     Pose T = T_object_hand;
-    T.translate(Vector3(s * way));
+    T.translate(Vector3(s * path.direction));
     if (tests != nullptr) ++*tests;
-    if (kit.shape.touches(T_hand_step, object, T, clearance)) return false;
+    if (kit.shape.touches(T_hand_step, object, T, path.clearance)) return false;
   }
   return true;
 }

@@ -12,14 +12,21 @@ namespace handsel::grasp_planner {
 
 inline constexpr double kSweepStep = 0.008;  ///< distance of two tests along a straight path [m]
 
-/// Unit vectors in the hand frame: straight away from where contacts happen, then a cone of
+/// Returns unit vectors in the hand frame: straight away from where contacts happen, then a cone of
 /// directions around it.
-std::vector<Vector3> retreat_ways(const HandModel& hand);
+std::vector<Vector3> retreat_directions(const HandModel& hand);
 
-/// Whether the opened hand (`T_hand_step`) can go `length` [m] along `way` (hand frame, unit) and
-/// stay `clearance` [m] off the object. The place it starts from is not checked. `tests`: those
-/// made are added.
-bool retreat_free(const HandKit& kit, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object, const Pose& T_object_hand,
-                  const Vector3& way, double length, double clearance, std::uint64_t* tests = nullptr);
+/// A straight path of the opened hand away from its grasp.
+struct RetreatPath {
+  Vector3 direction{Vector3::UnitZ()};  ///< unit, hand frame
+  double length{};                      ///< [m]
+  double clearance{};                   ///< kept to the object [m]
+};
+
+/// Returns whether the opened hand (`T_hand_step`) can follow the path and keep its clearance. The
+/// place it starts from is not checked. `tests`: the number of tests made is added.
+bool retreat_free(const HandKit& kit, const std::vector<std::vector<Pose>>& T_hand_step,
+                  const Graspable& object, const Pose& T_object_hand, const RetreatPath& path,
+                  std::uint64_t* tests = nullptr);
 
 }  // namespace handsel::grasp_planner

@@ -77,7 +77,7 @@ struct RegraspPlanner::Impl {
         shapes.push_back({static_cast<int>(l), CollisionShape::make(p.shape), p.T_parent_shape});
     }
     ways.reserve(arms.size());
-    for (const RegraspArm& x : arms) ways.push_back(retreat_ways(x.kit->hand));
+    for (const RegraspArm& x : arms) ways.push_back(retreat_directions(x.kit->hand));
   }
 
   const Grasp& grasp(int arm, std::size_t i) const { return arms[static_cast<std::size_t>(arm)].list->grasps[i].grasp; }
@@ -161,7 +161,9 @@ struct RegraspPlanner::Impl {
     std::vector<Vector3> all = ways[static_cast<std::size_t>(arm)];
     all.push_back((T_world_object * g.T_object_hand).linear().transpose() * Vector3::UnitZ());
     for (const Vector3& way : all) {
-      if (!retreat_free(kit, T_open, object, g.T_object_hand, way, settings.stand_off, kWayClearance)) continue;
+      if (!retreat_free(kit, T_open, object, g.T_object_hand,
+                        {way, settings.stand_off, kWayClearance}))
+        continue;
       if (auto off = straight(arm, i, T_world_object, q, arm_q, way)) return off;
     }
     return std::nullopt;
