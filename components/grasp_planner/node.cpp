@@ -331,8 +331,9 @@ void Node::answer(const RegraspRequest& request) {
       [this, answer, request, model, scene = scene_](const CancelToken& token) {
         if (model == nullptr) return Duration{};
         try {
-          *answer = answer_regrasp(request, chooser_->robot(), arms_, *model, objects_, scene, regrasp_settings_,
-                                   [&token] { return token.cancelled(); });
+          *answer = answer_regrasp(request,
+                                   {chooser_->robot(), arms_, objects_, scene, regrasp_settings_},
+                                   *model, [&token] { return token.cancelled(); });
         } catch (const ConfigError& e) {
           answer->reply.reason = e.what();
         }

@@ -82,9 +82,12 @@ class RegraspPlanner {
  public:
   /// `arms`: one or two. The scene's boxes are obstacles; its objects are too, but the one with the
   /// id `object_id`.
-  RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object, ObjectLibrary library, const Scene& scene,
-                 const std::string& object_id, const RegraspSettings& settings = {});
+  RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object,
+                 ObjectLibrary library, const Scene& scene, const std::string& object_id);
   ~RegraspPlanner();
+
+  /// Replaces the settings, which are the defaults before, and forgets what was found.
+  void set_settings(const RegraspSettings& settings);
 
   /// The sequence with the fewest steps; among those of equal length about the one of the best
   /// grasps. ConfigError when start or goal name an arm or a grasp that is not there.

@@ -9,7 +9,7 @@ namespace handsel::grasp_planner {
 namespace {
 
 // [N] of Grasp::margin: weaker grasps are taken only where firmer ones lead nowhere.
-constexpr std::array kLeastMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
+constexpr std::array kMinMargins{0.0, -2.0, -std::numeric_limits<double>::infinity()};
 constexpr std::size_t kFewest = 3;  // steps from one hand by the other to its place
 
 RegraspKind kind_of(RegraspStepKind kind) {
@@ -26,7 +26,7 @@ RegraspKind kind_of(RegraspStepKind kind) {
   return RegraspKind::place;
 }
 
-handsel::RegraspStep told(const RegraspStep& step, const std::vector<RegraspArm>& arms) {
+handsel::RegraspStep message_of(const RegraspStep& step, const std::vector<RegraspArm>& arms) {
   handsel::RegraspStep out;
   out.kind = kind_of(step.kind);
   const auto name_of = [&](int arm) { return arm < 0 ? std::string() : arms[static_cast<std::size_t>(arm)].arm.name; };
@@ -44,19 +44,20 @@ handsel::RegraspStep told(const RegraspStep& step, const std::vector<RegraspArm>
   return out;
 }
 
-void tell(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, RegraspReply& reply) {
+void write(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, RegraspReply& reply) {
   reply.solved = plan.solved;
   reply.reason = plan.reason;
   reply.rejected = plan.rejected;
   reply.steps.clear();
-  for (const RegraspStep& step : plan.steps) reply.steps.push_back(told(step, arms));
+  for (const RegraspStep& step : plan.steps) reply.steps.push_back(message_of(step, arms));
 }
 
 }  // namespace
 
-RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& robot, const std::vector<ArmBook>& arms,
-                             const ObjectModel& model, const ObjectLibrary& library, const Scene& scene, const RegraspSettings& settings,
-                             const std::function<bool()>& cancelled) {
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
+                             const ObjectModel& model, const std::function<bool()>& cancelled) {
+  const std::vector<ArmBook>& arms = stage.arms;
+  const Scene& scene = stage.scene;
   RegraspAnswer answer;
   answer.reply.id = request.id;
   const auto object =
@@ -82,34 +83,39 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& ro
   if (request.both) {
     std::vector<RegraspArm> sides;
     for (std::size_t a = 0; a < arms.size(); ++a) sides.push_back({arms[a].arm, arms[a].kit.get(), &whole[a]});
-    RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
+    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
+                           request.object);
+    planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
     answer.judged = plan.judged;
-    tell(plan, sides, answer.reply);
+    write(plan, sides, answer.reply);
     for (std::size_t a = 0; a < plan.shares.size(); ++a) {
       answer.reply.steps[a].grasp.hand_effort = plan.shares[a].effort;
       answer.reply.steps[a].grasp.margin = plan.shares[a].margin;
     }
     return answer;
   }
-  for (const double least : kLeastMargins) {
+  for (const double min_margin : kMinMargins) {
     std::vector<GraspList> firm(arms.size());
     std::vector<RegraspArm> sides;
     for (std::size_t a = 0; a < arms.size(); ++a) {
-      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(), std::back_inserter(firm[a].grasps),
-                   [least](const ListedGrasp& g) { return g.grasp.margin >= least; });
+      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(),
+                   std::back_inserter(firm[a].grasps),
+                   [min_margin](const ListedGrasp& g) { return g.grasp.margin >= min_margin; });
       sides.push_back({arms[a].arm, arms[a].kit.get(), &firm[a]});
     }
     const bool any = std::all_of(firm.begin(), firm.end(), [](const GraspList& list) { return !list.grasps.empty(); });
-    if (!any && least != kLeastMargins.back()) continue;
-    RegraspPlanner planner(robot, sides, *pages.front()->object, library, scene, request.object, settings);
+    if (!any && min_margin != kMinMargins.back()) continue;
+    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
+                           request.object);
+    planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan(task, cancelled);
     answer.judged += plan.judged;
     // A firm grip is not worth handing the object to and fro.
     if (!plan.solved ? !answer.reply.solved : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
-      tell(plan, sides, answer.reply);
+      write(plan, sides, answer.reply);
     }
-    const bool better_by_weaker = least >= 0 && answer.reply.steps.size() > kFewest;
+    const bool better_by_weaker = min_margin >= 0 && answer.reply.steps.size() > kFewest;
     if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;
   }
   return answer;

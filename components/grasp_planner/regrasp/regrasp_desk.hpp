@@ -26,10 +26,18 @@ struct RegraspAnswer {
   std::uint64_t listed{};  ///< grasps that were listed for it
 };
 
+/// What an answer is worked out from.
+struct RegraspStage {
+  const RobotModel& robot;           ///< with all arms
+  const std::vector<ArmBook>& arms;  ///< one or two
+  const ObjectLibrary& library;      ///< described models
+  const Scene& scene;                ///< obstacles and the object
+  const RegraspSettings& settings;   ///< of the planner
+};
+
 /// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no
 /// sequence.
-RegraspAnswer answer_regrasp(const RegraspRequest& request, const RobotModel& robot, const std::vector<ArmBook>& arms,
-                             const ObjectModel& model, const ObjectLibrary& library, const Scene& scene, const RegraspSettings& settings,
-                             const std::function<bool()>& cancelled = {});
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
+                             const ObjectModel& model, const std::function<bool()>& cancelled = {});
 
 }  // namespace handsel::grasp_planner

@@ -1,0 +1,59 @@
+#include "components/grasp_planner/regrasp/step_graph.hpp"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+namespace handsel::grasp_planner {
+namespace {
+
+constexpr double kQualityCost = 0.01;  // of a step: grasps decide between sequences of equal length
+constexpr double kWeakCost =
+    0.05;                        // of a step whose grip force does not hold wherever the load pulls
+constexpr double kWeakest = 10;  // below a margin of less than this all are alike [N]
+
+}  // namespace
+
+void StepGraph::add(const GraphNode& from, const GraphNode& to, double quality, double margin,
+                    std::size_t pair) {
+  const double weak = std::clamp(-margin / kWeakest, 0.0, 1.0);
+  edges_[from].push_back({to, 1 + kQualityCost * (1 - quality) + kWeakCost * weak, pair});
+}
+
+void StepGraph::remove(const GraphNode& from, const GraphNode& to) {
+  std::erase_if(edges_[from], [&](const Edge& e) { return e.to == to; });
+}
+
+std::size_t StepGraph::pair(const GraphNode& from, const GraphNode& to) const {
+  const std::vector<Edge>& edges = edges_.at(from);
+  return std::find_if(edges.begin(), edges.end(), [&](const Edge& e) { return e.to == to; })->pair;
+}
+
+std::vector<GraphNode> StepGraph::shortest(
+    const GraphNode& start, const std::function<bool(const GraphNode&)>& goal) const {
+  std::map<GraphNode, std::pair<double, GraphNode>> reached{{start, {0.0, start}}};
+  std::set<std::pair<double, GraphNode>> open{{0.0, start}};
+  while (!open.empty()) {
+    const auto [cost, node] = *open.begin();
+    open.erase(open.begin());
+    if (goal(node)) {
+      std::vector<GraphNode> path{node};
+      while (path.back() != start) path.push_back(reached.at(path.back()).second);
+      std::reverse(path.begin(), path.end());
+      return path;
+    }
+    const auto from = edges_.find(node);
+    if (from == edges_.end()) continue;
+    for (const Edge& e : from->second) {
+      const double total = cost + e.cost;
+      const auto known = reached.find(e.to);
+      if (known != reached.end() && known->second.first <= total) continue;
+      if (known != reached.end()) open.erase({known->second.first, e.to});
+      reached[e.to] = {total, node};
+      open.insert({total, e.to});
+    }
+  }
+  return {};
+}
+
+}  // namespace handsel::grasp_planner

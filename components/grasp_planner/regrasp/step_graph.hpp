@@ -1,0 +1,44 @@
+// The graph of the steps that may be possible, and the cheapest sequence in it. Pure.
+#pragma once
+
+#include <compare>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <vector>
+
+namespace handsel::grasp_planner {
+
+/// A state of the search: the object held, or standing in one of the places of the task.
+struct GraphNode {
+  int arm{-1};          ///< index of the arm that holds the object; -1: it stands
+  std::size_t index{};  ///< of the grasp in the list of the arm, or of the place
+  auto operator<=>(const GraphNode&) const = default;
+};
+
+/// Steps between nodes. Each costs about 1; grasps decide between sequences of equal length.
+class StepGraph {
+ public:
+  /// Adds a step. `quality`: of its grasps, [0, 1]. `margin`: the smallest of the grasps that it
+  /// leads from or to [N]. `pair`: of a pass: index of the pair of grasps.
+  void add(const GraphNode& from, const GraphNode& to, double quality, double margin,
+           std::size_t pair = 0);
+  /// Removes the step between two nodes.
+  void remove(const GraphNode& from, const GraphNode& to);
+  /// Returns the pair of a step that was added.
+  std::size_t pair(const GraphNode& from, const GraphNode& to) const;
+  /// Returns the nodes from `start` to the nearest for which `goal` holds; empty when there is
+  /// none.
+  std::vector<GraphNode> shortest(const GraphNode& start,
+                                  const std::function<bool(const GraphNode&)>& goal) const;
+
+ private:
+  struct Edge {
+    GraphNode to;
+    double cost;
+    std::size_t pair;
+  };
+  std::map<GraphNode, std::vector<Edge>> edges_;
+};
+
+}  // namespace handsel::grasp_planner

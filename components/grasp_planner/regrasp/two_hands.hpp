@@ -1,0 +1,14 @@
+// Two hands that take an object at once, carry it together and put it down.
+#pragma once
+
+#include <functional>
+
+#include "components/grasp_planner/regrasp/step_check.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Returns the plan of RegraspPlanner::plan_together(). ConfigError unless there are two arms.
+RegraspPlan carry_together(StepCheck& check, const Pose& T_world_start, const Pose& T_world_goal,
+                           const std::function<bool()>& cancelled);
+
+}  // namespace handsel::grasp_planner
