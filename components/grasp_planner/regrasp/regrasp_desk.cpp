@@ -54,6 +54,25 @@ void write(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, Regrasp
 
 }  // namespace
 
+std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
+                      std::size_t arms, const ObjectLibrary& library) {
+  if (arms != 2)
+    return "the robot has " + std::to_string(arms) +
+           " arms with hands, to pass an object it needs two";
+  if (!scene.robot_known) return "the place of the robot is not known yet";
+  if (request.start.size() != robot.dof())
+    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " +
+           std::to_string(robot.dof());
+  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                   [&](const SceneObject& o) { return o.id == request.object; });
+  if (object == scene.objects.end()) return "object " + request.object + " is not in the scene";
+  if (object->holder == Holder::robot || object->holder == Holder::human)
+    return request.object + " is held: it must stand first";
+  if (library(object->model) == nullptr)
+    return "there is no description of " + request.object + ", grasps need one";
+  return {};
+}
+
 RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
                              const ObjectModel& model, const std::function<bool()>& cancelled) {
   const std::vector<ArmBook>& arms = stage.arms;
@@ -119,6 +138,11 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
     if ((answer.reply.solved && !better_by_weaker) || (cancelled && cancelled())) break;
   }
   return answer;
+}
+
+Duration regrasp_time(const RegraspAnswer& answer) {
+  return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.judged) +
+                      2e-4 * static_cast<double>(answer.listed));
 }
 
 }  // namespace handsel::grasp_planner

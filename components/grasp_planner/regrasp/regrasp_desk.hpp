@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "common/base/time.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
 #include "components/grasp_planner/regrasp/grasp_book.hpp"
@@ -26,6 +28,11 @@ struct RegraspAnswer {
   std::uint64_t listed{};  ///< grasps that were listed for it
 };
 
+/// Returns why no hands can be searched for the request, one sentence; empty: they can. `arms`:
+/// number of arms with hands.
+std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
+                      std::size_t arms, const ObjectLibrary& library);
+
 /// What an answer is worked out from.
 struct RegraspStage {
   const RobotModel& robot;           ///< with all arms
@@ -39,5 +46,8 @@ struct RegraspStage {
 /// sequence.
 RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
                              const ObjectModel& model, const std::function<bool()>& cancelled = {});
+
+/// Returns the modelled time of the work, from its counts: about what one core needs.
+Duration regrasp_time(const RegraspAnswer& answer);
 
 }  // namespace handsel::grasp_planner

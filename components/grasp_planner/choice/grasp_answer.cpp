@@ -1,0 +1,46 @@
+#include "components/grasp_planner/choice/grasp_answer.hpp"
+
+#include <algorithm>
+
+namespace handsel::grasp_planner {
+
+const SceneObject* object_in(const Scene& scene, const std::string& id) {
+  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
+                                   [&](const SceneObject& o) { return o.id == id; });
+  return object != scene.objects.end() ? &*object : nullptr;
+}
+
+std::string objection(const GraspRequest& request, const Scene& scene, const RobotModel& robot,
+                      const ObjectModel* model) {
+  const SceneObject* object = object_in(scene, request.object);
+  if (object == nullptr) return "object " + request.object + " is not in the scene";
+  if (!scene.robot_known) return "the place of the robot is not known yet";
+  if (model == nullptr)
+    return object->model.empty()
+               ? "object " + request.object +
+                     " is known by its outline only: grasps need a description of it"
+               : "object " + request.object + " is of model " + object->model +
+                     ", of which there is no description";
+  if (request.start.size() != robot.dof())
+    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " +
+           std::to_string(robot.dof());
+  if (!request.group.empty() && request.group != "arm")
+    return "grasps are planned for the group \"arm\", not for \"" + request.group + "\"";
+  return {};
+}
+
+void write(const Choice& choice, const GraspList& list, GraspReply& reply) {
+  reply.grasps = choice.grasps;
+  reply.rejected = choice.refusals();
+  for (Refusal& r : list.refusals()) reply.rejected.push_back(std::move(r));
+  if (choice.grasps.empty()) reply.reason = choice.why_none(list);
+}
+
+Duration choice_time(const Choice& choice) {
+  return from_seconds(0.002 + 4e-4 * static_cast<double>(choice.reaches) +
+                      5e-5 * static_cast<double>(choice.transfer_reaches) +
+                      3e-5 * static_cast<double>(choice.states) +
+                      4e-5 * static_cast<double>(choice.touch_tests));
+}
+
+}  // namespace handsel::grasp_planner

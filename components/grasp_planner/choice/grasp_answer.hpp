@@ -1,0 +1,28 @@
+// Answers which grasps of an object serve: checks of the request, then the reply from the choice.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "common/base/time.hpp"
+#include "common/messages/planning.hpp"
+#include "common/messages/world.hpp"
+#include "components/grasp_planner/choice/grasp_choice.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Returns the object of the scene with this id; nullptr: there is none.
+const SceneObject* object_in(const Scene& scene, const std::string& id);
+
+/// Returns why no grasps can be searched for the request, one sentence; empty: they can. `model`:
+/// of the object, nullptr when there is none.
+std::string objection(const GraspRequest& request, const Scene& scene, const RobotModel& robot,
+                      const ObjectModel* model);
+
+/// Writes grasps, refusals and reason of a choice to the reply. `list`: the choice was made from.
+void write(const Choice& choice, const GraspList& list, GraspReply& reply);
+
+/// Returns the modelled time of the work, from its counts: about what one core needs.
+Duration choice_time(const Choice& choice);
+
+}  // namespace handsel::grasp_planner

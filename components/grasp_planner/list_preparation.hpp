@@ -1,0 +1,41 @@
+// Makes the grasp lists of the objects in the scene before anybody asks for them.
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/bus/bus.hpp"
+#include "common/bus/node_context.hpp"
+#include "components/grasp_planner/regrasp/grasp_book.hpp"
+
+namespace handsel::grasp_planner {
+
+/// Modelled time in which a list is read, as it is from an object's second day on.
+inline constexpr Duration kReadList = std::chrono::milliseconds(5);
+
+/// Makes lists in jobs, once for each model.
+class ListPreparation {
+ public:
+  /// `books`: of each hand, used by jobs only; the first is the hand whose transfers are made.
+  /// `transfers`: nullptr: none are made. `bus` must outlive this object.
+  ListPreparation(Bus& bus, ObjectLibrary objects, std::vector<std::shared_ptr<GraspBook>> books,
+                  std::shared_ptr<TransferBook> transfers);
+
+  /// Makes the lists of the models that are new in the scene. A model that cannot be grasped by any
+  /// hand makes the component degraded.
+  void prepare(const Scene& scene);
+
+ private:
+  using Work = std::function<Duration(const std::function<bool()>& cancelled)>;
+  void run(const Work& work);
+
+  Bus& bus_;
+  ObjectLibrary objects_;
+  std::vector<std::shared_ptr<GraspBook>> books_;
+  std::shared_ptr<TransferBook> transfers_;
+  std::set<std::string> prepared_;  // models whose lists were asked for
+};
+
+}  // namespace handsel::grasp_planner
