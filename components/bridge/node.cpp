@@ -3,7 +3,6 @@
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
-#include <sstream>
 #include <stdexcept>
 
 #include "common/config/resources.hpp"
@@ -17,7 +16,6 @@ namespace {
 constexpr Duration kRetry = std::chrono::seconds(5);
 constexpr Duration kClock = std::chrono::milliseconds(100);
 constexpr Duration kGraphPeriod = std::chrono::seconds(1);
-constexpr Duration kSilent = std::chrono::seconds(3);  // then a component is no longer shown as alive
 
 std::uint16_t port_of(const config::BridgeSettings& settings) {
   if (const char* text = std::getenv("HANDSEL_WEB_PORT"); text && *text) {
@@ -65,14 +63,11 @@ Node::Node(Bus& bus, const NodeContext& context)
   config_ = config_json(*context.robot, resource_root(), facts);
 
   bus_.subscribe<ComponentHealth>(
-      [this](const ComponentHealth& health, const Receipt& receipt) {
-        const bool known = named_in(TopicOf<ComponentHealth>::row.writers, health.component);
-        if (known && health.state != HealthState::stopping) heard_[health.component] = receipt.arrival;
-      },
+      [this](const ComponentHealth& m, const Receipt& receipt) { graph_.on(m, receipt.arrival); },
       {.period = kGraphPeriod});
-  open_page();
-  bus_.every(kRetry, [this](TimePoint) { open_page(); });
-  bus_.every(from_seconds(1.0 / settings.rate()), [this](TimePoint) { look(); });
+  start_server();
+  bus_.every(kRetry, [this](TimePoint) { start_server(); });
+  bus_.every(from_seconds(1.0 / settings.rate()), [this](TimePoint) { publish_samples(); });
   bus_.every(kClock, [this](TimePoint) {
     if (!server_ || !server_->any_client()) return;
     server_->set_time(bus_.stamp_now());
@@ -83,7 +78,7 @@ Node::Node(Bus& bus, const NodeContext& context)
   });
 }
 
-void Node::open_page() {
+void Node::start_server() {
   if (server_) return;
   try {
     server_ = std::make_unique<Server>(settings_, site_, catalogue_, config_);
@@ -94,7 +89,7 @@ void Node::open_page() {
   }
 }
 
-void Node::look() {
+void Node::publish_samples() {
   if (!server_ || !raw_) return;
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < readers_.size(); ++i) {
@@ -147,23 +142,9 @@ void Node::draw() {
 }
 
 Graph Node::graph(TimePoint now) const {
-  std::set<std::string> alive;
-  for (const auto& [component, at] : heard_)
-    if (now - at < kSilent) alive.insert(component);
-  const auto living = [&](const char* list) {
-    std::set<std::string> out;
-    std::istringstream words(list);
-    for (std::string word; words >> word;)
-      if (alive.contains(word)) out.insert(word);
-    return out;
-  };
-  Graph out;
-  for (const TopicRow& row : topics()) {
-    out.writers[row.topic] = living(row.writers);
-    out.readers[row.topic] = living(row.readers);
-    if (const auto i = static_cast<std::size_t>(&row - topics().data()); readers_[i]) out.readers[row.topic].insert("bridge");
-  }
-  return out;
+  std::vector<bool> read_here;
+  for (const auto& reader : readers_) read_here.push_back(reader != nullptr);
+  return graph_.graph(now, read_here);
 }
 
 }  // namespace handsel::bridge

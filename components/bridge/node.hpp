@@ -1,8 +1,7 @@
-// The wall screen: passes every topic on unchanged to all viewers, serves the page on 127.0.0.1.
-// Nothing depends on it.
+// Binds the bridge to a bus: passes the samples of every topic unchanged to all viewers and serves
+// the page on 127.0.0.1. No other component depends on the bridge.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "common/bus/node_context.hpp"
 #include "components/bridge/drawing.hpp"
 #include "components/bridge/server.hpp"
+#include "components/bridge/system_graph.hpp"
 
 namespace handsel::bridge {
 
@@ -22,8 +22,8 @@ class Node {
   Node(Bus& bus, const NodeContext& context);
 
  private:
-  void open_page();
-  void look();
+  void start_server();
+  void publish_samples();
   bool read(std::size_t topic);
   void draw();
   Graph graph(TimePoint now) const;
@@ -36,7 +36,7 @@ class Node {
   std::string config_;
   /// By place in the table of topics; null: nobody watches.
   std::vector<std::unique_ptr<RawReader>> readers_;
-  std::map<std::string, TimePoint> heard_;  ///< components, by their health
+  SystemGraph graph_;
   Drawing drawing_;
   bool drawing_listens_{false};  ///< from the first viewer that wants it
   std::unique_ptr<Server> server_;

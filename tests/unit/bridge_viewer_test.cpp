@@ -7,7 +7,9 @@
 #include <random>
 
 #include "common/config/resources.hpp"
+#include "common/messages/system.hpp"
 #include "common/model/human/human_body.hpp"
+#include "common/topics/topics.hpp"
 #include "common/wire/schema.hpp"
 #include "components/bridge/catalogue.hpp"
 #include "components/bridge/drawing.hpp"
@@ -15,6 +17,7 @@
 #include "components/bridge/drawn_urdf.hpp"
 #include "components/bridge/foxglove.hpp"
 #include "components/bridge/site.hpp"
+#include "components/bridge/system_graph.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::bridge {
@@ -206,7 +209,8 @@ TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
   EXPECT_THAT(refusal(R"({"op":"fetchAsset","uri":7,"requestId":1})"), HasSubstr("uri must be a text"));
   EXPECT_EQ(viewer.refused(), 14u);
   EXPECT_EQ(viewer.cut(), "");
-  for (unsigned i = 0; i < Viewer::kMostErrors; ++i) viewer.binary(now += std::chrono::milliseconds(10));
+  for (unsigned i = 0; i < Viewer::kMostErrors; ++i)
+    viewer.binary(now += std::chrono::milliseconds(10));
   EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
 }
 
@@ -251,7 +255,8 @@ TEST_F(ViewerTest, subscriptions_messages_and_answers_are_bounded) {
   for (int i = 0; i < 1200 && viewer.cut().empty(); ++i) say({{"op", "getParameters"}, {"parameterNames", Json::array()}});
   EXPECT_THAT(viewer.cut(), HasSubstr("does not read"));
   Viewer other(hub);
-  for (unsigned i = 0; i < Viewer::kMostMessages + 1; ++i) other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
+  for (unsigned i = 0; i < Viewer::kMostMessages + 1; ++i)
+    other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
   EXPECT_THAT(other.cut(), HasSubstr("messages in a second"));
 }
 
@@ -269,7 +274,7 @@ TEST_F(ViewerTest, answers_with_assets_and_parameters) {
   EXPECT_EQ(next(), (Json{{"op", "parameterValues"}, {"id", "q"}, {"parameters", {{{"name", "domain"}, {"value", "5"}}}}}));
 }
 
-TEST_F(ViewerTest, is_told_what_changed_in_the_graph) {
+TEST_F(ViewerTest, learns_what_changed_in_the_graph) {
   skip_greeting();
   hub.set_graph({.writers = {{"a", {"sim"}}, {"b", {"spark"}}}, .readers = {{"a", {"spark"}}}});
   viewer.graph_changed();
@@ -367,7 +372,7 @@ TEST_F(CatalogueTest, has_a_self_contained_schema_for_every_topic) {
   EXPECT_THAT(catalogue.parameters.at("/robot_description"), HasSubstr("<robot"));
 }
 
-TEST_F(CatalogueTest, the_page_is_told_where_things_are) {
+TEST_F(CatalogueTest, the_page_learns_where_things_are) {
   const RobotModel robot = RobotModel::load(robot_description("jido"));
   const Json config =
       Json::parse(config_json(robot, resource_root(), {.scenario = "give_mug", .domain = 3, .version = "1", .session = "x"}));
@@ -419,6 +424,42 @@ TEST(Subprotocol, is_one_of_two) {
   EXPECT_EQ(choose_subprotocol("foxglove.websocket.v1"), "foxglove.websocket.v1");
   EXPECT_EQ(choose_subprotocol("x, foxglove.sdk.v1 ,foxglove.websocket.v1"), "foxglove.sdk.v1");
   for (const char* none : {"", ",", "foxglove.websocket.v10", "foxglove"}) EXPECT_EQ(choose_subprotocol(none), "");
+}
+
+TEST(SystemGraph, shows_a_component_until_its_health_stays_away) {
+  constexpr std::size_t place = TopicOf<ComponentHealth>::index;
+  const std::string topic = TopicOf<ComponentHealth>::row.topic;
+  SystemGraph graph;
+  const TimePoint start{std::chrono::seconds(100)};
+  ComponentHealth health;
+  health.component = "spark";
+  health.state = HealthState::ok;
+  graph.on(health, start);
+  health.component = "stranger";
+  graph.on(health, start);
+  std::vector<bool> read_here(topics().size());
+  read_here[place] = true;
+  const Graph now = graph.graph(start + std::chrono::seconds(2), read_here);
+  EXPECT_THAT(now.writers.at(topic), testing::ElementsAre("spark"));
+  EXPECT_THAT(now.readers.at(topic), testing::ElementsAre("bridge"));
+  read_here[place] = false;
+  const Graph later = graph.graph(start + std::chrono::seconds(3), read_here);
+  EXPECT_TRUE(later.writers.at(topic).empty());
+  EXPECT_TRUE(later.readers.at(topic).empty());
+}
+
+TEST(SystemGraph, drops_a_component_that_stops_only_after_its_last_report) {
+  SystemGraph graph;
+  const TimePoint start{std::chrono::seconds(100)};
+  ComponentHealth health;
+  health.component = "spark";
+  graph.on(health, start);
+  health.state = HealthState::stopping;
+  graph.on(health, start + std::chrono::seconds(2));
+  const std::vector<bool> read_here(topics().size());
+  const std::string topic = TopicOf<ComponentHealth>::row.topic;
+  EXPECT_FALSE(graph.graph(start + std::chrono::seconds(2), read_here).writers.at(topic).empty());
+  EXPECT_TRUE(graph.graph(start + std::chrono::seconds(4), read_here).writers.at(topic).empty());
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+#include "components/bridge/server_state.hpp"
+
+#include <cstdio>
+
+#include "components/bridge/web_socket_client.hpp"
+
+namespace handsel::bridge {
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<int>(1e3 * seconds));
+}
+
+ServerState::ServerState(ServerSettings s, Site where, Catalogue catalogue, std::string json)
+    : settings(std::move(s)),
+      site(std::move(where)),
+      hub(std::move(catalogue), [this](const std::string& uri) { return site.fetch(uri); }),
+      config(std::move(json)) {}
+
+void ServerState::report(const std::string& kind, const std::string& what) {
+  if (reported_kinds.insert(kind).second)
+    std::fprintf(stderr, "bridge: %s; more of this kind are only counted\n", what.c_str());
+}
+
+void ServerState::update_wanted() {
+  std::bitset<kMaxChannels> now;
+  for (std::size_t i = 0; i < hub.catalogue().channels.size(); ++i) {
+    for (const auto& client : clients) now[i] = now[i] || client->viewer().wants(i);
+    if (!now[i]) hub.forget(i);
+  }
+  const std::lock_guard lock(mutex);
+  wanted = now;
+}
+
+void ServerState::publish_counters() {
+  counters.clients = clients.size();
+  counters.open = connections.size() + clients.size();
+  const std::lock_guard lock(mutex);
+  published = counters;
+}
+
+}  // namespace handsel::bridge
