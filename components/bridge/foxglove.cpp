@@ -10,7 +10,7 @@ using Json = nlohmann::json;
 
 enum Binary : std::uint8_t { kMessageData = 1, kTime = 2, kAssetReply = 4 };
 enum Level { kInfo = 0, kWarning = 1, kError = 2 };
-constexpr std::size_t kMostInstances = 64;
+constexpr std::size_t kMaxInstances = 64;
 
 template <class T>
 void little_endian(std::vector<std::uint8_t>& out, T value) {
@@ -87,7 +87,7 @@ void Hub::keep(const Sample& sample) {
   auto& instances = kept_[sample.channel];
   if (sample.gone) {
     instances.erase(sample.instance);
-  } else if (instances.contains(sample.instance) || instances.size() < kMostInstances) {
+  } else if (instances.contains(sample.instance) || instances.size() < kMaxInstances) {
     instances[sample.instance] = sample;
   }
 }
@@ -105,8 +105,9 @@ void Viewer::status(int level, const std::string& message) { put(dump({{"op", "s
 
 void Viewer::refuse(const std::string& why) {
   ++refused_;
-  if (++errors_ > kMostErrors) {
-    cut_ = "more than " + std::to_string(kMostErrors) + " of its messages were refused; the last: " + why;
+  if (++errors_ > kMaxErrors) {
+    cut_ = "more than " + std::to_string(kMaxErrors) +
+           " of its messages were refused; the last: " + why;
     return;
   }
   status(kError, why);
@@ -117,9 +118,9 @@ bool Viewer::flooding(TimePoint now) {
     window_ = now;
     in_window_ = 0;
   }
-  if (++in_window_ <= kMostMessages) return false;
+  if (++in_window_ <= kMaxMessages) return false;
   ++refused_;
-  cut_ = "more than " + std::to_string(kMostMessages) + " messages in a second";
+  cut_ = "more than " + std::to_string(kMaxMessages) + " messages in a second";
   return true;
 }
 
@@ -142,8 +143,9 @@ void Viewer::text(std::string_view message, TimePoint now) {
         if (channel == 0 || channel > hub_.catalogue().channels.size())
           throw std::invalid_argument("there is no channel " + std::to_string(channel));
         if (subscriptions_.contains(id)) throw std::invalid_argument("subscription " + std::to_string(id) + " is in use");
-        if (subscriptions_.size() >= kMostSubscriptions)
-          throw std::invalid_argument("more than " + std::to_string(kMostSubscriptions) + " subscriptions");
+        if (subscriptions_.size() >= kMaxSubscriptions)
+          throw std::invalid_argument("more than " + std::to_string(kMaxSubscriptions) +
+                                      " subscriptions");
         subscriptions_[id] = channel - 1;
         by_channel_.emplace(channel - 1, id);
         for (const auto& [instance, sample] : hub_.kept(channel - 1)) send(id, sample);
@@ -172,10 +174,10 @@ void Viewer::text(std::string_view message, TimePoint now) {
       if (!uri.is_string()) throw std::invalid_argument("uri must be a text");
       fetch(uri, id_of(field(json, "requestId"), "requestId"));
     } else if (name == "subscribeConnectionGraph") {
-      told_.emplace();
+      reported_graph_.emplace();
       send_graph({}, hub_.graph());
     } else if (name == "unsubscribeConnectionGraph") {
-      told_.reset();
+      reported_graph_.reset();
     } else {
       refuse("\"" + name.substr(0, 40) + "\" is not offered; this server only shows");
     }
@@ -213,7 +215,7 @@ void Viewer::time(Stamp now) {
 }
 
 void Viewer::graph_changed() {
-  if (told_) send_graph(*told_, hub_.graph());
+  if (reported_graph_) send_graph(*reported_graph_, hub_.graph());
 }
 
 void Viewer::send_graph(const Graph& before, const Graph& now) {
@@ -227,12 +229,12 @@ void Viewer::send_graph(const Graph& before, const Graph& now) {
             {"advertisedServices", Json::array()},
             {"removedTopics", std::move(removed)},
             {"removedServices", Json::array()}}));
-  told_ = now;
+  reported_graph_ = now;
 }
 
 void Viewer::fetch(const std::string& uri, std::uint32_t request) {
   Asset asset;
-  if (outbox_.control_bytes() > kMostAssetBytes) {
+  if (outbox_.control_bytes() > kMaxAssetBytes) {
     asset.reason = "too many assets are on their way to you";
   } else {
     asset = hub_.fetch(uri);

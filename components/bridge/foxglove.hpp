@@ -96,13 +96,13 @@ class Hub {
 /// One client: what it subscribed to and what waits for it.
 class Viewer {
  public:
-  static constexpr std::size_t kMostSubscriptions = 256;  ///< more are refused
+  static constexpr std::size_t kMaxSubscriptions = 256;  ///< more are refused
   /// Refused messages; one more and the client is cut.
-  static constexpr unsigned kMostErrors = 100;
+  static constexpr unsigned kMaxErrors = 100;
   /// [bytes] of answers waiting to be sent; beyond, assets are refused.
-  static constexpr std::size_t kMostAssetBytes = 64u << 20;
+  static constexpr std::size_t kMaxAssetBytes = 64u << 20;
   /// From the client in a second; one more and it is cut.
-  static constexpr unsigned kMostMessages = 2000;
+  static constexpr unsigned kMaxMessages = 2000;
 
   /// The hub must outlive it. Announces server and channels.
   explicit Viewer(Hub& hub, const OutboxSettings& settings = {});
@@ -142,7 +142,7 @@ class Viewer {
   Outbox outbox_;
   std::map<std::uint32_t, std::size_t> subscriptions_;  // id of the client -> channel
   std::multimap<std::size_t, std::uint32_t> by_channel_;
-  std::optional<Graph> told_;  // set while it wants the graph
+  std::optional<Graph> reported_graph_;  // set while it wants the graph
   std::uint64_t refused_{0};
   unsigned errors_{0};
   TimePoint window_{};

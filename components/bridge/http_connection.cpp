@@ -138,7 +138,7 @@ void HttpConnection::json(const std::string& content, const Request& request, bo
 void HttpConnection::file(const std::string& path, const Request& request, bool body) {
   const auto found = state_.site.find(path);
   if (!found) {
-    const bool no_page = path == "/" && !state_.site.has_page();
+    const bool no_page = path == "/" && !state_.site.is_built();
     return refuse(http::status::not_found,
                   no_page ? "the page is not built; ./run --build-only builds it\n"
                           : "there is no such page\n",

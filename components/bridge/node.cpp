@@ -45,7 +45,7 @@ config::BridgeSettings read_settings(const std::filesystem::path& folder) {
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
       raw_(dynamic_cast<RawBus*>(&bus)),
-      site_(find_page(), resource_root()),
+      site_(find_web_folder(), resource_root()),
       readers_(topics().size()),
       drawing_(context.robot, context.objects) {
   const config::BridgeSettings settings = read_settings(context.settings);

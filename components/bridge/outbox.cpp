@@ -5,7 +5,7 @@
 namespace handsel::bridge {
 
 bool Outbox::put(Frame frame) {
-  if (controls_.size() >= settings_.most_controls) return false;
+  if (controls_.size() >= settings_.max_controls) return false;
   control_bytes_ += frame.size();
   controls_.push_back(std::move(frame));
   return true;
@@ -24,7 +24,7 @@ void Outbox::put_newest(std::uint32_t subscription, std::uint64_t instance, Fram
 }
 
 void Outbox::put_queued(std::uint32_t subscription, Frame frame) {
-  if (queued_[subscription] >= settings_.most_queued) {
+  if (queued_[subscription] >= settings_.max_queued) {
     for (Place place = samples_.begin(); place != samples_.end(); ++place) {
       if (place->newest || place->subscription != subscription) continue;
       remove(place);
@@ -73,7 +73,7 @@ void Outbox::add(Sample sample) {
 }
 
 void Outbox::trim() {
-  while (bytes_ > settings_.most_bytes && samples_.size() > 1) {
+  while (bytes_ > settings_.max_bytes && samples_.size() > 1) {
     remove(samples_.begin());
     ++dropped_;
   }

@@ -27,11 +27,11 @@ struct Frame {
 
 struct OutboxSettings {
   /// Answers and announcements that may wait; more mean that nobody reads.
-  std::size_t most_controls{1024};
+  std::size_t max_controls{1024};
   /// Samples of one queued subscription that may wait; the oldest goes first.
-  std::size_t most_queued{64};
+  std::size_t max_queued{64};
   /// Of samples that may wait altogether [bytes]; the oldest goes first.
-  std::size_t most_bytes{32u * 1024u * 1024u};
+  std::size_t max_bytes{32u * 1024u * 1024u};
 };
 
 class Outbox {

@@ -112,7 +112,7 @@ const char* content_type(const fs::path& file) {
   return known == kTypes.end() ? "application/octet-stream" : known->second;
 }
 
-fs::path find_page() {
+fs::path find_web_folder() {
   std::vector<fs::path> folders;
   if (const char* named = std::getenv("HANDSEL_WEB"); named && *named) {
     folders.emplace_back(named);

@@ -27,7 +27,7 @@ class Site {
   /// "package://handsel/robots/jido/jido.urdf", robots and hands only.
   Asset fetch(const std::string& uri) const;
   /// Returns whether the folder of the built page was there at construction.
-  bool has_page() const { return !page_.empty(); }
+  bool is_built() const { return !page_.empty(); }
 
  private:
   std::filesystem::path page_, resources_;
@@ -38,6 +38,6 @@ const char* content_type(const std::filesystem::path& file);
 
 /// The built page: $HANDSEL_WEB, else `web` beside the executable's folder, else share/handsel/web
 /// beside it; empty when none has an index.html.
-std::filesystem::path find_page();
+std::filesystem::path find_web_folder();
 
 }  // namespace handsel::bridge

@@ -44,7 +44,7 @@ TEST(Outbox, keeps_only_the_newest_of_each_instance_in_its_place) {
 }
 
 TEST(Outbox, queues_are_bounded_and_lose_their_oldest) {
-  Outbox outbox({.most_controls = 2, .most_queued = 3, .most_bytes = 1000});
+  Outbox outbox({.max_controls = 2, .max_queued = 3, .max_bytes = 1000});
   for (int i = 0; i < 5; ++i) outbox.put_queued(7, with(std::to_string(i)));
   EXPECT_EQ(outbox.dropped(), 2u);
   EXPECT_TRUE(outbox.put(with("first")));
@@ -58,7 +58,7 @@ TEST(Outbox, bounds_hold_for_random_traffic) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(seed);
     std::mt19937 random(seed);
-    const OutboxSettings settings{.most_controls = 8, .most_queued = 4, .most_bytes = 500};
+    const OutboxSettings settings{.max_controls = 8, .max_queued = 4, .max_bytes = 500};
     Outbox outbox(settings);
     std::uint64_t in = 0, out = 0, forgotten = 0;
     for (int i = 0; i < 3000; ++i) {
@@ -89,7 +89,7 @@ TEST(Outbox, bounds_hold_for_random_traffic) {
             forgotten += 3;  // at most so many instances
           }
       }
-      EXPECT_LE(outbox.bytes(), std::max<std::size_t>(settings.most_bytes, 200));
+      EXPECT_LE(outbox.bytes(), std::max<std::size_t>(settings.max_bytes, 200));
     }
     std::size_t waiting = 0;
     while (!outbox.empty()) {
@@ -209,7 +209,7 @@ TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
   EXPECT_THAT(refusal(R"({"op":"fetchAsset","uri":7,"requestId":1})"), HasSubstr("uri must be a text"));
   EXPECT_EQ(viewer.refused(), 14u);
   EXPECT_EQ(viewer.cut(), "");
-  for (unsigned i = 0; i < Viewer::kMostErrors; ++i)
+  for (unsigned i = 0; i < Viewer::kMaxErrors; ++i)
     viewer.binary(now += std::chrono::milliseconds(10));
   EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
 }
@@ -255,7 +255,7 @@ TEST_F(ViewerTest, subscriptions_messages_and_answers_are_bounded) {
   for (int i = 0; i < 1200 && viewer.cut().empty(); ++i) say({{"op", "getParameters"}, {"parameterNames", Json::array()}});
   EXPECT_THAT(viewer.cut(), HasSubstr("does not read"));
   Viewer other(hub);
-  for (unsigned i = 0; i < Viewer::kMostMessages + 1; ++i)
+  for (unsigned i = 0; i < Viewer::kMaxMessages + 1; ++i)
     other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
   EXPECT_THAT(other.cut(), HasSubstr("messages in a second"));
 }
