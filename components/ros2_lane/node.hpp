@@ -12,7 +12,7 @@
 #include "common/messages/world.hpp"
 #include "components/ros2_lane/observers.hpp"
 #include "components/ros2_lane/robot_joints.hpp"
-#include "components/ros2_lane/trajectory_desk.hpp"
+#include "components/ros2_lane/trajectory_executor.hpp"
 
 namespace handsel::ros2_lane {
 

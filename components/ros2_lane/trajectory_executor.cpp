@@ -1,4 +1,4 @@
-#include "components/ros2_lane/trajectory_desk.hpp"
+#include "components/ros2_lane/trajectory_executor.hpp"
 
 #include <algorithm>
 #include <cmath>
