@@ -48,7 +48,7 @@ class Node {
   PeopleObserver people_;
   ObjectsObserver objects_;
   JointGatherer joints_;
-  TrajectoryDesk desk_;
+  TrajectoryExecutor desk_;
   Pose T_world_base_{Pose::Identity()};
   bool robot_heard_{false};
   bool base_known_{true};  // false: the base has no transform, or an old one

@@ -12,6 +12,8 @@
 #include "common/messages/ros2.hpp"
 #include "common/messages/task.hpp"
 #include "common/model/robot_model.hpp"
+#include "components/ros2_lane/motion_request.hpp"
+#include "components/ros2_lane/robot_activity.hpp"
 
 namespace handsel::ros2_lane {
 
@@ -24,25 +26,26 @@ struct TrajectoryOutbox {
   std::vector<std::string> results;  ///< one sentence each
 };
 
-/// The points of a JointTrajectory are the nodes of a path, from where the arm is. Its times count
-/// in so far as a slower motion is asked for; the trajectory planner limits the speed. A first
-/// point at time 0 must be where the arm is. No points: the running one is stopped, jerk-limited.
-/// Only while no task runs and the arm is at rest; a second one before the first has ended is
-/// refused.
-class TrajectoryDesk {
+/// The points of a JointTrajectory are the waypoints of a path, from where the arm is. Its times
+/// count in so far as a slower motion is asked for; the trajectory planner limits the speed. A
+/// first point at time 0 must be where the arm is. No points: the running one is stopped,
+/// jerk-limited. Only while no task runs and the arm is at rest; a second one before the first has
+/// ended is refused.
+class TrajectoryExecutor {
  public:
   /// `client`: unique over the system and its restarts, grows.
-  TrajectoryDesk(const config::Ros2LaneSettings& settings, std::shared_ptr<const RobotModel> robot, std::uint64_t client);
+  TrajectoryExecutor(const config::Ros2LaneSettings& settings,
+                     std::shared_ptr<const RobotModel> robot, std::uint64_t client);
 
   /// Begins the motion asked for, or refuses it with a sentence in `out`; without points stops the
   /// running one.
   void on(const ros2::JointTrajectory&, TimePoint now, TrajectoryOutbox& out);
   /// Takes the newest status of the task's action; while it runs, motions are refused.
-  void on(const ActionStatus& status) { action_ = status; }
+  void on(const ActionStatus& status) { activity_.on(status); }
   /// Takes the newest status of the controller: epoch, and whether the command runs.
-  void on(const ExecutionStatus& status) { execution_ = status; }
+  void on(const ExecutionStatus& status) { activity_.on(status); }
   /// Takes the robot's motion now; when older than 0.3 s, motions are refused.
-  void on(const ActiveTrajectory&, TimePoint arrival);
+  void on(const ActiveTrajectory& active, TimePoint arrival) { activity_.on(active, arrival); }
   /// Takes the checker's answer; one to another query is left out.
   void on(const StateVerdict&);
   /// Takes the planner's answer; one to another request is left out.
@@ -51,10 +54,9 @@ class TrajectoryDesk {
   void step(TimePoint now, TrajectoryOutbox& out);
 
  private:
-  enum class Phase { idle, judging, timing, handing_over, running };
+  enum class Phase { idle, checking, timing, handing_over, running };
   /// Empty, or why it cannot be done.
   std::string prepare(const ros2::JointTrajectory&, TimePoint now);
-  std::string why_not_now(TimePoint now) const;
   void refuse(const std::string& why, TrajectoryOutbox& out);
   void stop(TrajectoryOutbox& out);
   void ask(TrajectoryOutbox& out);
@@ -67,17 +69,14 @@ class TrajectoryDesk {
   std::uint64_t client_, number_{0}, commands_;
   Phase phase_{Phase::idle};
   TimePoint begun_{}, asked_{};
-  double wanted_{0};  // [s] the whole motion shall take at least
+  double min_duration_{0};  ///< Of the whole motion, as asked for [s].
   StateQuery query_;
   TrajectoryRequest request_;
   TrajectoryCommand command_;
   bool slowed_{false}, fresh_{false};
   std::optional<StateVerdict> verdict_;
   std::optional<TrajectoryReply> reply_;
-  std::optional<ActionStatus> action_;
-  std::optional<ExecutionStatus> execution_;
-  std::optional<ActiveTrajectory> active_;
-  TimePoint active_at_{};
+  RobotActivity activity_;
 };
 
 }  // namespace handsel::ros2_lane

@@ -299,22 +299,22 @@ TEST(JointGatherer, gathers_axes_from_several_messages_and_says_what_is_missing)
   EXPECT_FALSE(gatherer.state(t + from_seconds(0.2))) << "old joints are not known";
 }
 
-class Desk : public testing::Test {
+class Executor : public testing::Test {
  protected:
-  Desk() {
+  Executor() {
     setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
     robot = load_context("jido").robot;
     config::Ros2LaneSettings settings;
     settings.set_start_tolerance(0.05);
     settings.set_check_step(0.05);
-    desk.emplace(settings, robot, 1000);
+    executor.emplace(settings, robot, 1000);
     active.robot = robot->name();
     active.position = robot->rest_posture();
     active.velocity = active.acceleration = Vector::Zero(robot->dof());
-    desk->on(active, now);
+    executor->on(active, now);
     status.robot = robot->name();
     status.epoch = 7;
-    desk->on(status);
+    executor->on(status);
   }
   const Group& arm() const { return robot->require_group("arm"); }
   std::string joint(int i) const { return robot->axes()[static_cast<std::size_t>(arm().axes[static_cast<std::size_t>(i)])].name; }
@@ -325,24 +325,24 @@ class Desk : public testing::Test {
   }
   std::string asked(const ros2::JointTrajectory& wanted) {
     TrajectoryOutbox out;
-    desk->on(wanted, now, out);
+    executor->on(wanted, now, out);
     return out.results.empty() ? "" : out.results.front();
   }
   TrajectoryOutbox step(double seconds = 0.01) {
     now += from_seconds(seconds);
     TrajectoryOutbox out;
-    desk->step(now, out);
+    executor->step(now, out);
     return out;
   }
 
   std::shared_ptr<const RobotModel> robot;
-  std::optional<TrajectoryDesk> desk;
+  std::optional<TrajectoryExecutor> executor;
   ActiveTrajectory active;
   ExecutionStatus status;
   TimePoint now{from_seconds(100)};
 };
 
-TEST_F(Desk, judges_times_and_hands_over_what_was_asked_for) {
+TEST_F(Executor, checks_times_and_hands_over_what_was_asked_for) {
   EXPECT_EQ(asked(by(0.3)), "");
   TrajectoryOutbox out = step();
   ASSERT_TRUE(out.query);
@@ -354,7 +354,7 @@ TEST_F(Desk, judges_times_and_hands_over_what_was_asked_for) {
   StateVerdict verdict;
   verdict.id = out.query->id;
   verdict.free.assign(6, 1);
-  desk->on(verdict);
+  executor->on(verdict);
   step();
   out = step();
   ASSERT_TRUE(out.request);
@@ -365,14 +365,14 @@ TEST_F(Desk, judges_times_and_hands_over_what_was_asked_for) {
   reply.solved = true;
   reply.trajectory.axes.resize(arm().axes.size());
   for (auto& axis : reply.trajectory.axes) axis.segments.push_back({0.5, 0.0});
-  desk->on(reply);
+  executor->on(reply);
   step();
   out = step();
   ASSERT_TRUE(out.request) << "1 s was asked for, 0.5 s would be: once more, slower";
   EXPECT_NEAR(out.request->speed_scale, 0.5, 1e-9);
   reply.id = out.request->id;
   for (auto& axis : reply.trajectory.axes) axis.segments[0].duration = 1.0;
-  desk->on(reply);
+  executor->on(reply);
   step();
   out = step();
   ASSERT_TRUE(out.command);
@@ -381,18 +381,18 @@ TEST_F(Desk, judges_times_and_hands_over_what_was_asked_for) {
   EXPECT_EQ(asked(by(0.1)), "refused: another one has not ended");
   status.trajectory = out.command->id;
   status.motion = MotionState::running;
-  desk->on(status);
+  executor->on(status);
   out = step();
   EXPECT_TRUE(out.command_done);
   EXPECT_TRUE(out.results.empty());
   status.motion = MotionState::finished;
-  desk->on(status);
+  executor->on(status);
   out = step();
   ASSERT_EQ(out.results.size(), 1u);
   EXPECT_EQ(out.results[0], "done");
 }
 
-TEST_F(Desk, refuses_with_the_reason) {
+TEST_F(Executor, refuses_with_the_reason) {
   ros2::JointTrajectory wanted = by(0.2);
   wanted.joint_names = {"elbow_of_somebody"};
   EXPECT_EQ(asked(wanted), "refused: joint elbow_of_somebody is no joint of the arm of jido");
@@ -405,15 +405,15 @@ TEST_F(Desk, refuses_with_the_reason) {
   EXPECT_EQ(asked(wanted), "refused: joint " + joint(0) + " is named twice");
   ActionStatus task;
   task.state = ActionState::running;
-  desk->on(task);
+  executor->on(task);
   EXPECT_EQ(asked(by(0.2)), "refused: a task runs; cancel it first");
   task.state = ActionState::succeeded;
-  desk->on(task);
+  executor->on(task);
   active.velocity[arm().axes[2]] = 0.1;
-  desk->on(active, now);
+  executor->on(active, now);
   EXPECT_EQ(asked(by(0.2)), "refused: the arm is in motion");
   active.velocity.setZero();
-  desk->on(active, now);
+  executor->on(active, now);
   EXPECT_EQ(asked(by(0.2)), "");
   TrajectoryOutbox out = step();
   StateVerdict verdict;
@@ -421,7 +421,7 @@ TEST_F(Desk, refuses_with_the_reason) {
   verdict.free.assign(out.query->states.size(), 1);
   verdict.free.back() = 0;
   verdict.reason = "forearm touches table";
-  desk->on(verdict);
+  executor->on(verdict);
   EXPECT_EQ(step().results.at(0), "refused: the way is not free: forearm touches table");
   EXPECT_EQ(asked(by(0.2)), "");
   step();

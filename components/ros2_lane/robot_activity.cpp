@@ -1,0 +1,27 @@
+#include "components/ros2_lane/robot_activity.hpp"
+
+#include <cmath>
+
+namespace handsel::ros2_lane {
+namespace {
+
+constexpr double kAtRest = 1e-3;  // [rad/s]
+constexpr double kSilent = 0.3;   // max age of the controller's report [s]
+
+}  // namespace
+
+void RobotActivity::on(const ActiveTrajectory& active, TimePoint arrival) {
+  active_ = active;
+  active_at_ = arrival;
+}
+
+std::string RobotActivity::why_not_ready(const Group& arm, TimePoint now) const {
+  if (!active_ || !execution_ || to_seconds(now - active_at_) > kSilent)
+    return "the trajectory controller is not heard";
+  if (action_ && action_->state == ActionState::running) return "a task runs; cancel it first";
+  for (const int axis : arm.axes)
+    if (std::abs(active_->velocity[axis]) > kAtRest) return "the arm is in motion";
+  return {};
+}
+
+}  // namespace handsel::ros2_lane
