@@ -24,7 +24,7 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 double price(const SearchSpace& space, const std::vector<Vector>& path) {
   double sum = 0;
-  for (std::size_t i = 1; i < path.size(); ++i) sum += space.price(path[i - 1], path[i]);
+  for (std::size_t i = 1; i < path.size(); ++i) sum += space.costs().price(path[i - 1], path[i]);
   return sum;
 }
 
@@ -57,7 +57,7 @@ class Live {
     std::size_t first = 0, last = 0;
     const bool was_blocked = !other_goal && blocked(rest, first, last);
     out.before = was_blocked || other_goal ? kInfinite : price(space_, rest);
-    space_.judge_widely({rest.back()}, kNearEnds);
+    space_.check_in_batches({rest.back()}, kNearEnds);
     if (was_blocked && !repair(rest)) {
       if (!search_anew(rest, goal)) return std::nullopt;
       other_goal = true;
@@ -66,13 +66,13 @@ class Live {
     smooth(space_, path, random_);
     if (was_blocked || other_goal) {
       prune(space_, path);  // at once; it gets cheaper next time
-    } else if (space_.concerns_people()) {
+    } else if (space_.costs().concerns_people()) {
       deform(path);
       drop_nodes(path, out.before);
     } else {
       prune(space_, path);
     }
-    space_.judge_exactly();
+    space_.check_exactly();
     if (!verified(path)) {
       path = rest;
       if ((was_blocked || other_goal) && !verified(path)) return std::nullopt;
@@ -107,13 +107,14 @@ class Live {
     while (reachable < nodes.size() && space_.motion_free(nodes[reachable - 1], nodes[reachable])) ++reachable;
     double least = kInfinite;
     std::vector<double> so_far(reachable, 0.0);
-    for (std::size_t k = 1; k < reachable; ++k) so_far[k] = so_far[k - 1] + space_.price(nodes[k - 1], nodes[k]);
+    for (std::size_t k = 1; k < reachable; ++k)
+      so_far[k] = so_far[k - 1] + space_.costs().price(nodes[k - 1], nodes[k]);
     std::size_t leave = 0;
     for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
       const Vector& q = problem_.goals[i];
       if (!space_.outside_limits(q).empty() || !space_.free(q)) continue;
       for (std::size_t k = 0; k < reachable; ++k) {
-        const double cost = so_far[k] + space_.price(nodes[k], q);
+        const double cost = so_far[k] + space_.costs().price(nodes[k], q);
         if (cost >= least || !space_.motion_free(nodes[k], q)) continue;
         least = cost;
         leave = k;
@@ -138,11 +139,11 @@ class Live {
     if (goals.empty()) return false;
     const std::uint64_t limit = space_.limit(), left = limit - std::min(limit, space_.checks());
     space_.limit(limit - left / 2);
-    space_.judge_widely(goals, kNearEnds);
+    space_.check_in_batches(goals, kNearEnds);
     Found found = search(space_, goals, PlannerKind::rrt_connect, false, problem_.seed);
     space_.limit(limit);
     if (found.path.empty()) {
-      space_.judge_exactly();
+      space_.check_exactly();
       found = search(space_, goals, PlannerKind::rrt_connect, false, problem_.seed + 1);
     }
     if (found.path.empty()) return false;
@@ -187,12 +188,15 @@ class Live {
         Vector q = center + toward * (far / std::max(far, toward.norm()));
         q = q.cwiseMax(space_.lower()).cwiseMin(space_.upper());
         if (!space_.free(q)) continue;
-        const double cost = found > 0 ? space_.price(path[from], q) + space_.price(q, path[to]) : 0.0;
+        const double cost =
+            found > 0 ? space_.costs().price(path[from], q) + space_.costs().price(q, path[to])
+                      : 0.0;
         if (cost >= least || !space_.motion_free(path[from], q) || !space_.motion_free(q, path[to])) continue;
         best.assign(path.begin(), path.begin() + static_cast<long>(from) + 1);
         best.push_back(q);
         best.insert(best.end(), path.begin() + static_cast<long>(to), path.end());
-        least = found > 0 ? cost : space_.price(path[from], q) + space_.price(q, path[to]);
+        least = found > 0 ? cost
+                          : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
         ++found;
       }
       if (best.empty()) return false;
@@ -209,8 +213,8 @@ class Live {
     const std::size_t n = path.size();
     if (n < 3) return;
     std::vector<double> costs, prices(n, 0.0), bent_prices(n, 0.0);
-    for (const Vector& q : path) costs.push_back(space_.cost(q));
-    for (std::size_t i = 1; i < n; ++i) prices[i] = space_.price(path[i - 1], path[i]);
+    for (const Vector& q : path) costs.push_back(space_.costs().of(q));
+    for (std::size_t i = 1; i < n; ++i) prices[i] = space_.costs().price(path[i - 1], path[i]);
     std::vector<Vector> bent = path;
     for (int round = 0; round < live_.rounds && !space_.exhausted(); ++round) {
       const auto any = [&] { return 1 + static_cast<std::size_t>(random_.unit() * static_cast<double>(n - 2)); };
@@ -232,13 +236,14 @@ class Live {
         bent[from] = path[from];
         bent[to] = path[to];
         double left = before - kGain;
-        for (std::size_t i = from + 1; i <= to && good; ++i) good = (left -= bent_prices[i] = space_.price(bent[i - 1], bent[i])) > 0;
+        for (std::size_t i = from + 1; i <= to && good; ++i)
+          good = (left -= bent_prices[i] = space_.costs().price(bent[i - 1], bent[i])) > 0;
         for (std::size_t i = from + 1; i <= to && good; ++i) good = space_.motion_free(bent[i - 1], bent[i]);
         if (!good) continue;
         for (std::size_t i = from + 1; i <= to; ++i) {
           path[i] = bent[i];
           prices[i] = bent_prices[i];
-          costs[i] = space_.cost(path[i]);
+          costs[i] = space_.costs().of(path[i]);
         }
         break;
       }
@@ -250,7 +255,9 @@ class Live {
     const double now = price(space_, path);
     double allowed = std::max(kDropLoss * now, kDropGain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
-      const double loss = space_.price(path[i - 1], path[i + 1]) - space_.price(path[i - 1], path[i]) - space_.price(path[i], path[i + 1]);
+      const double loss = space_.costs().price(path[i - 1], path[i + 1]) -
+                          space_.costs().price(path[i - 1], path[i]) -
+                          space_.costs().price(path[i], path[i + 1]);
       if (loss <= 0.5 * allowed && space_.motion_free(path[i - 1], path[i + 1])) {
         allowed -= std::max(0.0, loss);
         path.erase(path.begin() + static_cast<long>(i));
@@ -268,8 +275,8 @@ class Live {
 
   void finish(Result& result) const {
     for (std::size_t i = 1; i < result.path.size(); ++i) {
-      result.cost += space_.integral_cost(result.path[i - 1], result.path[i]);
-      result.work += space_.work(result.path[i - 1], result.path[i]);
+      result.cost += space_.costs().integral(result.path[i - 1], result.path[i]);
+      result.work += space_.costs().work(result.path[i - 1], result.path[i]);
     }
     result.length = path_length(result.path);
     result.solved = true;

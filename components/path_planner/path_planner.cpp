@@ -64,8 +64,8 @@ std::string contradiction(const RobotModel& robot, const Problem& problem) {
 
 void finish(const SearchSpace& space, Result& result) {
   for (std::size_t i = 1; i < result.path.size(); ++i) {
-    result.cost += space.integral_cost(result.path[i - 1], result.path[i]);
-    result.work += space.work(result.path[i - 1], result.path[i]);
+    result.cost += space.costs().integral(result.path[i - 1], result.path[i]);
+    result.work += space.costs().work(result.path[i - 1], result.path[i]);
   }
   result.length = path_length(result.path);
   result.solved = true;
@@ -73,7 +73,7 @@ void finish(const SearchSpace& space, Result& result) {
 
 double price(const SearchSpace& space, const std::vector<Vector>& path) {
   double sum = 0;
-  for (std::size_t i = 1; i < path.size(); ++i) sum += space.price(path[i - 1], path[i]);
+  for (std::size_t i = 1; i < path.size(); ++i) sum += space.costs().price(path[i - 1], path[i]);
   return sum;
 }
 
@@ -89,9 +89,9 @@ class Planning {
       space_.set_step(attempt < 2 ? settings_.step : kFiner * settings_.step);
       most_ = widely ? static_cast<std::uint64_t>(kWideShare * static_cast<double>(problem_.budget)) : problem_.budget;
       space_.limit(most_);
-      if (widely) space_.judge_widely(goals_, kNearEnds);
+      if (widely) space_.check_in_batches(goals_, kNearEnds);
       const bool found = find(problem_.seed + static_cast<std::uint64_t>(attempt) * 7919);
-      space_.judge_exactly();
+      space_.check_exactly();
       space_.limit(problem_.budget);
       if (!found && widely && !space_.cancelled()) continue;
       if (!found) return result_;
@@ -140,12 +140,13 @@ class Planning {
   }
 
   std::string leans(const Vector& q) const {
-    if (space_.upright(q)) return {};
-    return format("what is held leans %.3f rad over, at most %.3f are allowed", space_.tilt(q), problem_.upright->most);
+    if (space_.upright().holds(q)) return {};
+    return format("what is held leans %.3f rad over, at most %.3f are allowed",
+                  space_.upright().tilt(q), problem_.upright->most);
   }
 
   Result straight_line() {
-    if (!space_.line_upright(space_.start(), goals_.front())) {
+    if (!space_.upright().holds_on_line(space_.start(), goals_.front())) {
       refuse("on the straight line what is held leans over too far");
       return result_;
     }
@@ -188,7 +189,7 @@ class Planning {
         direct = {start, goals_[i]};
         result_.goal = goal_index_[i];
       }
-    const bool people = space_.concerns_people();
+    const bool people = space_.costs().concerns_people();
     const bool asked = problem_.planner != PlannerKind::automatic;
     Found found;
     if (!direct.empty() && !asked && !people) {
@@ -259,7 +260,8 @@ class Planning {
   bool verified() {
     space_.enter(Stage::verify);
     for (std::size_t i = 1; i < result_.path.size(); ++i) {
-      if (!space_.line_upright(result_.path[i - 1], result_.path[i])) return refuse("what is held leans over too far on every path found");
+      if (!space_.upright().holds_on_line(result_.path[i - 1], result_.path[i]))
+        return refuse("what is held leans over too far on every path found");
       const CollisionVerdict verdict = space_.motion_verdict(result_.path[i - 1], result_.path[i], settings_.verify_step);
       if (verdict.free) continue;
       result_.reason = "every path found fails the fine check: " + contact(verdict);

@@ -20,15 +20,15 @@ Found connect(SearchSpace& space, const std::vector<Vector>& goals, std::uint64_
     space.charge(1);
     const int grows = trees[0].size() <= trees[1].size() ? 0 : 1;
     Tree &tree = trees[grows], &other = trees[1 - grows];
-    const Vector target = space.righted(random.within(space.lower(), space.upper()));
+    const Vector target = space.upright().restore(random.within(space.lower(), space.upper()));
     const int near = tree.nearest(target);
-    const Vector q = space.toward(tree[near], target, range);
+    const Vector q = space.upright().toward(tree[near], target, range);
     if (q == tree[near] || !space.motion_free(tree[near], q)) continue;
     const int added = tree.add(q, near);
     int at = other.nearest(q);
     found.closest = std::min(found.closest, (q - other[at]).norm());
     while (other[at] != q) {
-      const Vector next = space.toward(other[at], q, range);
+      const Vector next = space.upright().toward(other[at], q, range);
       if (next == other[at] || !space.motion_free(other[at], next)) break;
       at = other.add(next, at);
     }

@@ -91,10 +91,12 @@ class Motions : public ob::MotionValidator {
 class Work : public ob::MechanicalWorkOptimizationObjective {
  public:
   Work(const ob::SpaceInformationPtr& si, const SearchSpace& space) : ob::MechanicalWorkOptimizationObjective(si, 1e-4), space_(space) {}
-  ob::Cost stateCost(const ob::State* state) const override { return ob::Cost(space_.cost(to_vector(state, space_.size()))); }
+  ob::Cost stateCost(const ob::State* state) const override {
+    return ob::Cost(space_.costs().of(to_vector(state, space_.size())));
+  }
   ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
     const Vector a = to_vector(from, space_.size()), b = to_vector(to, space_.size());
-    return ob::Cost(space_.work(a, b) + pathLengthWeight_ * (b - a).norm());
+    return ob::Cost(space_.costs().work(a, b) + pathLengthWeight_ * (b - a).norm());
   }
 
  private:

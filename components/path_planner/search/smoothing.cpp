@@ -37,7 +37,7 @@ class Line {
 
 double price(const SearchSpace& space, const std::vector<Vector>& line) {
   double sum = 0;
-  for (std::size_t i = 1; i < line.size(); ++i) sum += space.price(line[i - 1], line[i]);
+  for (std::size_t i = 1; i < line.size(); ++i) sum += space.costs().price(line[i - 1], line[i]);
   return sum;
 }
 
@@ -73,7 +73,7 @@ bool replace(SearchSpace& space, std::vector<Vector>& path, const Line& line, co
 
 void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
   const Settings& settings = space.settings();
-  const bool people = space.concerns_people();
+  const bool people = space.costs().concerns_people();
   int in_vain = 0;
   const auto& asked_on = space.hooks().smooth_on;
   const auto goes_on = [&](int round) { return asked_on ? asked_on() : round < settings.smoothing_rounds && in_vain < settings.patience; };
@@ -89,12 +89,15 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
     } else {
       double s = random.between(0, line.length());
       const double other = random.between(0, line.length());
-      if (space.cost(line.point(line.at(other))) > space.cost(line.point(line.at(s)))) s = other;
+      if (space.costs().of(line.point(line.at(other))) > space.costs().of(line.point(line.at(s))))
+        s = other;
       const double half = random.between(0.2, 1.0) * settings.longest_edge;
       const Place from = line.at(std::max(0.0, s - half)), to = line.at(std::min(line.length(), s + half));
       const Vector center = line.point(line.at(s)), toward = random.within(space.lower(), space.upper()) - center;
       const double far = std::min(toward.norm(), random.between(0.1, 1.0) * half);
-      gained = toward.norm() > 1e-9 && replace(space, path, line, from, to, {space.righted(center + toward * (far / toward.norm()))});
+      gained = toward.norm() > 1e-9 &&
+               replace(space, path, line, from, to,
+                       {space.upright().restore(center + toward * (far / toward.norm()))});
     }
     in_vain = gained ? 0 : in_vain + 1;
   }
@@ -102,8 +105,10 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
 
 void prune(SearchSpace& space, std::vector<Vector>& path) {
   for (std::size_t i = 1; i + 1 < path.size() && !space.exhausted();) {
-    const double before = space.price(path[i - 1], path[i]) + space.price(path[i], path[i + 1]);
-    if (space.price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) && space.motion_free(path[i - 1], path[i + 1])) {
+    const double before =
+        space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
+    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) &&
+        space.motion_free(path[i - 1], path[i + 1])) {
       path.erase(path.begin() + static_cast<long>(i));
       if (i > 1) --i;
     } else {

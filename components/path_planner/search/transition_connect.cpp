@@ -24,7 +24,8 @@ class Search {
     trees_[0].add(space.start(), -1);
     for (const Vector& goal : goals) trees_[1].add(goal, -1);
     for (int side = 0; side < 2; ++side)
-      for (int i = 0; i < trees_[side].size(); ++i) cost_[side].push_back(space.cost(trees_[side][i]));
+      for (int i = 0; i < trees_[side].size(); ++i)
+        cost_[side].push_back(space.costs().of(trees_[side][i]));
   }
 
   Found run() {
@@ -33,7 +34,8 @@ class Search {
     while (!space_.exhausted() && found.path.empty()) {
       space_.charge(1);
       const int side = trees_[0].size() <= trees_[1].size() ? 0 : 1;
-      const Vector target = space_.righted(random_.within(space_.lower(), space_.upper()));
+      const Vector target =
+          space_.upright().restore(random_.within(space_.lower(), space_.upper()));
       const int near = trees_[side].nearest(target);
       const int added = advance(side, near, target, space_.settings().connect_range);
       if (added == near) continue;
@@ -59,15 +61,15 @@ class Search {
  private:
   /// From a node toward a target, at most `range` far and as far as the transition test allows; the new node, or the old one.
   int advance(int side, int from, const Vector& target, double range, bool* reached = nullptr) {
-    const Vector start = trees_[side][from], stop = space_.toward(start, target, range);
+    const Vector start = trees_[side][from], stop = space_.upright().toward(start, target, range);
     const double length = (stop - start).norm();
     if (length < kLeastStep) {
       if (reached == nullptr || stop != target || !space_.motion_free(start, target)) return from;
       *reached = true;
-      return add(side, from, target, space_.cost(target));
+      return add(side, from, target, space_.costs().of(target));
     }
     const int steps = std::max(1, static_cast<int>(std::ceil(length / space_.settings().cost_step)));
-    const std::vector<double>& costs = space_.costs_at_steps(start, stop, steps);
+    const std::vector<double>& costs = space_.costs().at_steps(start, stop, steps);
     double last = cost_[side][static_cast<std::size_t>(from)];
     int allowed = 0;
     for (; allowed < steps && test_[side](last, costs[static_cast<std::size_t>(allowed)]); ++allowed)

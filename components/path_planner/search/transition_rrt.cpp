@@ -21,7 +21,7 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
   const double range = space.settings().transition_range;
   Tree tree(space.size());
   tree.add(space.start(), -1);
-  std::vector<double> costs = {space.cost(space.start())};
+  std::vector<double> costs = {space.costs().of(space.start())};
   std::size_t refinements = 0;
   Found found;
   found.closest = std::numeric_limits<double>::infinity();
@@ -29,14 +29,16 @@ Found transition_rrt(SearchSpace& space, const std::vector<Vector>& goals, std::
     space.charge(1);
     const bool to_goal = random.unit() < kGoalBias;
     const std::size_t goal = static_cast<std::size_t>(random.unit() * static_cast<double>(goals.size()));
-    const Vector target = to_goal ? goals[goal] : space.righted(random.within(space.lower(), space.upper()));
+    const Vector target =
+        to_goal ? goals[goal]
+                : space.upright().restore(random.within(space.lower(), space.upper()));
     const int near = tree.nearest(target);
     const double distance = (target - tree[near]).norm();
     const bool refines = distance < range;
     if (to_goal) found.closest = std::min(found.closest, distance);
     if (refines && !to_goal && static_cast<double>(refinements) > kRefinementShare * static_cast<double>(tree.size())) continue;
     const Vector q = refines ? target : Vector(tree[near] + (target - tree[near]) * (range / distance));
-    const double cost = space.cost(q);
+    const double cost = space.costs().of(q);
     if (!accepts(costs[static_cast<std::size_t>(near)], cost) || !space.motion_free(tree[near], q)) continue;
     refinements += refines;
     const int added = tree.add(q, near);

@@ -136,8 +136,8 @@ LandscapeResult plan_on_landscape(PlannerKind planner, std::uint64_t seed) {
   drawing.path(found.path, 4, {200, 20, 30});
   double integral = 0, work = 0;
   for (std::size_t i = 1; i < found.path.size(); ++i) {
-    integral += space.integral_cost(found.path[i - 1], found.path[i]);
-    work += space.work(found.path[i - 1], found.path[i]);
+    integral += space.costs().integral(found.path[i - 1], found.path[i]);
+    work += space.costs().work(found.path[i - 1], found.path[i]);
   }
   result.answer["path"] = points(found.path);
   result.answer["cost"] = integral;

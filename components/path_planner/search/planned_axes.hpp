@@ -1,0 +1,33 @@
+// The axes that are planned for, among all axes of the robot.
+#pragma once
+
+#include "components/path_planner/problem.hpp"
+
+namespace handsel::path_planner {
+
+/// Converts configurations between the planned axes and all axes; the others stay at the start.
+class PlannedAxes {
+ public:
+  /// `problem` must outlive this.
+  explicit PlannedAxes(const Problem& problem) : axes_(problem.axes), all_(problem.start) {}
+
+  /// Returns the number of axes that are planned for.
+  int size() const { return static_cast<int>(axes_.size()); }
+  /// Returns the planned axes of a configuration of all axes.
+  Vector part(const Vector& all) const {
+    Vector q(size());
+    for (int i = 0; i < size(); ++i) q[i] = all[axes_[i]];
+    return q;
+  }
+  /// Returns all axes where the planned ones are `q`; valid until the next call.
+  const Vector& whole(const Vector& q) const {
+    for (int i = 0; i < size(); ++i) all_[axes_[i]] = q[i];
+    return all_;
+  }
+
+ private:
+  const std::vector<int>& axes_;
+  mutable Vector all_;
+};
+
+}  // namespace handsel::path_planner
