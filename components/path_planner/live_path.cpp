@@ -306,9 +306,11 @@ const char* name(LiveOutcome outcome) {
   }
 }
 
-LiveResult go_on(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem,
-                 const std::vector<Vector>& running, const Settings& settings, const LiveSettings& live, const Hooks& hooks) {
+LiveResult continue_path(const PlanningModels& models, const Problem& problem,
+                         const std::vector<Vector>& running, const Settings& settings,
+                         const LiveSettings& live, const Hooks& hooks) {
   LiveResult out;
+  const auto& [robot, world, cost] = models;
   Settings quick = settings;
   quick.smoothing_rounds = live.rounds / 3;
   std::uint64_t spent = 0;

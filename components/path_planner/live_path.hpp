@@ -42,7 +42,8 @@ struct LiveResult {
 /// (on it, t_now + t_replan ahead: what comes before stays as it is). `problem.goals`: as they are
 /// wanted now. Deterministic for the problem's seed. When the start is not on the path, or nothing
 /// of it can be saved, the problem is planned anew with what is left of the budget.
-LiveResult go_on(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const Problem& problem,
-                 const std::vector<Vector>& running, const Settings& settings, const LiveSettings& live, const Hooks& hooks = {});
+LiveResult continue_path(const PlanningModels& models, const Problem& problem,
+                         const std::vector<Vector>& running, const Settings& settings,
+                         const LiveSettings& live, const Hooks& hooks = {});
 
 }  // namespace handsel::path_planner

@@ -8,6 +8,13 @@
 
 namespace handsel::path_planner {
 
+/// What planning needs beside the problem. The referenced objects must outlive the call.
+struct PlanningModels {
+  const RobotModel& robot;  ///< Robot that is planned for.
+  CollisionWorld& world;    ///< Obstacles and people of that robot.
+  HumanCost& cost;          ///< Human-aware cost of that robot.
+};
+
 /// RRT-Connect where no person is present, BiT-RRT on the human-aware cost where a person is
 /// (chapter section 4.1.3), or what the problem names. The world and the cost hold robot, scene,
 /// people, base and what the hand carries. A failure says why: which end is in collision and with

@@ -83,4 +83,27 @@ Problem problem_of(const RobotModel& robot, const PathRequest& request, const Po
   return problem;
 }
 
+PathReply reply_of(const RequestId& id, const Result& result) {
+  PathReply reply;
+  reply.id = id;
+  reply.solved = result.solved;
+  reply.reason = result.reason;
+  reply.start_touches = result.start_touches;
+  reply.goal = static_cast<std::uint32_t>(result.goal);
+  reply.path = result.path;
+  reply.cost = result.cost;
+  reply.work = result.work;
+  reply.length = result.length;
+  reply.checks = result.checks;
+  return reply;
+}
+
+PathReply refusal(const RequestId& id, const std::string& reason) {
+  PathReply reply;
+  reply.id = id;
+  reply.reason = reason;
+  reply.outcome = PathOutcome::blocked;
+  return reply;
+}
+
 }  // namespace handsel::path_planner

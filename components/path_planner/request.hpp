@@ -20,4 +20,9 @@ std::vector<PoseGoal> pose_goals(const PathRequest& request, const Pose& T_world
 /// Returns the problem without goals and budget. The request is without contradiction.
 Problem problem_of(const RobotModel& robot, const PathRequest& request, const Pose& T_world_root);
 
+/// Returns the reply to a request that was planned for; its outcome is not set.
+PathReply reply_of(const RequestId& id, const Result& result);
+/// Returns the reply to a request that is not planned for.
+PathReply refusal(const RequestId& id, const std::string& reason);
+
 }  // namespace handsel::path_planner

@@ -74,7 +74,7 @@ int run(int cases) {
     Result anew;
     const double t_live = seconds([&] {
       put(people);
-      live = go_on(robot, world, cost, problem, first.path, {}, {});
+      live = continue_path({robot, world, cost}, problem, first.path, {}, {});
     });
     const double t_anew = seconds([&] {
       put(people);

@@ -101,7 +101,9 @@ int run(int cases) {
     });
     goals_of_search();
     if (!problem.goals.empty()) {
-      const double t_path = seconds([&] { live = go_on(robot, world, cost, problem, first.path, {}, {}); });
+      const double t_path = seconds([&] {
+        live = path_planner::continue_path({robot, world, cost}, problem, first.path, {}, {});
+      });
       const double t_motion = seconds([&] {
         if (live.result.solved) soft = smooth(after, live.result.path, problem.start);
       });

@@ -39,7 +39,9 @@ class LivePath : public ::testing::Test {
     world_.set_people(people);
     cost_.set_people(people);
   }
-  LiveResult go() { return go_on(robot_, world_, cost_, problem_, running_, settings_, live_, hooks_); }
+  LiveResult go() {
+    return continue_path({robot_, world_, cost_}, problem_, running_, settings_, live_, hooks_);
+  }
   void expect_sound(const Result& result) { test::expect_sound(result, problem_, world_); }
 
   RobotModel robot_{test::planar_arm()};
@@ -94,7 +96,8 @@ TEST_F(LivePath, it_gets_cheaper_for_a_person_who_came) {
     double first = -1, last = 0;
     for (int k = 0; k < 5; ++k) {
       problem_.seed += 100;
-      const LiveResult result = go_on(robot_, world_, cost_, problem_, path, settings_, live_);
+      const LiveResult result =
+          continue_path({robot_, world_, cost_}, problem_, path, settings_, live_);
       if (result.outcome == LiveOutcome::kept)
         EXPECT_EQ(result.after, result.before);
       else
