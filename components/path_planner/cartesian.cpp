@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "common/model/srs_arm.hpp"
+#include "components/path_planner/cartesian_space.hpp"
 #include "components/path_planner/search/random.hpp"
 #include "components/path_planner/search/search_space.hpp"
 #include "components/path_planner/search/transition_test.hpp"
@@ -13,133 +13,14 @@
 namespace handsel::path_planner {
 namespace {
 
-constexpr double kNearPi = 0.02;       // displacements this near to a turn by pi have no local path [rad]
-constexpr double kSamePosture = 1e-4;  // [rad]
-constexpr double kMotionStep = 0.005;  // states between two samples are judged this close [rad]
-constexpr double kVerifyStep = 0.001;  // and on what is returned [rad]
+constexpr double kSameConfiguration = 1e-4;  // [rad]
+constexpr double kVerifyStep = 0.001;  // states on what is returned are checked this close [rad]
 constexpr int kAttempts = 3;           // the fine check may refuse what the coarse one let pass
 constexpr int kBends = 24;             // postures tried on another branch
 constexpr double kBendAway = 1.0;      // the last of them is up to this far from the start's, shoulder, elbow and wrist bent over [rad]
-constexpr double kLeastBend = 0.2;     // [rad]
+constexpr double kMinBend = 0.2;       // [rad]
 constexpr double kJointSample = 0.05;  // of a path of the joints [rad]
-constexpr int kHalvings = 4;           // of a step before what the joints do is called a jump
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-double wrapped(double angle) { return std::remainder(angle, 2 * M_PI); }
-
-class Space : public Budget {
- public:
-  Space(const RobotModel& robot, CollisionWorld& world, const HumanCost& cost, const CartesianProblem& problem,
-        const CartesianSettings& settings, const Hooks& hooks, const ik::Chain& chain, const ik::SrsArm& arm)
-      : Budget(world, problem.budget, hooks),
-        arm_group_(robot.require_group("arm")),
-        world_(world),
-        cost_(cost),
-        problem_(problem),
-        settings_(settings),
-        chain_(chain),
-        arm_(arm) {}
-
-  const CartesianSettings& settings() const { return settings_; }
-  bool concerns_people() const { return cost_.concerned(); }
-  double cost(const Vector& q) const { return cost_.concerned() ? cost_(q) : 0.0; }
-  bool free(const Vector& q) { return world_.is_free(q); }
-
-  CartesianNode node_of(const Vector& q) const {
-    ik::Axes joints = RobotModel::part(q, arm_group_);
-    return {chain_.forward(joints, nullptr), arm_.elbow_angle(joints), q};
-  }
-
-  /// How many of shoulder, elbow and wrist are bent the other way: no way in active variables leads from one branch to another.
-  int bends(const Vector& a, const Vector& b) const {
-    constexpr double kStretched = 1e-3;
-    int other = 0;
-    for (const std::size_t middle : {1, 3, 5}) {
-      const double x = a[arm_group_.axes[middle]], y = b[arm_group_.axes[middle]];
-      other += x * y < 0 && std::min(std::abs(x), std::abs(y)) > kStretched;
-    }
-    return other;
-  }
-  bool same_branch(const Vector& a, const Vector& b) const { return bends(a, b) == 0; }
-
-  /// Postures at a pose with this elbow angle, inside the limits; the other axes as in `all`.
-  std::vector<Vector> postures(const Pose& T, double elbow, const Vector& all) {
-    charge(1);
-    std::vector<Vector> out;
-    for (const ik::Axes& q : arm_.branches(T, elbow))
-      if (const auto inside = arm_.turned_inside(q, 0.5 * (chain_.lower() + chain_.upper())))
-        out.push_back(RobotModel::with(all, arm_group_, *inside));
-    return out;
-  }
-
-  double distance(const CartesianNode& a, const CartesianNode& b) const {
-    const double turn = Eigen::Quaterniond(a.T_root_tool.linear()).angularDistance(Eigen::Quaterniond(b.T_root_tool.linear()));
-    const double elbow = settings_.elbow * wrapped(b.elbow - a.elbow);
-    double sum = settings_.metre * settings_.metre * (a.T_root_tool.translation() - b.T_root_tool.translation()).squaredNorm() +
-                 turn * turn + elbow * elbow;
-    for (int axis : problem_.also) sum += (a.q[axis] - b.q[axis]) * (a.q[axis] - b.q[axis]);
-    return std::sqrt(sum);
-  }
-
-  /// At a share of the local path: the displacement of the tool, one axis and an angle, and the angle of the elbow.
-  struct Local {
-    Vector3 move, turn_axis;
-    double turn{}, elbow{};
-  };
-  std::optional<Local> local(const CartesianNode& a, const CartesianNode& b) const {
-    const Eigen::AngleAxisd turn(Eigen::Matrix3d(a.T_root_tool.linear().transpose() * b.T_root_tool.linear()));
-    if (turn.angle() > M_PI - kNearPi) return std::nullopt;
-    return Local{b.T_root_tool.translation() - a.T_root_tool.translation(), turn.axis(), turn.angle(), wrapped(b.elbow - a.elbow)};
-  }
-
-  /// From a along the local path to b, up to `far` of it; where it ends before, how far it came. Joints go on from a's on their branch;
-  /// every step is free. Samples are added when asked for.
-  double follow(const CartesianNode& a, const CartesianNode& b, double far, CartesianNode& at, std::vector<Vector>* samples = nullptr) {
-    at = a;
-    const std::optional<Local> way = local(a, b);
-    if (!way) return 0.0;
-    const int steps = std::max(1, static_cast<int>(std::ceil(far * distance(a, b) / settings_.step)));
-    double reached = 0;
-    for (int k = 1; k <= steps; ++k) {
-      const double to = far * k / steps;
-      if (!advance(a, b, *way, reached, to, at, samples, 0)) return reached;
-      reached = to;
-    }
-    return reached;
-  }
-
- private:
-  bool advance(const CartesianNode& a, const CartesianNode& b, const Local& way, double from, double to, CartesianNode& at,
-               std::vector<Vector>* samples, int halved) {
-    CartesianNode next;
-    next.T_root_tool.linear() = a.T_root_tool.linear() * Eigen::AngleAxisd(to * way.turn, way.turn_axis).toRotationMatrix();
-    next.T_root_tool.translation() = a.T_root_tool.translation() + to * way.move;
-    next.elbow = wrapped(a.elbow + to * way.elbow);
-    const Vector now = RobotModel::part(at.q, arm_group_);
-    charge(1);
-    const std::optional<ik::Axes> best = arm_.nearest(next.T_root_tool, next.elbow, now);
-    if (!best) return false;
-    if ((*best - now).lpNorm<Eigen::Infinity>() > settings_.largest_step) {
-      if (halved == kHalvings) return false;
-      const double middle = 0.5 * (from + to);
-      return advance(a, b, way, from, middle, at, samples, halved + 1) && advance(a, b, way, middle, to, at, samples, halved + 1);
-    }
-    next.q = RobotModel::with(at.q, arm_group_, *best);
-    for (int axis : problem_.also) next.q[axis] = a.q[axis] + to * (b.q[axis] - a.q[axis]);
-    if (!world_.check_motion(at.q, next.q, kMotionStep).free) return false;
-    at = next;
-    if (samples != nullptr) samples->push_back(at.q);
-    return true;
-  }
-
-  const Group& arm_group_;
-  CollisionWorld& world_;
-  const HumanCost& cost_;
-  const CartesianProblem& problem_;
-  const CartesianSettings& settings_;
-  const ik::Chain& chain_;
-  const ik::SrsArm& arm_;
-};
 
 struct TreeNode {
   CartesianNode at;
@@ -148,13 +29,13 @@ struct TreeNode {
 };
 using Tree = std::vector<TreeNode>;
 
-int nearest(const Space& space, const Tree& tree, const CartesianNode& to) {
+int nearest(const CartesianSpace& space, const Tree& tree, const CartesianNode& to) {
   int best = 0;
-  double least = kInfinite;
+  double min_distance = kInfinite;
   for (int i = 0; i < static_cast<int>(tree.size()); ++i) {
     const double d = space.distance(tree[static_cast<std::size_t>(i)].at, to);
-    if (d >= least) continue;
-    least = d;
+    if (d >= min_distance) continue;
+    min_distance = d;
     best = i;
   }
   return best;
@@ -168,7 +49,8 @@ std::vector<CartesianNode> branch(const Tree& tree, int leaf) {
 
 class Search {
  public:
-  Search(Space& space, const CartesianProblem& problem, Random& random, double reach, const Vector3& center)
+  Search(CartesianSpace& space, const CartesianProblem& problem, Random& random, double reach,
+         const Vector3& center)
       : space_(space),
         random_(random),
         accepts_(space.settings().initial_temperature, random_),
@@ -212,7 +94,9 @@ class Search {
   }
 
  private:
-  static bool same(const CartesianNode& a, const CartesianNode& b) { return (a.q - b.q).lpNorm<Eigen::Infinity>() < kSamePosture; }
+  static bool same(const CartesianNode& a, const CartesianNode& b) {
+    return (a.q - b.q).lpNorm<Eigen::Infinity>() < kSameConfiguration;
+  }
 
   CartesianNode sample() {
     CartesianNode out;
@@ -235,7 +119,8 @@ class Search {
     const double far = space_.distance(from, target);
     if (far < 1e-9) return -1;
     CartesianNode at;
-    const double share = std::min(1.0, space_.settings().range / far), reached = space_.follow(from, target, share, at);
+    const double part = std::min(1.0, space_.settings().range / far);
+    const double reached = space_.follow(from, target, part, at);
     if (reached * far < 2 * space_.settings().step && reached < 1.0) return -1;
     const double cost = space_.cost(at.q);
     if (space_.concerns_people() && !accepts_(tree[static_cast<std::size_t>(near)].cost, cost)) return -1;
@@ -243,7 +128,7 @@ class Search {
     return static_cast<int>(tree.size()) - 1;
   }
 
-  Space& space_;
+  CartesianSpace& space_;
   Random& random_;
   TransitionTest accepts_;
   const CartesianProblem& problem_;
@@ -251,7 +136,7 @@ class Search {
   Vector3 center_;
 };
 
-double integral(const Space& space, const std::vector<Vector>& samples) {
+double integral(const CartesianSpace& space, const std::vector<Vector>& samples) {
   double sum = 0;
   for (std::size_t i = 1; i < samples.size(); ++i)
     sum += space.cost(0.5 * (samples[i - 1] + samples[i])) * (samples[i] - samples[i - 1]).norm();
@@ -259,17 +144,18 @@ double integral(const Space& space, const std::vector<Vector>& samples) {
 }
 
 /// The samples of the local paths; empty when they no longer meet their nodes.
-std::vector<Vector> samples_of(Space& space, const std::vector<CartesianNode>& nodes) {
+std::vector<Vector> samples_of(CartesianSpace& space, const std::vector<CartesianNode>& nodes) {
   std::vector<Vector> out = {nodes.front().q};
   for (std::size_t i = 1; i < nodes.size(); ++i) {
     CartesianNode end;
-    if (space.follow(nodes[i - 1], nodes[i], 1.0, end, &out) < 1.0 || (end.q - nodes[i].q).lpNorm<Eigen::Infinity>() > kSamePosture)
+    if (space.follow(nodes[i - 1], nodes[i], 1.0, end, &out) < 1.0 ||
+        (end.q - nodes[i].q).lpNorm<Eigen::Infinity>() > kSameConfiguration)
       return {};
   }
   return out;
 }
 
-void shorten(Space& space, std::vector<CartesianNode>& nodes, Random& random) {
+void shorten(CartesianSpace& space, std::vector<CartesianNode>& nodes, Random& random) {
   for (int k = 0; k < space.settings().shortcuts && nodes.size() > 2 && !space.exhausted(); ++k) {
     std::size_t a = static_cast<std::size_t>(random.unit() * static_cast<double>(nodes.size())),
                 b = static_cast<std::size_t>(random.unit() * static_cast<double>(nodes.size()));
@@ -294,8 +180,10 @@ bool verified(CollisionWorld& world, const std::vector<Vector>& samples) {
 
 /// Samples of a path of the joints from the start to a posture bent as the goal asks: through a stretched shoulder, elbow or wrist no local
 /// path leads. Empty when none was found.
-std::vector<Vector> other_branch(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& cartesian,
-                                 const Group& arm, const Vector& like, std::uint64_t budget, Random& random, const Hooks& hooks) {
+std::vector<Vector> other_branch(const PlanningModels& models, const CartesianProblem& cartesian,
+                                 const Vector& like, std::uint64_t budget, Random& random,
+                                 const Hooks& hooks) {
+  const Group& arm = models.robot.require_group("arm");
   Problem problem;
   problem.axes = arm.axes;
   problem.start = cartesian.start;
@@ -305,10 +193,12 @@ std::vector<Vector> other_branch(const RobotModel& robot, CollisionWorld& world,
     Vector q = RobotModel::part(cartesian.start, arm);
     const double away = kBendAway * k / kBends;
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[static_cast<std::size_t>(i)])];
+      const Axis& axis =
+          models.robot.axes()[static_cast<std::size_t>(arm.axes[static_cast<std::size_t>(i)])];
       const double wanted = like[arm.axes[static_cast<std::size_t>(i)]];
       const bool middle = i == 1 || i == 3 || i == 5;
-      if (middle && q[i] * wanted < 0) q[i] = std::copysign(std::max(kLeastBend, std::abs(q[i])), wanted);
+      if (middle && q[i] * wanted < 0)
+        q[i] = std::copysign(std::max(kMinBend, std::abs(q[i])), wanted);
       const double moved = q[i] + away * random.between(-1, 1);
       q[i] = middle && moved * wanted < 0 ? q[i] : std::clamp(moved, axis.lower, axis.upper);
     }
@@ -316,7 +206,7 @@ std::vector<Vector> other_branch(const RobotModel& robot, CollisionWorld& world,
   }
   Hooks quiet;
   quiet.cancelled = hooks.cancelled;
-  const Result found = plan(robot, world, cost, problem, {}, quiet);
+  const Result found = plan(models.robot, models.world, models.cost, problem, {}, quiet);
   std::vector<Vector> samples;
   for (std::size_t i = 1; i < found.path.size(); ++i) {
     const Vector along = found.path[i] - found.path[i - 1];
@@ -327,119 +217,196 @@ std::vector<Vector> other_branch(const RobotModel& robot, CollisionWorld& world,
   return samples;
 }
 
-}  // namespace
-
-CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost, const CartesianProblem& problem,
-                               const CartesianSettings& settings, const Hooks& hooks) {
-  CartesianResult result;
-  const auto refuse = [&result](const std::string& why) {
-    result.reason = why;
-    return result;
-  };
-  if (problem.start.size() != robot.dof() || !problem.start.allFinite()) return refuse("the start is not a posture of all axes");
+/// Returns why the problem makes no sense, or an empty text.
+std::string contradiction(const RobotModel& robot, const CartesianProblem& problem) {
+  if (problem.start.size() != robot.dof() || !problem.start.allFinite())
+    return "the start is not a posture of all axes";
   if (problem.also_goal.size() != static_cast<Eigen::Index>(problem.also.size()))
-    return refuse("the further axes and their goals do not match");
-  if (!problem.T_root_goal.matrix().allFinite()) return refuse("the goal pose is not finite");
-  if (problem.budget == 0) return refuse("the time limit is zero");
+    return "the further axes and their goals do not match";
+  if (!problem.T_root_goal.matrix().allFinite()) return "the goal pose is not finite";
+  if (problem.budget == 0) return "the time limit is zero";
   const Group* group = robot.group("arm");
-  if (group == nullptr) return refuse("the robot has no group \"arm\"");
+  if (group == nullptr) return "the robot has no group \"arm\"";
   for (std::size_t i = 0; i < problem.also.size(); ++i) {
     const int axis = problem.also[i];
     if (axis < 0 || axis >= robot.dof() || std::count(group->axes.begin(), group->axes.end(), axis) > 0)
-      return refuse("axis " + std::to_string(axis) + " cannot be active besides the arm");
+      return "axis " + std::to_string(axis) + " cannot be active besides the arm";
     const double goal = problem.also_goal[static_cast<Eigen::Index>(i)];
-    if (!(goal >= robot.axes()[static_cast<std::size_t>(axis)].lower && goal <= robot.axes()[static_cast<std::size_t>(axis)].upper))
-      return refuse("the goal of axis " + robot.axes()[static_cast<std::size_t>(axis)].name + " is outside its limits");
+    const Axis& limits = robot.axes()[static_cast<std::size_t>(axis)];
+    if (!(goal >= limits.lower && goal <= limits.upper))
+      return "the goal of axis " + limits.name + " is outside its limits";
   }
-  const ik::Chain chain(robot, *group, problem.start);
-  const auto arm = ik::SrsArm::recognise(chain);
-  if (!arm) return refuse(ik::SrsArm::why_none(*group));
-  std::vector<int> moving = group->axes;
-  moving.insert(moving.end(), problem.also.begin(), problem.also.end());
-  world.set_moving_axes(moving);
-  cost.set_moving_axes(moving);
-  Space space(robot, world, cost, problem, settings, hooks, chain, *arm);
+  return {};
+}
 
-  if (const CollisionVerdict verdict = world.check(problem.start); !verdict.free)
-    return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
-  Vector at_goal = problem.start;
-  for (std::size_t i = 0; i < problem.also.size(); ++i) at_goal[problem.also[i]] = problem.also_goal[static_cast<Eigen::Index>(i)];
-  std::vector<std::vector<CartesianNode>> goals(1);  // by branch, that of the start first
-  bool reachable = false;
-  CollisionVerdict touched;
-  for (int k = 0; k < settings.goal_elbows; ++k) {
-    const double elbow = wrapped(2 * M_PI * k / settings.goal_elbows);
-    for (const Vector& q : space.postures(problem.T_root_goal, elbow, at_goal)) {
-      reachable = true;
-      const CollisionVerdict verdict = world.check(q);
-      if (!verdict.free) {
-        if (touched.free) touched = verdict;
-        continue;
-      }
-      std::size_t branch = 0;
-      if (!space.same_branch(problem.start, q))
-        for (branch = 1; branch < goals.size() && !space.same_branch(goals[branch].front().q, q);) ++branch;
-      if (branch == goals.size()) goals.emplace_back();
-      goals[branch].push_back({problem.T_root_goal, elbow, q});
+/// Plans one problem: goals by branch, then one search after the other.
+class CartesianPlanning {
+ public:
+  CartesianPlanning(CartesianSpace& space, const PlanningModels& models,
+                    const CartesianProblem& problem, const Hooks& hooks, const Vector3& shoulder)
+      : space_(space),
+        models_(models),
+        problem_(problem),
+        hooks_(hooks),
+        shoulder_(shoulder),
+        random_(problem.seed) {
+    moving_ = space.arm().group().axes;
+    moving_.insert(moving_.end(), problem.also.begin(), problem.also.end());
+  }
+
+  CartesianResult run() {
+    set_moving_axes();
+    if (const CollisionVerdict verdict = models_.world.check(problem_.start); !verdict.free)
+      return refuse("the start is in collision: " + verdict.first + " touches " + verdict.second);
+    if (const std::string why = find_goals(); !why.empty()) return refuse(why);
+    const bool sound = search_branches();
+    result_.checks = space_.checks();
+    if (!sound) {
+      result_.nodes.clear();
+      result_.samples.clear();
+      result_.cancelled = space_.cancelled();
+      return refuse(result_.cancelled
+                        ? "cancelled"
+                        : "no path within " + std::to_string(problem_.budget) + " checks");
     }
+    result_.cost = integral(space_, result_.samples);
+    for (std::size_t i = 1; i < result_.samples.size(); ++i)
+      result_.work +=
+          std::max(0.0, space_.cost(result_.samples[i]) - space_.cost(result_.samples[i - 1]));
+    result_.length = path_length(result_.samples);
+    result_.solved = true;
+    return result_;
   }
-  if (!reachable) return refuse("no posture of the arm has the tool at the goal");
-  if (goals.size() == 1 && goals[0].empty())
-    return refuse("every posture at the goal is in collision, the first: " + touched.first + " touches " + touched.second);
-  std::stable_sort(goals.begin() + 1, goals.end(),
-                   [&](const auto& a, const auto& b) { return space.bends(problem.start, a[0].q) < space.bends(problem.start, b[0].q); });
 
-  Random random(problem.seed);
-  const Vector3 shoulder = chain.elements().front().T_before.translation();
-  const auto lead = [&](const CartesianNode& start, const std::vector<CartesianNode>& ends) {
-    const double reach =
-        std::max((start.T_root_tool.translation() - shoulder).norm(), (problem.T_root_goal.translation() - shoulder).norm()) + 0.2;
-    for (int attempt = 0; attempt < kAttempts && !space.exhausted(); ++attempt) {
-      const std::vector<CartesianNode> found = Search(space, problem, random, reach, shoulder).run(start, ends);
+ private:
+  CartesianResult refuse(const std::string& why) {
+    result_.reason = why;
+    return result_;
+  }
+
+  void set_moving_axes() {
+    models_.world.set_moving_axes(moving_);
+    models_.cost.set_moving_axes(moving_);
+  }
+
+  /// Fills goals_; returns why there is none, or an empty text.
+  std::string find_goals() {
+    const ArmKinematics& arm = space_.arm();
+    Vector at_goal = problem_.start;
+    for (std::size_t i = 0; i < problem_.also.size(); ++i)
+      at_goal[problem_.also[i]] = problem_.also_goal[static_cast<Eigen::Index>(i)];
+    bool reachable = false;
+    CollisionVerdict touched;
+    const int elbows = space_.settings().goal_elbows;
+    for (int k = 0; k < elbows; ++k) {
+      const double elbow = wrapped(2 * M_PI * k / elbows);
+      for (const Vector& q : space_.configurations(problem_.T_root_goal, elbow, at_goal)) {
+        reachable = true;
+        const CollisionVerdict verdict = models_.world.check(q);
+        if (!verdict.free) {
+          if (touched.free) touched = verdict;
+          continue;
+        }
+        std::size_t branch = 0;
+        if (!arm.same_branch(problem_.start, q))
+          for (branch = 1; branch < goals_.size() && !arm.same_branch(goals_[branch].front().q, q);)
+            ++branch;
+        if (branch == goals_.size()) goals_.emplace_back();
+        goals_[branch].push_back({problem_.T_root_goal, elbow, q});
+      }
+    }
+    if (!reachable) return "no posture of the arm has the tool at the goal";
+    if (goals_.size() == 1 && goals_[0].empty())
+      return "every posture at the goal is in collision, the first: " + touched.first +
+             " touches " + touched.second;
+    std::stable_sort(goals_.begin() + 1, goals_.end(), [&](const auto& a, const auto& b) {
+      return arm.bends(problem_.start, a[0].q) < arm.bends(problem_.start, b[0].q);
+    });
+    return {};
+  }
+
+  /// Searches branch by branch, each with its part of the checks that are left.
+  bool search_branches() {
+    bool sound = false;
+    for (std::size_t branch = 0; branch < goals_.size() && !sound && !space_.cancelled();
+         ++branch) {
+      const double left =
+          static_cast<double>(problem_.budget - std::min(problem_.budget, space_.checks()));
+      const auto parts = static_cast<double>(branch == 0 ? std::min<std::size_t>(2, goals_.size())
+                                                         : goals_.size() - branch);
+      const auto checks = static_cast<std::uint64_t>(left / parts);
+      if (goals_[branch].empty()) continue;
+      space_.limit(space_.checks() + checks);
+      sound = branch == 0 ? search(space_.arm().node_of(problem_.start), goals_[0])
+                          : change_branch(goals_[branch], checks);
+    }
+    return sound;
+  }
+
+  /// Changes to the branch of `ends` in joint space, then searches there.
+  bool change_branch(const std::vector<CartesianNode>& ends, std::uint64_t checks) {
+    const ArmKinematics& arm = space_.arm();
+    const std::vector<Vector> bridge =
+        other_branch(models_, problem_, ends.front().q, checks / 3, random_, hooks_);
+    set_moving_axes();
+    if (bridge.empty() || !search(arm.node_of(bridge.back()), ends)) return false;
+    result_.in_joints = bridge.size() - 1;
+    result_.nodes.insert(result_.nodes.begin(), arm.node_of(problem_.start));
+    result_.samples.insert(result_.samples.begin(), bridge.begin(), bridge.end() - 1);
+    return true;
+  }
+
+  /// Fills nodes and samples of the result with a path on one branch.
+  bool search(const CartesianNode& start, const std::vector<CartesianNode>& ends) {
+    const double reach = std::max((start.T_root_tool.translation() - shoulder_).norm(),
+                                  (problem_.T_root_goal.translation() - shoulder_).norm()) +
+                         0.2;
+    for (int attempt = 0; attempt < kAttempts && !space_.exhausted(); ++attempt) {
+      const std::vector<CartesianNode> found =
+          Search(space_, problem_, random_, reach, shoulder_).run(start, ends);
       if (found.empty()) return false;
-      result.nodes = found;
-      shorten(space, result.nodes, random);
+      result_.nodes = found;
+      shorten(space_, result_.nodes, random_);
       for (const bool shortened : {true, false}) {
-        if (!shortened) result.nodes = found;
-        result.samples = samples_of(space, result.nodes);
-        if (verified(world, result.samples)) return true;
+        if (!shortened) result_.nodes = found;
+        result_.samples = samples_of(space_, result_.nodes);
+        if (verified(models_.world, result_.samples)) return true;
       }
     }
     return false;
-  };
-  bool sound = false;
-  for (std::size_t branch = 0; branch < goals.size() && !sound && !space.cancelled(); ++branch) {
-    const double left = static_cast<double>(problem.budget - std::min(problem.budget, space.checks()));
-    const auto parts = static_cast<double>(branch == 0 ? std::min<std::size_t>(2, goals.size()) : goals.size() - branch);
-    const auto share = static_cast<std::uint64_t>(left / parts);
-    if (goals[branch].empty()) continue;
-    space.limit(space.checks() + share);
-    if (branch == 0) {
-      sound = lead(space.node_of(problem.start), goals[0]);
-      continue;
-    }
-    const std::vector<Vector> bridge = other_branch(robot, world, cost, problem, *group, goals[branch].front().q, share / 3, random, hooks);
-    world.set_moving_axes(moving);
-    cost.set_moving_axes(moving);
-    if (bridge.empty() || !lead(space.node_of(bridge.back()), goals[branch])) continue;
-    sound = true;
-    result.in_joints = bridge.size() - 1;
-    result.nodes.insert(result.nodes.begin(), space.node_of(problem.start));
-    result.samples.insert(result.samples.begin(), bridge.begin(), bridge.end() - 1);
   }
-  result.checks = space.checks();
-  if (!sound) {
-    result.nodes.clear();
-    result.samples.clear();
-    result.cancelled = space.cancelled();
-    return refuse(result.cancelled ? "cancelled" : "no path within " + std::to_string(problem.budget) + " checks");
+
+  CartesianSpace& space_;
+  const PlanningModels& models_;
+  const CartesianProblem& problem_;
+  const Hooks& hooks_;
+  Vector3 shoulder_;
+  Random random_;
+  std::vector<int> moving_;
+  std::vector<std::vector<CartesianNode>> goals_{1};  // by branch, that of the start first
+  CartesianResult result_;
+};
+
+}  // namespace
+
+CartesianResult plan_cartesian(const RobotModel& robot, CollisionWorld& world, HumanCost& cost,
+                               const CartesianProblem& problem, const CartesianSettings& settings,
+                               const Hooks& hooks) {
+  CartesianResult refused;
+  refused.reason = contradiction(robot, problem);
+  if (!refused.reason.empty()) return refused;
+  const Group& group = robot.require_group("arm");
+  const ik::Chain chain(robot, group, problem.start);
+  const auto arm = ik::SrsArm::recognise(chain);
+  if (!arm) {
+    refused.reason = ik::SrsArm::why_none(group);
+    return refused;
   }
-  result.cost = integral(space, result.samples);
-  for (std::size_t i = 1; i < result.samples.size(); ++i)
-    result.work += std::max(0.0, space.cost(result.samples[i]) - space.cost(result.samples[i - 1]));
-  result.length = path_length(result.samples);
-  result.solved = true;
-  return result;
+  const PlanningModels models{robot, world, cost};
+  const ArmKinematics kinematics(group, chain, *arm);
+  CartesianSpace space(models, problem, settings, hooks, kinematics);
+  const Vector3 shoulder = chain.elements().front().T_before.translation();
+  return CartesianPlanning(space, models, problem, hooks, shoulder).run();
 }
 
 Result in_joints(const CartesianResult& found, const std::vector<int>& axes) {
