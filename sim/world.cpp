@@ -65,8 +65,9 @@ struct SimWorld::Impl {
     dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
     dynamics.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // with one, a contact slides freely across it
     build_fixed();
-    robot = std::make_unique<RobotBody>(model, setup.T_world_base, setup.start, settings.servo, settings.pad, dynamics, shapes, kRobot,
-                                        kObject | kFixed | kPerson);
+    robot = std::make_unique<RobotBody>(
+        model, setup.T_world_base, setup.start, settings.servo, settings.pad,
+        BodyWorld{dynamics, shapes, kRobot, kObject | kFixed | kPerson});
     for (int i = 0; i < robot->bodies(); ++i) {
       btMultiBodyLinkCollider* collider = robot->collider(i);
       if (collider == nullptr) continue;

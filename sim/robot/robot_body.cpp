@@ -19,9 +19,13 @@ Eigen::Matrix3d shifted(const Eigen::Matrix3d& inertia, double mass, const Vecto
 
 }  // namespace
 
-RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Vector& start, const ServoSettings& settings,
-                     const PadSettings& pad, btMultiBodyDynamicsWorld& world, ShapeStore& shapes, int group, int mask)
-    : model_(model), settings_(settings), world_(world), T_world_base_(T_world_base), q_(start) {
+RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Vector& start,
+                     const ServoSettings& settings, const PadSettings& pad, const BodyWorld& world)
+    : model_(model),
+      settings_(settings),
+      world_(world.dynamics),
+      T_world_base_(T_world_base),
+      q_(start) {
   lump(model);
   const int n = bodies();
   qd_ = Vector::Zero(model.dof());
@@ -70,11 +74,11 @@ RobotBody::RobotBody(const RobotModel& model, const Pose& T_world_base, const Ve
     Pose T_principal_body = Pose::Identity();
     T_principal_body.linear() = b.R_body_principal.transpose();
     T_principal_body.translation() = -(b.R_body_principal.transpose() * b.com);
-    if (btCollisionShape* shape = shapes.combine(parts, T_principal_body)) {
+    if (btCollisionShape* shape = world.shapes.combine(parts, T_principal_body)) {
       b.collider = std::make_unique<btMultiBodyLinkCollider>(multibody_.get(), i);
       b.collider->setCollisionShape(shape);
       b.collider->setFriction(1.0);
-      world_.addCollisionObject(b.collider.get(), group, mask);
+      world_.addCollisionObject(b.collider.get(), world.collision_group, world.collision_mask);
       multibody_->getLink(i).m_collider = b.collider.get();
     }
   }

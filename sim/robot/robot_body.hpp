@@ -37,10 +37,18 @@ struct PadSettings {
   double damping{60};     ///< [N s/m]
 };
 
+/// The physics world that a body is part of, and what the body collides with there.
+struct BodyWorld {
+  btMultiBodyDynamicsWorld& dynamics;  ///< Must outlive the body.
+  ShapeStore& shapes;                  ///< Owns the collision shapes; must outlive the body.
+  int collision_group{};               ///< Bullet collision group of the links.
+  int collision_mask{};                ///< Groups that the links collide with.
+};
+
 class RobotBody {
  public:
-  RobotBody(const RobotModel&, const Pose& T_world_base, const Vector& start, const ServoSettings&, const PadSettings&,
-            btMultiBodyDynamicsWorld&, ShapeStore&, int collision_group, int collision_mask);
+  RobotBody(const RobotModel&, const Pose& T_world_base, const Vector& start, const ServoSettings&,
+            const PadSettings&, const BodyWorld&);
   ~RobotBody();
 
   /// Set-points of all axes for the coming step; efforts are added to what the servos give. Coupled

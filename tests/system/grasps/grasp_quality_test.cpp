@@ -76,7 +76,9 @@ class Rig {
     dynamics_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
     q_ = RobotModel::with(Vector::Zero(robot.dof()), hand_, grasp.pregrasp_joints);
     const Pose base = make_pose(Vector3(0, 0, 1));
-    body_ = std::make_unique<sim::RobotBody>(robot, base, q_, settings.servo, settings.pad, dynamics_, shapes_, sim::kRobot, sim::kObject);
+    body_ = std::make_unique<sim::RobotBody>(
+        robot, base, q_, settings.servo, settings.pad,
+        sim::BodyWorld{dynamics_, shapes_, sim::kRobot, sim::kObject});
     for (int i = 0; i < body_->bodies(); ++i) {
       if (body_->collider(i) == nullptr) continue;
       sim::own(*body_->collider(i), sim::Owner::robot, i);

@@ -184,7 +184,7 @@ TEST(SimGrasp, two_points_do_not_hold_but_two_patches_or_three_points_do) {
   btMultiBodyConstraintSolver solver;
   btMultiBodyDynamicsWorld dynamics(&dispatcher, &broadphase, &solver, &configuration);
   ShapeStore shapes;
-  RobotBody robot(jido(), Pose::Identity(), start(), ServoSettings{}, PadSettings{}, dynamics, shapes, kRobot, kObject);
+  RobotBody robot(jido(), Pose::Identity(), start(), ServoSettings{}, PadSettings{}, BodyWorld{dynamics, shapes, kRobot, kObject});
   RobotGrasp grasp(jido().tool_link(), robot, 0.2, 0.02, 0.05);
   const int palm = grasp.palm();
   const auto touch = [&](double angle, double force, double torsion) {
