@@ -141,7 +141,9 @@ int transfer(const TransferOptions& o) {
     if (!any && !o.png.empty()) {
       const Manipulator& m = stage.arms.front().arm;
       const Vector q = RobotModel::with(RobotModel::with(request.start, *m.arm, t.arm_joints), *m.fingers, g.hand_joints);
-      write(transfer_picture(*stage.robot, scene, q, person, *robot.object, t, *human.kit, h, o.size), o.png);
+      write(transfer_picture({*stage.robot, q}, scene, {person, *human.kit, h}, *robot.object, t,
+                             o.size),
+            o.png);
     }
     any = true;
   }

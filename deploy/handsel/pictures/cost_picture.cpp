@@ -45,14 +45,18 @@ struct Plane {
   Vector3 origin, forward;
 };
 
-void draw_map(std::string& out, const Person& person, const CostSettings& settings, const Plane& plane, const Panel& panel, double cell,
-              double left, double top) {
+/// Draws the cost at the points of the plane, in cells of `cell` [m].
+void draw_map(std::string& out, const Plane& plane,
+              const std::function<double(const Vector3&)>& cost_at, double cell, double left,
+              double top) {
   const int columns = static_cast<int>(std::lround((kBefore - kBehind) / cell)), rows = static_cast<int>(std::lround(kTop / cell));
   const double edge = cell * kScale;
   for (int row = 0; row < rows; ++row) {
     const double z = kTop - (row + 0.5) * cell;
     for (int from = 0; from < columns;) {
-      const auto level_at = [&](int i) { return level(panel.cost(point_cost(person, plane.at(kBehind + (i + 0.5) * cell, z), settings))); };
+      const auto level_at = [&](int i) {
+        return level(cost_at(plane.at(kBehind + (i + 0.5) * cell, z)));
+      };
       const int here = level_at(from);
       int to = from + 1;
       while (to < columns && level_at(to) == here) ++to;
@@ -99,7 +103,10 @@ std::string cost_picture(const Person& person, const CostSettings& settings, dou
   for (int i = 0; i < 4; ++i) {
     const double left = kMargin + (i % 2) * (width + kGap), top = 60 + (i / 2) * (height + kGap);
     out += text("<text x=\"%.0f\" y=\"%.0f\">%s</text>\n<g shape-rendering=\"crispEdges\">\n", left, top - 7, panels[i].name);
-    draw_map(out, person, settings, plane, panels[i], cell, left, top);
+    const auto cost_at = [&](const Vector3& p) {
+      return panels[i].cost(point_cost(person, p, settings));
+    };
+    draw_map(out, plane, cost_at, cell, left, top);
     out += "</g>\n<g stroke=\"#222\" stroke-opacity=\"0.28\" stroke-linecap=\"round\">\n";
     draw_person(out, person, plane, left, top);
     out += "</g>\n";

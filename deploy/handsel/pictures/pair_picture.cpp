@@ -64,16 +64,19 @@ Picture double_grasp_picture(const Graspable& object, const HandKit& a, const Gr
   });
 }
 
-Picture transfer_picture(const RobotModel& robot, const Scene& scene, const Vector& q, const Person& person, const Graspable& object,
-                         const TransferPose& transfer, const HandKit& hand, const Grasp& taken, int size) {
+Picture transfer_picture(const DrawnRobot& robot, const Scene& scene, const DrawnReceiver& receiver,
+                         const Graspable& object, const TransferPose& transfer, int size) {
   const Vector3 middle = transfer.T_world_object * object.box().center();
-  const Vector3 chest = person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  const Vector3 way = (scene.T_world_base.translation() - chest).cwiseProduct(Vector3(1, 1, 0)).normalized(),
-                aside = way.cross(Vector3::UnitZ());
+  const Vector3 chest =
+      receiver.person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const Vector3 toward_robot = (scene.T_world_base.translation() - chest)
+                                   .cwiseProduct(Vector3(1, 1, 0))
+                                   .normalized(),
+                aside = toward_robot.cross(Vector3::UnitZ());
   const auto draw = [&](Canvas& canvas, std::size_t) {
     draw_furniture(canvas, scene);
-    draw_robot(canvas, robot, q, scene.T_world_base, kRobot);
-    draw_taker(canvas, person, transfer, hand, taken);
+    draw_robot(canvas, robot.robot, robot.q, scene.T_world_base, kRobot);
+    draw_taker(canvas, receiver.person, transfer, receiver.hand, receiver.grasp);
     draw_placed(canvas, object, transfer.T_world_object);
   };
   Picture out(3 * size, size, {255, 255, 255});

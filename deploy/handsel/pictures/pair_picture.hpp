@@ -19,10 +19,21 @@ void draw_taker(Canvas& canvas, const Person& person, const grasp_planner::Trans
 Picture double_grasp_picture(const grasp_planner::Graspable& object, const grasp_planner::HandKit& a, const Grasp& first,
                              const grasp_planner::HandKit& b, const Grasp& second, int size);
 
-/// Robot and person at the exchange, and both hands close by.
-Picture transfer_picture(const RobotModel& robot, const Scene& scene, const Vector& q, const Person& person,
-                         const grasp_planner::Graspable& object, const grasp_planner::TransferPose& transfer,
-                         const grasp_planner::HandKit& hand, const Grasp& taken, int size);
+/// The robot as it is drawn.
+struct DrawnRobot {
+  const RobotModel& robot;  ///< Its model.
+  const Vector& q;          ///< All axes [rad].
+};
+/// The person who takes the object, with the hand that is to hold it.
+struct DrawnReceiver {
+  const Person& person;                ///< World frame.
+  const grasp_planner::HandKit& hand;  ///< Shape of the hand.
+  const Grasp& grasp;                  ///< Of that hand on the object.
+};
+/// Robot and receiver at the handover location, and both hands close by; `size` [px] high.
+Picture transfer_picture(const DrawnRobot& robot, const Scene& scene, const DrawnReceiver& receiver,
+                         const grasp_planner::Graspable& object,
+                         const grasp_planner::TransferPose& transfer, int size);
 
 /// One picture a step, from the left to the right: the robot with the object in the hands that hold
 /// it; below, the hands close by.
