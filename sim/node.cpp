@@ -1,8 +1,6 @@
 #include "sim/node.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <random>
 
 #include "common/bus/process_state.hpp"
@@ -19,22 +17,15 @@ constexpr Duration kRepeat = std::chrono::milliseconds(20);  // of a grant, whil
 // Set-points are applied in their order, one a step; one that is older than this and has a successor as old is left out.
 constexpr Duration kMaxSetPointAge = std::chrono::milliseconds(5);
 
-std::uint64_t steps_per(double rate, double step) { return std::max<std::uint64_t>(1, std::llround(1 / (rate * step))); }
-
 }  // namespace
 
 Node::Node(Bus& bus, const NodeContext& context)
     : context_(context),
       settings_(load_settings(context.settings)),
       bus_(bus),
-      state_out_(bus.advertise<RobotState>()),
-      human_out_(bus.advertise<HumanObservation>()),
-      object_out_(bus.advertise<ObjectObservation>()),
-      truth_out_(bus.advertise<GroundTruth>()) {
+      output_(bus, settings_) {
   if (context.scenario.empty()) throw ConfigError("the simulator needs --scenario");
   load_text_proto(context.scenario, scenario_);
-  per_state_ = steps_per(settings_.state_rate, settings_.step);
-  per_truth_ = steps_per(settings_.truth_rate, settings_.step);
   restart();
   bus.subscribe<JointCommand>([this](const JointCommand& m, const Receipt& r) {
     if (m.robot != context_.robot->name())
@@ -62,7 +53,7 @@ void Node::restart() {
   world_ = std::make_unique<SimWorld>(*context_.robot, context_.objects, scenario_, settings_, context_.seed);
   steps_ = 0;
   started_ = false;
-  stamped_.clear();
+  output_.reset();
 }
 
 void Node::on_control(const SimControl& control) {
@@ -103,7 +94,7 @@ void Node::announce(TimePoint now) {
   announced_ = now;
 }
 
-void Node::keep_pace(TimePoint now) {
+void Node::step_when_granted(TimePoint now) {
   keeper_->turn(now);
   keeper_->leave_out_stopped([this](std::uint64_t process) { return runs(process); });
   announce(now);
@@ -123,25 +114,17 @@ void Node::keep_pace(TimePoint now) {
     keeper_->stepped();
     announce(now);
   }
-  measure_factor(now);
-}
-
-void Node::measure_factor(TimePoint now) {
-  if (const double passed = to_seconds(now - measured_from_); passed >= 1.0) {
-    factor_ = (world_->time() - measured_sim_) / passed;
-    measured_from_ = now;
-    measured_sim_ = world_->time();
-  }
+  factor_.update(now, world_->time());
 }
 
 void Node::tick(TimePoint now) {
-  if (keeper_) return keep_pace(now);
+  if (keeper_) return step_when_granted(now);
   if (paused_) return;
   if (!started_) {
     started_ = true;
-    start_ = measured_from_ = now;
+    start_ = now;
     since_start_ = 0;
-    measured_sim_ = world_->time();
+    factor_.restart(now, world_->time());
   }
   const auto due = static_cast<std::uint64_t>(to_seconds(now - start_) / settings_.step + 0.5) + 1;
   if (due > since_start_ + kCatchUp) {  // slip: time that was lost is not made up for
@@ -154,39 +137,12 @@ void Node::tick(TimePoint now) {
     ++steps_;
     publish();
   }
-  measure_factor(now);
+  factor_.update(now, world_->time());
 }
 
 void Node::publish() {
-  if (steps_ % per_state_ == 0 && world_->robot_state(state_)) {
-    state_.stamp = stamp_now();
-    state_out_->publish(state_);
-  }
-  const auto stamp_of = [&](double seen) { return stamp_now() - from_seconds(world_->time() - seen).count(); };
-  human_due_.clear();
-  world_->human_observations(human_due_);
-  for (auto& delivery : human_due_) {
-    Stamped& last = stamped_[delivery.message.source];
-    if (last.stamp == 0 || last.seen != delivery.seen) last = {delivery.seen, stamp_of(delivery.seen)};
-    delivery.message.stamp = last.stamp;
-    human_out_->publish(delivery.message);
-  }
-  object_due_.clear();
-  world_->object_observations(object_due_);
-  for (auto& delivery : object_due_) {
-    delivery.message.stamp = stamp_of(delivery.seen);
-    object_out_->publish(delivery.message);
-  }
-  if (steps_ % per_truth_ == 0) {
-    const std::uint64_t before = truth_.limit_violations;
-    world_->truth(truth_);
-    if (before == 0 && truth_.limit_violations > 0)
-      std::fprintf(stderr, "sim: at %.3f s the first set-point beyond the limits, %s\n", world_->time(),
-                   world_->last_limit_violation().c_str());
-    truth_.stamp = stamp_now();
-    truth_.real_time_factor = factor_;
-    truth_out_->publish(truth_);
-  }
+  const auto stamp = [this] { return stamp_now(); };
+  output_.publish(*world_, steps_, stamp, factor_.value());
 }
 
 }  // namespace handsel::sim

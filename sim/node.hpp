@@ -6,13 +6,14 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
 #include "common/config/schema/scenario.pb.h"
+#include "sim/real_time_factor.hpp"
 #include "sim/time_keeper.hpp"
 #include "sim/world.hpp"
+#include "sim/world_output.hpp"
 
 namespace handsel::sim {
 
@@ -23,11 +24,10 @@ class Node {
  private:
   void tick(TimePoint now);
   /// With simulated time: makes the steps that are due and have what they need.
-  void keep_pace(TimePoint now);
+  void step_when_granted(TimePoint now);
   void announce(TimePoint now);
   /// Not stopped and not ended, as far as the kernel shows the process here.
   bool runs(std::uint64_t process) const;
-  void measure_factor(TimePoint now);
   Stamp stamp_now() const;
   void publish();
   void on_control(const SimControl&);
@@ -37,11 +37,8 @@ class Node {
   SimSettings settings_;
   config::Scenario scenario_;
   Bus& bus_;
+  WorldOutput output_;
   std::unique_ptr<SimWorld> world_;
-  std::unique_ptr<Publisher<RobotState>> state_out_;
-  std::unique_ptr<Publisher<HumanObservation>> human_out_;
-  std::unique_ptr<Publisher<ObjectObservation>> object_out_;
-  std::unique_ptr<Publisher<GroundTruth>> truth_out_;
   std::unique_ptr<Publisher<SimClock>> clock_out_;  // with simulated time only
   std::optional<TimeKeeper> keeper_;                // with simulated time only
   struct SetPoint {
@@ -53,21 +50,10 @@ class Node {
   std::deque<SetPoint> set_points_;  // not taken by a step yet
   SimClock clock_;
   TimePoint announced_{};
-  RobotState state_;
-  GroundTruth truth_;
-  std::vector<Delivery<HumanObservation>> human_due_;
-  std::vector<Delivery<ObjectObservation>> object_due_;
-  std::uint64_t steps_{0}, since_start_{0}, per_state_{1}, per_truth_{1};
+  std::uint64_t steps_{0}, since_start_{0};
   bool paused_{false}, started_{false};
-  TimePoint start_{}, measured_from_{};
-  double measured_sim_{0}, factor_{1};
-  /// A picture's stamp is the system clock of its capture; the same picture, published again, keeps
-  /// it.
-  struct Stamped {
-    double seen{};  ///< [s of simulated time]
-    Stamp stamp{};
-  };
-  std::map<std::string, Stamped> stamped_;  // by source: the newest picture
+  TimePoint start_{};
+  RealTimeFactor factor_;
 };
 
 }  // namespace handsel::sim
