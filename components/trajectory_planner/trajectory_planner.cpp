@@ -112,8 +112,18 @@ void tell_stops(const std::vector<CornerReport>& corners, TrajectoryReply& reply
     if (corner.method == CornerMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
 }
 
-void plan_joints(const RobotModel& robot, const Group& group, CollisionWorld& world, const HumanCost& cost, const SpeedAlong& people,
-                 const TrajectoryRequest& request, const Settings& settings, Result& result) {
+/// One request, and what it is planned with.
+struct PlanningCase {
+  const RobotModel& robot;
+  const Group& group;
+  CollisionWorld& world;
+  const TrajectoryRequest& request;
+  const Settings& settings;
+};
+
+void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAlong& people,
+                 Result& result) {
+  const auto& [robot, group, world, request, settings] = given;
   look_along(people, request, group, result);
   tell_speeds(request, result);
   CornerJudge judge(robot, group, world, cost, request.start, settings.corner_step);
@@ -131,8 +141,9 @@ void plan_joints(const RobotModel& robot, const Group& group, CollisionWorld& wo
   reply.trajectory = std::move(smoothed.trajectory);
 }
 
-void plan_tool(const RobotModel& robot, const Group& group, CollisionWorld& world, const SpeedAlong& people, const Pose& T_world_base,
-               const TrajectoryRequest& request, const Settings& settings, Result& result) {
+void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& T_world_base,
+               Result& result) {
+  const auto& [robot, group, world, request, settings] = given;
   const Pose T_base_world = T_world_base.inverse();
   CartesianRequest wanted;
   wanted.start = request.start;
@@ -168,11 +179,12 @@ Result plan(const RobotModel& robot, CollisionWorld& world, const HumanCost& cos
   const Group& group = *robot.group(request.group);
   const std::uint64_t checks_before = world.checks();
   const SpeedAlong people(robot, cost, around, settings.speed);
+  const PlanningCase given{robot, group, world, request, settings};
   if (request.poses.empty()) {
     result.reply.axes.assign(group.axes.begin(), group.axes.end());
-    plan_joints(robot, group, world, cost, people, request, settings, result);
+    plan_joints(given, cost, people, result);
   } else {
-    plan_tool(robot, group, world, people, around.T_world_base, request, settings, result);
+    plan_tool(given, people, around.T_world_base, result);
   }
   result.checks = world.checks() - checks_before;
   return result;
