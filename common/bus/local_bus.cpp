@@ -1,7 +1,5 @@
 #include "common/bus/local_bus.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -10,9 +8,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/base/hash.hpp"
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/bus/left_out.hpp"
+#include "common/bus/resource_usage.hpp"
 #include "common/bus/send_refusal.hpp"
 #include "common/messages/system.hpp"
 
@@ -25,31 +25,12 @@ namespace {
 constexpr Stamp kVirtualEpoch = 1'700'000'000'000'000'000;  // where the virtual system clock starts [ns]
 constexpr Duration kHealthPeriod = std::chrono::milliseconds(100);
 constexpr std::size_t kKeepAllBound = 64;
-constexpr std::uint64_t kHashBasis = 0xcbf29ce484222325;
 
 bool transient_local(Profile p) { return p == Profile::state || p == Profile::latch; }
 bool best_effort(Profile p) { return p == Profile::sensor || p == Profile::setpoint; }
 std::size_t depth(Profile p) {
   if (p == Profile::request || p == Profile::reply) return kKeepAllBound;
   return p == Profile::command || p == Profile::goal ? 8 : 1;
-}
-
-std::uint64_t mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
-  return x ^ (x >> 31);
-}
-
-std::uint64_t hashed(std::uint64_t hash, const void* bytes, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) hash = (hash ^ static_cast<const unsigned char*>(bytes)[i]) * 0x100000001b3;
-  return hash;
-}
-
-double thread_seconds() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 using Sample = std::shared_ptr<void>;
@@ -116,10 +97,10 @@ struct LocalNetwork::Impl {
   std::uint64_t outputs{kHashBasis};
   std::function<void(const MessageType&, const void*, Stamp)> tapped;
 
-  explicit Impl(const LocalNetworkSettings& s) : settings(s), random(mix(s.seed)) {}
+  explicit Impl(const LocalNetworkSettings& s) : settings(s), random(mix_bits(s.seed)) {}
 
   double uniform() {
-    random = mix(random);
+    random = mix_bits(random);
     return static_cast<double>(random >> 11) * 0x1.0p-53;
   }
   Duration delay() { return from_seconds(settings.delay_min + (settings.delay_max - settings.delay_min) * uniform()); }
@@ -270,12 +251,12 @@ class LocalPublisher final : public AnyPublisher {
 Meter::Meter(LocalNetwork::Impl& network, LocalBus* bus) : net_(network), bus_(bus && bus->metered_ && !network.at_work ? bus : nullptr) {
   if (bus_ == nullptr) return;
   net_.at_work = true;
-  begin_ = thread_seconds();
+  begin_ = thread_cpu_seconds();
 }
 
 Meter::~Meter() {
   if (bus_ == nullptr) return;
-  bus_->cpu_ += thread_seconds() - begin_;
+  bus_->cpu_ += thread_cpu_seconds() - begin_;
   net_.at_work = false;
 }
 
@@ -432,7 +413,7 @@ void LocalBus::resume() {
 void LocalBus::publish_health(TimePoint now) {
   ComponentHealth health;
   health.component = component_;
-  health.incarnation = mix(std::hash<std::string>{}(component_));
+  health.incarnation = mix_bits(std::hash<std::string>{}(component_));
   health.uptime = to_seconds(now.time_since_epoch());
   SecondWriters others;
   for (const auto& s : subscriptions_) {

@@ -1,15 +1,10 @@
 #include "common/bus/dds/dds_bus.hpp"
 
-#include <sched.h>
-#include <sys/mman.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <random>
@@ -22,11 +17,13 @@
 #include "common/bus/dds/dds_defaults.hpp"
 #include "common/bus/dds/look_around.hpp"
 #include "common/bus/dds/qos.hpp"
+#include "common/bus/dds/realtime.hpp"
 #include "common/bus/dds/writer_discovery.hpp"
 #include "common/bus/executor.hpp"
 #include "common/bus/foreign.hpp"
 #include "common/bus/intake.hpp"
 #include "common/bus/left_out.hpp"
+#include "common/bus/resource_usage.hpp"
 #include "common/bus/send_refusal.hpp"
 #include "common/bus/writer_gate.hpp"
 #include "common/config/resources.hpp"
@@ -44,20 +41,6 @@ Stamp system_now() {
   timespec t{};
   clock_gettime(CLOCK_REALTIME, &t);
   return t.tv_sec * 1'000'000'000LL + t.tv_nsec;
-}
-
-double resident_mb() {
-  std::ifstream statm("/proc/self/statm");
-  double total = 0, resident = 0;
-  statm >> total >> resident;
-  return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
-}
-
-double cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6; };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 dds_entity_t need(dds_entity_t entity, const std::string& what) {
@@ -144,7 +127,6 @@ struct DdsBus::Impl {
   void follow_writers(Reader& reader);
   void publish_health(TimePoint wall);
   void follow_pace(const SimClock& clock);
-  void enter_realtime();
 };
 
 namespace {
@@ -355,7 +337,7 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
   m.pid = static_cast<std::uint32_t>(getpid());
   m.uptime = to_seconds(wall - start);
   m.memory_mb = resident_mb();
-  const double cpu = cpu_seconds();
+  const double cpu = process_cpu_seconds();
   if (last_health != TimePoint{} && wall > last_health) m.cpu = std::max(0.0, (cpu - last_cpu) / to_seconds(wall - last_health));
   last_cpu = cpu;
   last_health = wall;
@@ -381,29 +363,12 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
   if (health) health->publish(m);
 }
 
-void DdsBus::Impl::enter_realtime() {
-  if (settings.cpu >= 0) {
-    cpu_set_t cpus;
-    CPU_ZERO(&cpus);
-    CPU_SET(static_cast<std::size_t>(settings.cpu), &cpus);
-    if (sched_setaffinity(0, sizeof cpus, &cpus) != 0)
-      throw ConfigError("--cpu-affinity " + std::to_string(settings.cpu) + ": " + std::strerror(errno));
-  }
-  if (!settings.realtime) {
-    realtime_note = "not asked for";
-    return;
-  }
-  sched_param parameter{};
-  parameter.sched_priority = static_cast<int>(settings.urgency);
-  if (sched_setscheduler(0, SCHED_FIFO, &parameter) != 0)
-    realtime_note = std::string("SCHED_FIFO is not permitted: ") + std::strerror(errno);
-  if (mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) != 0)
-    realtime_note += (realtime_note.empty() ? "" : "; ") + std::string("memory cannot be locked: ") + std::strerror(errno);
-}
-
 DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   use_default_dds_configuration();
-  impl_->enter_realtime();  // first: the transport's own threads inherit the priority
+  // First: the transport's own threads inherit the priority.
+  impl_->realtime_note = enter_realtime({.cpu = settings.cpu,
+                                         .wanted = settings.realtime,
+                                         .priority = static_cast<int>(settings.urgency)});
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_entity_name(qos.get(), settings.component.c_str());
   impl_->participant = need(create_participant(settings.domain, qos.get()), "domain " + std::to_string(settings.domain));
