@@ -4,6 +4,6 @@
 #include "components/bridge/node.hpp"
 
 int main(int argc, char** argv) {
-  setpriority(PRIO_PROCESS, 0, 10);  // whoever moves the robot comes first; every thread started from here inherits it
+  setpriority(PRIO_PROCESS, 0, 2);  // every thread started from here inherits this
   return handsel::run_process<handsel::bridge::Node>(argc, argv, "bridge");
 }
