@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <set>
 
+#include "common/collision/batch_world.hpp"
 #include "common/collision/enclosing.hpp"
 #include "common/collision/scene_bodies.hpp"
-#include "common/collision/wide_capsules.hpp"
-#include "common/collision/wide_world.hpp"
+#include "common/collision/simd_capsules.hpp"
 #include "common/model/manipulator.hpp"
 #include "common/model/robot_capsules.hpp"
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "common/cost/batch_cost.hpp"
 #include "common/cost/cost_layers.hpp"
 #include "common/cost/person_frame.hpp"
-#include "common/cost/wide_cost.hpp"
 #include "common/messages/world.hpp"
 #include "common/model/human/human_body.hpp"
 #include "common/model/robot_capsules.hpp"

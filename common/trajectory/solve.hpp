@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/trajectory/batch/lanes.hpp"
+#include "common/trajectory/batch/kernels.hpp"
 #include "common/trajectory/min_time.hpp"
 
 namespace handsel {

@@ -101,8 +101,8 @@ struct Switched {
   bool ok() const { return reason.empty(); }
 };
 
-/// The same outside of a cycle. `limits` as for the time scaling (time_law.hpp): what must hold at
-/// every instant.
+/// The same outside of a cycle. `limits` as for the time scaling (time_scaling.hpp): what must hold
+/// at every instant.
 Switched switch_to(const MotionState3& now, const Trajectory& next, const KinematicLimits& limits, const SwitchSettings& settings = {});
 
 }  // namespace handsel

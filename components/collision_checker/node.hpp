@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "common/base/pace.hpp"
+#include "common/base/advised_period.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/messages/attention.hpp"

@@ -1,7 +1,7 @@
 // Included once for each register width, with HANDSEL_FILL_ROW naming the function.
 #include <cmath>
 
-#include "common/cost/lane_functions.hpp"
+#include "common/cost/simd_functions.hpp"
 #include "components/costmap/layer_kernel.hpp"
 
 namespace handsel::costmap::detail {

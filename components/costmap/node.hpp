@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/base/pace.hpp"
+#include "common/base/advised_period.hpp"
 #include "common/bus/bus.hpp"
 #include "common/bus/process.hpp"
 #include "common/messages/attention.hpp"

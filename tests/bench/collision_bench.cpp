@@ -16,8 +16,8 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/distance.h>
 
-#include "common/collision/wide_capsules.hpp"
-#include "common/collision/wide_world.hpp"
+#include "common/collision/batch_world.hpp"
+#include "common/collision/simd_capsules.hpp"
 #include "tests/support/panda_problems.hpp"
 
 namespace handsel {

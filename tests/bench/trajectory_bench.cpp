@@ -17,7 +17,7 @@
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
 #include "common/trajectory/switch.hpp"
-#include "common/trajectory/time_law.hpp"
+#include "common/trajectory/time_scaling.hpp"
 #include "tests/support/oracles/ruckig_peer.hpp"
 
 namespace handsel {

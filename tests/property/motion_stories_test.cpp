@@ -11,7 +11,7 @@
 #include "common/trajectory/path/smooth.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
-#include "common/trajectory/time_law.hpp"
+#include "common/trajectory/time_scaling.hpp"
 #include "tests/support/motion_draw.hpp"
 
 namespace handsel {

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "common/trajectory/batch/lanes.hpp"
+#include "common/trajectory/batch/kernels.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 
 #include <fstream>
 
+#include "common/base/advised_period.hpp"
 #include "common/base/errors.hpp"
-#include "common/base/pace.hpp"
 #include "common/config/resources.hpp"
 #include "components/attention/settings.hpp"
 #include "tests/support/processes/temporary_folder.hpp"

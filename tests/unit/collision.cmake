@@ -2,7 +2,7 @@ handsel_test(collision SOURCES ${CMAKE_CURRENT_LIST_DIR}/collision/collision_tes
              ${CMAKE_CURRENT_LIST_DIR}/manipulation_planner/held_object_test.cpp LINK handsel_collision
              LABEL unit)
 handsel_test(collision_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/collision_property_test.cpp LINK handsel_collision LABEL unit)
-handsel_test(wide_collision SOURCES ${CMAKE_CURRENT_LIST_DIR}/collision/wide_collision_test.cpp LINK handsel_collision nlohmann_json::nlohmann_json LABEL unit)
+handsel_test(wide_collision SOURCES ${CMAKE_CURRENT_LIST_DIR}/collision/batch_collision_test.cpp LINK handsel_collision nlohmann_json::nlohmann_json LABEL unit)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_compile_definitions(test_wide_collision PRIVATE HANDSEL_WIDE_LANES)
 endif()

@@ -15,7 +15,7 @@
 #include "common/base/errors.hpp"
 #include "common/bus/dds/dds_configuration.hpp"
 #include "common/bus/dds/dds_defaults.hpp"
-#include "common/bus/dds/look_around.hpp"
+#include "common/bus/dds/discovered_domain.hpp"
 #include "common/bus/dds/qos.hpp"
 #include "common/bus/dds/realtime.hpp"
 #include "common/bus/dds/writer_discovery.hpp"
@@ -366,9 +366,7 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
 DdsBus::DdsBus(const DdsBusSettings& settings) : impl_(std::make_unique<Impl>(settings)) {
   use_default_dds_configuration();
   // First: the transport's own threads inherit the priority.
-  impl_->realtime_note = enter_realtime({.cpu = settings.cpu,
-                                         .wanted = settings.realtime,
-                                         .priority = static_cast<int>(settings.urgency)});
+  impl_->realtime_note = enter_realtime({.cpu = settings.cpu, .wanted = settings.realtime, .priority = static_cast<int>(settings.urgency)});
   Qos qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_entity_name(qos.get(), settings.component.c_str());
   impl_->participant = need(create_participant(settings.domain, qos.get()), "domain " + std::to_string(settings.domain));

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <map>
 
-#include "common/bus/dds/look_around.hpp"
+#include "common/bus/dds/discovered_domain.hpp"
 #include "common/bus/dds/qos.hpp"
 #include "common/messages/robot.hpp"
 #include "common/topics/topics.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/base/errors.hpp"
-#include "common/bus/dds/look_around.hpp"
+#include "common/bus/dds/discovered_domain.hpp"
 #include "common/bus/dds/qos.hpp"
 
 namespace handsel {

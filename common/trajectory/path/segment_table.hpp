@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/trajectory/batch/lanes.hpp"
+#include "common/trajectory/batch/kernels.hpp"
 #include "common/trajectory/trajectory.hpp"
 
 namespace handsel {

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "common/trajectory/limits_check.hpp"
-#include "common/trajectory/path/corner.hpp"
-#include "common/trajectory/path/leg.hpp"
+#include "common/trajectory/path/path_segment.hpp"
+#include "common/trajectory/path/waypoint_blend.hpp"
 
 namespace handsel {
 

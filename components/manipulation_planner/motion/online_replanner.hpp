@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/base/pace.hpp"
+#include "common/base/advised_period.hpp"
 #include "common/config/schema/manipulation_planner.pb.h"
 #include "common/cost/human_cost.hpp"
 #include "components/manipulation_planner/motion/motion_spec.hpp"

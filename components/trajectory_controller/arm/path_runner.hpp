@@ -1,11 +1,11 @@
-// Runs along trajectories by time scaling (common/trajectory/time_law), switches from one to the
-// next, and checks every step before it is taken. No heap in step() and look(), noexcept.
+// Runs along trajectories by time scaling (common/trajectory/time_scaling), switches from one to
+// the next, and checks every step before it is taken. No heap in step() and look(), noexcept.
 #pragma once
 
 #include <algorithm>
 #include <string>
 
-#include "common/trajectory/time_law.hpp"
+#include "common/trajectory/time_scaling.hpp"
 
 namespace handsel::trajectory_controller {
 

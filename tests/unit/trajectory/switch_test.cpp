@@ -10,7 +10,7 @@
 #include "common/trajectory/setpoint_filter.hpp"
 #include "common/trajectory/solve.hpp"
 #include "common/trajectory/stop.hpp"
-#include "common/trajectory/time_law.hpp"
+#include "common/trajectory/time_scaling.hpp"
 #include "tests/support/allocation_counter.hpp"
 #include "tests/support/motion_draw.hpp"
 

@@ -1,0 +1,259 @@
+// The one source of the SIMD kernels, compiled once per register width.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/collision/simd_math.hpp"
+
+namespace handsel::detail {
+namespace {
+
+constexpr float kRootAtRest[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+struct Pass {
+  const WideTables& tables;
+  WideMemory& memory;
+  bool swept{}, any{};
+
+  /// Nothing more is to be learnt from the states left.
+  bool settled(const M& found, const M& left) const noexcept { return !any_of(left) || (any && any_of(found)); }
+
+  float* pose(int body) const noexcept { return memory.pose + body * 12 * kWideStates; }
+
+  void spread(const float* half) const noexcept {
+    for (int body = 0; body <= tables.joint_count; ++body) {
+      V sum = 0.0f;
+      const float* reach = tables.reach + body * tables.joint_count;
+      for (int j = 0; j < tables.joint_count; ++j)
+        if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kWideStates) * tables.joints[j].factor) * reach[j];
+      store(sum, memory.margin + body * kWideStates);
+    }
+  }
+  V pair_margin(int pair, const float* half) const noexcept {
+    V sum = 0.0f;
+    const float* reach = tables.pair_reach + pair * tables.joint_count;
+    for (int j = 0; j < tables.joint_count; ++j)
+      if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kWideStates) * tables.joints[j].factor) * reach[j];
+    return sum;
+  }
+
+  const float* place(int index) const noexcept {
+    float* at = memory.position + index * 3 * kWideStates;
+    if (memory.stamp[index] == memory.now) return at;
+    memory.stamp[index] = memory.now;
+    const WideNode& node = tables.nodes[index];
+    const float* T = pose(node.body);
+    for (int i = 0; i < 3; ++i)
+      store(load(T + (4 * i) * kWidth) * node.x + load(T + (4 * i + 1) * kWidth) * node.y + load(T + (4 * i + 2) * kWidth) * node.z +
+                load(T + (4 * i + 3) * kWidth),
+            at + i * kWidth);
+    return at;
+  }
+
+  [[gnu::always_inline]] static M meets(const WideSolid& s, const V& x, const V& y, const V& z, const V& r) noexcept {
+    const V lx = x * s.axes[0] + y * s.axes[1] + (z * s.axes[2] - s.at[0]);
+    const V ly = x * s.axes[3] + y * s.axes[4] + (z * s.axes[5] - s.at[1]);
+    const V lz = x * s.axes[6] + y * s.axes[7] + (z * s.axes[8] - s.at[2]);
+    const V reach = r + s.radius;
+    const V dz = positive(abs(lz) - s.half[2]);
+    if (s.cylinder > 0.0f) {
+      const V across = positive(sqrt(lx * lx + ly * ly) - s.cylinder);
+      return !(across * across + dz * dz > reach * reach);
+    }
+    const V dx = positive(abs(lx) - s.half[0]), dy = positive(abs(ly) - s.half[1]);
+    return !(dx * dx + dy * dy + dz * dz > reach * reach);
+  }
+
+  M below(int index, const std::int32_t* list, int count, M todo, int depth) const noexcept {
+    const WideNode& node = tables.nodes[index];
+    const float* at = place(index);
+    const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
+    V r = node.radius;
+    if (swept) r += load(memory.margin + node.body * kWideStates);
+    const bool leaf = node.children == 0 || depth == kWideDepth;
+    std::int32_t* kept = memory.lists + depth * memory.longest;
+    int left = 0;
+    M found(false);
+    for (int k = 0; k < count; ++k) {
+      const M hit = todo && meets(tables.solids[list[k]], x, y, z, r);
+      if (!any_of(hit)) continue;
+      if (!leaf) {
+        kept[left++] = list[k];
+        continue;
+      }
+      found = found || hit;
+      todo = todo && !hit;
+      if (settled(found, todo)) return found;
+    }
+    if (leaf || left == 0) return found;
+    for (int c = 0; c < node.children; ++c) {
+      const M hit = below(node.first_child + c, kept, left, todo, depth + 1);
+      found = found || hit;
+      todo = todo && !hit;
+      if (settled(found, todo)) return found;
+    }
+    return found;
+  }
+
+  /// Solids that can be met by the root in any state: its sphere around all states against sixteen
+  /// solids at once.
+  int near(const WideSearch& s, const M& todo, std::int32_t* kept) const noexcept {
+    const WideNode& node = tables.nodes[s.root];
+    const float* at = place(s.root);
+    const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
+    const float low[3] = {hmin(where(todo, x)), hmin(where(todo, y)), hmin(where(todo, z))};
+    const float high[3] = {hmax(where(todo, x)), hmax(where(todo, y)), hmax(where(todo, z))};
+    float center[3], spread2 = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+      center[i] = 0.5f * (low[i] + high[i]);
+      spread2 += 0.25f * (high[i] - low[i]) * (high[i] - low[i]);
+    }
+    float radius = node.radius + 1.00001f * std::sqrt(spread2) + 1e-6f;
+    if (swept) radius += hmax(where(todo, load(memory.margin + node.body * kWideStates)));
+    int left = 0;
+    for (int first = 0; first < s.solids; first += kWideStates) {
+      const WideSolids& row = tables.solid_rows[s.first_row + first / kWideStates];
+      for (int g = 0; g < kWideStates && first + g < s.solids; g += kWidth) {
+        V d2 = 0.0f;
+        for (int i = 0; i < 3; ++i) {
+          const V local = load(row.axes[3 * i] + g) * center[0] + load(row.axes[3 * i + 1] + g) * center[1] +
+                          (load(row.axes[3 * i + 2] + g) * center[2] - load(row.at[i] + g));
+          const V outside = positive(abs(local) - load(row.half[i] + g));
+          d2 += outside * outside;
+        }
+        const V reach = load(row.radius + g) + radius;
+        std::uint32_t hits = bits(!(d2 > reach * reach));
+        for (; hits != 0; hits &= hits - 1) {
+          const int k = first + g + __builtin_ctz(hits);
+          if (k < s.solids) kept[left++] = tables.solid_list[s.first_solid + k];
+        }
+      }
+    }
+    return left;
+  }
+
+  M search(const WideSearch& s, M todo) const noexcept {
+    const std::int32_t* list = tables.solid_list + s.first_solid;
+    if (s.nodes == 0) {
+      if (s.first_row < 0) return below(s.root, list, s.solids, todo, 0);
+      const int left = near(s, todo, memory.lists);
+      return left == 0 ? M(false) : below(s.root, memory.lists, left, todo, 1);
+    }
+    const WideNode& node = tables.nodes[s.root];
+    const float* at = place(s.root);
+    const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
+    V r = node.radius;
+    if (swept) r += load(memory.margin + node.body * kWideStates);
+    std::int32_t* kept = memory.lists;
+    int left = 0;
+    for (int k = 0; k < s.solids; ++k)
+      if (any_of(todo && meets(tables.solids[list[k]], x, y, z, r))) kept[left++] = list[k];
+    M found(false);
+    for (int i = 0; left > 0 && i < s.nodes; ++i) {
+      const M hit = below(tables.node_list[s.first_node + i], kept, left, todo, 1);
+      found = found || hit;
+      todo = todo && !hit;
+      if (settled(found, todo)) break;
+    }
+    return found;
+  }
+
+  M apart(int a, int b, const V& margin, const M& todo) const noexcept {
+    const WideNode &na = tables.nodes[a], &nb = tables.nodes[b];
+    const float *pa = place(a), *pb = place(b);
+    const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth), z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
+    const V reach = margin + (na.radius + nb.radius);
+    M open = todo && !(x * x + y * y + z * z > reach * reach);
+    if ((na.children == 0 && nb.children == 0) || !any_of(open)) return open;
+    const bool first = nb.children == 0 || (na.children != 0 && na.radius > nb.radius);
+    const WideNode& split = first ? na : nb;
+    M found(false);
+    for (int c = 0; c < split.children; ++c) {
+      const M hit = first ? apart(split.first_child + c, b, margin, open) : apart(a, split.first_child + c, margin, open);
+      found = found || hit;
+      open = open && !hit;
+      if (settled(found, open)) break;
+    }
+    return found;
+  }
+
+  M run(const float* q, const float* half, M todo) const noexcept {
+    const M asked = todo;
+    forward(tables.joints, tables.joint_count, kRootAtRest, q, memory.pose);
+    if (swept) spread(half);
+    for (int i = 0; i < tables.search_count; ++i) {
+      todo = todo && !search(tables.searches[i], todo);
+      if (settled(asked && !todo, todo)) return asked && !todo;
+    }
+    for (int i = 0; i < tables.pair_count; ++i) {
+      const WidePair& pair = tables.pairs[i];
+      const V margin = swept ? pair_margin(i, half) : V(0.0f);
+      const WideNode &na = tables.nodes[pair.a], &nb = tables.nodes[pair.b];
+      const float *pa = place(pair.a), *pb = place(pair.b);
+      const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth), z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
+      const V reach = margin + (na.radius + nb.radius);
+      const M near = todo && !(x * x + y * y + z * z > reach * reach);
+      if (!any_of(near)) continue;
+      M open = near;
+      for (int k = 0; k < pair.pairs && any_of(open); ++k) {
+        const WideNodePair& nodes = tables.node_pairs[pair.first + k];
+        open = open && !apart(nodes.a, nodes.b, margin, open);
+      }
+      todo = todo && !(near && !open);
+      if (settled(asked && !todo, todo)) return asked && !todo;
+    }
+    return asked && !todo;
+  }
+};
+
+std::uint32_t check(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
+                    bool any) noexcept {
+  std::uint32_t out = 0;
+  const Pass pass{tables, memory, half != nullptr, any};
+  for (int g = 0; g < kWideStates; g += kWidth) {
+    const std::uint32_t here = lanes >> g;
+    if (here == 0) break;
+    const M todo = M::__from_bitset(std::bitset<kWidth>(here & ((std::uint64_t{1} << kWidth) - 1)));
+    if (!any_of(todo)) continue;
+    ++memory.now;
+    out |= bits(pass.run(q + g, half == nullptr ? nullptr : half + g, todo)) << g;
+    if (any && out != 0) break;
+  }
+  return out;
+}
+
+float distances(const WideCapsule* robot, int count, const WideCapsules& people, float slack, float* distance) noexcept {
+  float least = 1e30f;
+  for (int i = 0; i < count; ++i) {
+    const WideCapsule& c = robot[i];
+    for (int g = 0; g < 16; g += kWidth) {
+      const V x = c.mx - load(people.mx + g), y = c.my - load(people.my + g), z = c.mz - load(people.mz + g);
+      const V apart = sqrt(x * x + y * y + z * z), radii = c.radius + load(people.radius + g);
+      least = std::min(least, hmin(apart - radii));
+      store(apart - (c.reach + load(people.reach + g)), distance + 16 * i + g);
+    }
+  }
+  for (int i = 0; i < count; ++i) {
+    const WideCapsule& c = robot[i];
+    for (int g = 0; g < 16; g += kWidth) {
+      if (!any_of(load(distance + 16 * i + g) <= least + slack)) continue;
+      const V dx = load(people.dx + g), dy = load(people.dy + g), dz = load(people.dz + g), bb = load(people.dd + g),
+              over_bb = load(people.over_dd + g);
+      const V rx = c.ax - load(people.ax + g), ry = c.ay - load(people.ay + g), rz = c.az - load(people.az + g);
+      const V ab = c.dx * dx + c.dy * dy + c.dz * dz, ar = c.dx * rx + c.dy * ry + c.dz * rz, br = dx * rx + dy * ry + dz * rz;
+      const V det = c.dd * bb - ab * ab;
+      V s = unit((ab * br - ar * bb) / max(det, V(1e-12f)));
+      const V t = unit((ab * s + br) * over_bb);
+      s = unit((ab * t - ar) * c.over_dd);
+      const V x = rx + s * c.dx - t * dx, y = ry + s * c.dy - t * dy, z = rz + s * c.dz - t * dz;
+      const V d = sqrt(x * x + y * y + z * z) - (c.radius + load(people.radius + g));
+      store(d, distance + 16 * i + g);
+      least = std::min(least, hmin(d));
+    }
+  }
+  return least;
+}
+
+}  // namespace
+}  // namespace handsel::detail

@@ -1,5 +1,0 @@
-#include "common/collision/wide_kernel_body.hpp"
-
-namespace handsel::detail {
-const WideKernels kWideKernelsAvx2{"avx2", kWidth, check, distances};
-}  // namespace handsel::detail

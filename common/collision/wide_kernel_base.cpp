@@ -1,5 +1,0 @@
-#include "common/collision/wide_kernel_body.hpp"
-
-namespace handsel::detail {
-const WideKernels kWideKernelsBase{"base", kWidth, check, distances};
-}  // namespace handsel::detail

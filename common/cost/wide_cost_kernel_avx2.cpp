@@ -1,5 +1,0 @@
-#include "common/cost/wide_cost_kernel_body.hpp"
-
-namespace handsel::detail {
-const CostKernel kCostKernelAvx2{"avx2", run};
-}  // namespace handsel::detail

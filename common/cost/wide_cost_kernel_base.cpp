@@ -1,5 +1,0 @@
-#include "common/cost/wide_cost_kernel_body.hpp"
-
-namespace handsel::detail {
-const CostKernel kCostKernelBase{"base", run};
-}  // namespace handsel::detail

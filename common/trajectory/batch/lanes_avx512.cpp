@@ -1,5 +1,0 @@
-#include "common/trajectory/batch/lanes_body.hpp"
-
-namespace handsel::detail {
-constinit const LaneKernels kLaneKernelsAvx512 = kernels("avx512");
-}  // namespace handsel::detail

@@ -1,5 +1,0 @@
-#include "common/trajectory/batch/lanes_body.hpp"
-
-namespace handsel::detail {
-constinit const LaneKernels kLaneKernelsBase = kernels("base");
-}  // namespace handsel::detail

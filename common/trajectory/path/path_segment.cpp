@@ -1,0 +1,137 @@
+#include "common/trajectory/path/path_segment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace handsel::detail {
+namespace {
+
+constexpr double kKept = 1 - 1e-9;  // of a distance, so that rounding leaves the change of velocity possible
+
+/// Distance in which one velocity becomes another, the acceleration 0 at both ends.
+double change_distance(double from, double to, const AxisLimits& limits) noexcept {
+  const double change = std::abs(to - from);
+  const double lasts = change * limits.jerk >= limits.acceleration * limits.acceleration
+                           ? change / limits.acceleration + limits.acceleration / limits.jerk
+                           : 2 * std::sqrt(change / limits.jerk);
+  return 0.5 * (from + to) * lasts;
+}
+
+/// The largest velocity up to `most` that `from` can become within a distance.
+double reached_within(double from, double most, double distance, const AxisLimits& limits) noexcept {
+  if (most <= from || change_distance(from, most, limits) <= distance) return most;
+  double low = from, high = most;
+  for (int k = 0; k < 50; ++k) {
+    const double middle = 0.5 * (low + high);
+    (change_distance(from, middle, limits) <= distance ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace
+
+Leg::Leg(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds)
+    : from(a), step(b - a) {
+  AxisLimits l{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
+  for (Eigen::Index i = 0; i < step.size(); ++i) {
+    const double d = std::abs(step[i]);
+    if (d == 0) continue;
+    l.velocity = std::min(l.velocity, limits.velocity[i] / d);
+    l.acceleration = std::min(l.acceleration, limits.acceleration[i] / d);
+    l.jerk = std::min(l.jerk, limits.jerk[i] / d);
+  }
+  double least = 1;
+  for (const SpeedZone& zone : speeds) least = std::min(least, zone.share);
+  AxisLimits lowest = l;
+  lowest.velocity *= least;
+  if (!zoned(speeds, l) || duration > rest_to_rest_time(1, lowest)) {
+    knots.clear();
+    zones.clear();
+    duration = 0;
+    if (least < 1) zones.push_back({0, least});
+    AxisProfile profile;
+    solve_axis({0, 0, 0}, {1, 0, 0}, lowest, profile);
+    knots.reserve(static_cast<std::size_t>(profile.count));
+    add(profile);
+  }
+  slowing = starting = duration / 2;
+  bool first = true;
+  for (const Knot& knot : knots) {
+    if (knot.segment.jerk != 0 || !(std::abs(knot.state.acceleration) < 1e-9 * l.acceleration)) continue;
+    if (first) starting = knot.time;
+    first = false;
+    slowing = duration - knot.time - knot.segment.duration;
+  }
+}
+
+/// In each zone the fastest motion between the velocities at its ends; there the acceleration is 0, and the velocity is as high as both
+/// sides allow and can be left again.
+bool Leg::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
+  std::vector<SpeedZone> left;
+  double begin = 0;
+  for (const SpeedZone& zone : speeds) {
+    if (!(zone.end > begin)) continue;
+    if (!left.empty() && left.back().share == zone.share)
+      left.back().end = zone.end;
+    else
+      left.push_back(zone);
+    begin = zone.end;
+  }
+  if (left.size() < 2) return false;
+  left.back().end = 1;
+  const std::size_t n = left.size();
+  std::vector<double> length(n), velocity(n + 1, 0.0);
+  for (std::size_t k = 0; k < n; ++k) {
+    length[k] = left[k].end - (k > 0 ? left[k - 1].end : 0.0);
+    if (k > 0) velocity[k] = limits.velocity * std::min(left[k - 1].share, left[k].share);
+  }
+  for (std::size_t k = 1; k < n; ++k) velocity[k] = reached_within(velocity[k - 1], velocity[k], kKept * length[k - 1], limits);
+  for (std::size_t k = n - 1; k > 0; --k) velocity[k] = reached_within(velocity[k + 1], velocity[k], kKept * length[k], limits);
+  AxisProfile profile;
+  for (std::size_t k = 0; k < n; ++k) {
+    AxisLimits here = limits;
+    here.velocity *= left[k].share;
+    if (solve_axis({0, velocity[k], 0}, {length[k], velocity[k + 1], 0}, here, profile) != AxisOutcome::ok) return false;
+    zones.push_back({duration, left[k].share});
+    add(profile);
+  }
+  return true;
+}
+
+void Leg::add(const AxisProfile& profile) {
+  AxisState s;
+  if (!knots.empty()) {
+    const Knot& last = knots.back();
+    s = advanced(last.state, last.segment.duration, last.segment.jerk);
+  }
+  for (int k = 0; k < profile.count; ++k) {
+    knots.push_back({s, duration, profile.segments[k]});
+    s = advanced(s, profile.segments[k].duration, profile.segments[k].jerk);
+    duration += profile.segments[k].duration;
+  }
+}
+
+AxisState Leg::path_state(double t) const noexcept {
+  std::size_t k = 0;
+  while (k + 1 < knots.size() && t >= knots[k + 1].time) ++k;
+  return advanced(knots[k].state, std::clamp(t - knots[k].time, 0.0, knots[k].segment.duration), knots[k].segment.jerk);
+}
+
+void Leg::part(double begin, double end, AxisProfile& out) const noexcept {
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    const double ends = k + 1 < knots.size() ? knots[k + 1].time : duration;
+    out.push(std::min(end, ends) - std::max(begin, knots[k].time), knots[k].segment.jerk);
+  }
+}
+
+double Leg::share(double begin, double end) const noexcept {
+  double least = 1;
+  for (std::size_t k = 0; k < zones.size(); ++k) {
+    const double ends = k + 1 < zones.size() ? zones[k + 1].begin : duration;
+    if (zones[k].begin <= end && begin <= ends) least = std::min(least, zones[k].share);
+  }
+  return least;
+}
+
+}  // namespace handsel::detail

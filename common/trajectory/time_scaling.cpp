@@ -1,0 +1,338 @@
+#include "common/trajectory/time_scaling.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/trajectory/edit.hpp"
+#include "common/trajectory/limits_check.hpp"
+
+namespace handsel {
+
+namespace {
+// Of the guard: what is planned with leaves something for what happens between two steps, and for rounding of what was planned.
+constexpr double kMargin = 0.99;
+constexpr double kAllowed = 1 + 5e-7;
+constexpr double kWhole = 1 - 1e-4;
+constexpr double kMaxPush = 0.8;   // alpha'' times the step [1/s]: what alpha' changes by in one
+constexpr double kMaxRate = 28.0;  // [1/s]
+constexpr int kHorizon = 600;      // steps of a way back to constant alpha
+constexpr double kLanded = 1e-9;
+
+/// What happens to tau, alpha and its rate in a time of constant alpha''.
+template <typename State>
+State moved(const State& s, double u, double t) noexcept {
+  return {s.tau + t * (s.alpha + t * (s.beta / 2 + t * u / 6)), s.alpha + t * (s.beta + t * u / 2), s.beta + t * u};
+}
+
+bool still(const MotionState3& s) noexcept {
+  return s.velocity.cwiseAbs().maxCoeff() < 1e-6 && s.acceleration.cwiseAbs().maxCoeff() < 1e-5;
+}
+}  // namespace
+
+std::string why_not_runnable(const Trajectory& trajectory, const KinematicLimits& guard) {
+  if (trajectory.size() == 0) return "the trajectory has no axes";
+  if (std::string why = why_not_within(trajectory, guard, 1e-6); !why.empty()) return why;
+  if (!still(final_state(trajectory))) return "the trajectory does not end at rest";
+  return {};
+}
+
+std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& guard, double step, double alpha) {
+  if (std::string why = why_not_runnable(trajectory, guard); !why.empty()) return why;
+  if (!(step > 0) || !(std::abs(alpha) <= 1)) return "the step must be positive and alpha in [-1, 1]";
+  const MotionState3 start = trajectory.at(0);
+  const bool starts_still = still(start);
+  if (!starts_still && alpha != 1) return "a trajectory that starts moving must start with alpha 1";
+  table_ = SegmentTable(trajectory);
+  const int n = table_.axes();
+  table_.reserve(n, kRoom);
+  spare_.clear(n);
+  spare_.reserve(n, kRoom);
+  connection_ = TrajectorySwitch(n);
+  guard_ = guard;
+  from_ = row_ = state_ = start;
+  jerk_ = Eigen::VectorXd::Zero(n);
+  const auto rows = static_cast<std::size_t>(table_.stride() / detail::kLanes);
+  limits_.assign(2 * rows, detail::Lane8{{1, 1, 1, 1, 1, 1, 1, 1}});
+  std::copy_n(guard.acceleration.data(), n, limits_.data()->value);
+  std::copy_n(guard.jerk.data(), n, limits_.data()->value + table_.stride());
+  for (Rates* r : {&begin_, &end_, &between_}) *r = {0, std::vector<detail::Lane8>(3 * rows)};
+  for (Way* w : {&way_, &tried_, &best_}) w->pushes.resize(kHorizon);
+  way_.stay(alpha);
+  step_ = step;
+  lowest_ = starts_still ? -1 : 0;
+  now_ = {0, alpha, 0};
+  target_ = alpha;
+  push_ = phase_ = offset_ = joined_at_ = left_at_ = 0;
+  cursor_ = 0;
+  publish();
+  return {};
+}
+
+SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
+                                 const SwitchSettings& settings) noexcept {
+  if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings); found != SwitchOutcome::ok) return found;
+  const int coming = connection_.segments() + next.segments() + 1;
+  const auto fits = [&](double begin) {
+    return (begin < leave ? table_.find(leave, 0) - table_.find(begin, 0) + 1 : 0) + coming <= spare_.room();
+  };
+  const bool ahead = leave > at.tau;
+  const double kept = fits(keep_from) ? keep_from : ahead ? std::max(0.0, at.tau) : leave;
+  if (!fits(kept)) return SwitchOutcome::too_long;
+  before_ = {now_, lowest_, target_, offset_, joined_at_, left_at_};
+  spare_.clear(table_.axes());
+  if (kept < leave) add_part(table_, kept, leave, spare_, row_);
+  const bool has_past = spare_.segments() > 0;
+  left_at_ = has_past ? spare_.duration() : 0.0;
+  connection_.add_to(spare_, next);
+  if (spare_.segments() == 0) spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), jerk_.setZero().data());
+  std::swap(table_, spare_);
+  now_ = {ahead ? at.tau - kept : left_at_, at.alpha, at.beta};
+  if (!has_past)
+    lowest_ = still(from) ? -1 : 0;
+  else if (kept > keep_from)
+    lowest_ = 0;
+  joined_at_ = connection_.joins_at();
+  offset_ = left_at_ + connection_.duration() - joined_at_;
+  target_ = std::max(target_, lowest_);
+  if (!recover(now_, tried_)) {
+    back_to_before();
+    return SwitchOutcome::not_now;
+  }
+  std::swap(way_, tried_);
+  push_ = phase_ = 0;
+  cursor_ = 0;
+  publish();
+  return SwitchOutcome::ok;
+}
+
+void TimeLaw::back_to_before() noexcept {
+  std::swap(table_, spare_);
+  now_ = before_.now;
+  lowest_ = before_.lowest;
+  target_ = before_.target;
+  offset_ = before_.offset;
+  joined_at_ = before_.joined_at;
+  left_at_ = before_.left_at;
+  cursor_ = 0;
+  publish();
+}
+
+void TimeLaw::undo_switch() noexcept {
+  std::swap(way_, tried_);
+  back_to_before();
+}
+
+SwitchOutcome TimeLaw::switch_to(const SegmentTable& next, const SwitchSettings& settings) noexcept {
+  if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
+  table_.evaluate(now_.tau, cursor_, from_);
+  const bool ended = now_.tau <= 0 ? lowest_ < 0 && still(from_) : now_.tau >= duration();
+  if (ended || standing()) {
+    from_.velocity.setZero();
+    from_.acceleration.setZero();
+    return take_over(from_, {0, std::max(0.0, target_), 0}, 0, 0, next, settings);
+  }
+  if (now_.alpha < 0 || (now_.alpha == 0 && now_.beta < 0)) {
+    from_.velocity = -from_.velocity;
+    return take_over(from_, {0, -now_.alpha, -now_.beta}, 0, 0, next, settings);
+  }
+  return take_over(from_, now_, lowest_ < 0 ? 0.0 : now_.tau, now_.tau, next, settings);
+}
+
+SwitchOutcome TimeLaw::switch_at(double leave, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+  if (!(leave > now_.tau) || !(now_.tau < duration())) return switch_to(next, settings);
+  if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
+  leave = std::min(leave, duration());
+  table_.evaluate(leave, cursor_, from_);
+  if (leave == duration()) {
+    from_.velocity.setZero();
+    from_.acceleration.setZero();
+  }
+  return take_over(from_, now_, lowest_ < 0 ? 0.0 : std::max(0.0, now_.tau), leave, next, settings);
+}
+
+SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+  if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
+  const double target = target_;
+  target_ = 1;
+  const SwitchOutcome outcome = take_over(state, {0, 1, 0}, 0, 0, next, settings);
+  if (outcome != SwitchOutcome::ok) target_ = target;
+  return outcome;
+}
+
+bool TimeLaw::begin_with(double alpha) noexcept {
+  table_.evaluate(now_.tau, cursor_, row_);
+  if (!still(row_)) return false;
+  target_ = now_.alpha = std::isfinite(alpha) ? std::clamp(alpha, 0.0, 1.0) : 0.0;
+  now_.beta = push_ = phase_ = 0;
+  way_.stay(now_.alpha);
+  publish();
+  return true;
+}
+
+void TimeLaw::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
+
+void TimeLaw::rates_at(double tau, Rates& r) const noexcept {
+  if (tau < 0 || tau >= table_.duration()) {
+    std::fill(r.values.begin(), r.values.end(), detail::Lane8{});
+    r.segment = tau < 0 ? 0 : table_.segments() - 1;
+    return;
+  }
+  r.segment = table_.find(tau, r.segment);
+  table_.rates(tau, r.segment, r.data());
+}
+
+detail::LawStep TimeLaw::step_from(const Now& s) const noexcept {
+  return {s.alpha, s.beta, step_, kMargin, kWhole, limits_.data()->value, table_.stride()};
+}
+
+bool TimeLaw::pushes(const Now& s, const Rates& begin, const Rates& end, double* range) noexcept {
+  const detail::LaneKernels& kernels = detail::lane_kernels();
+  const detail::LawStep at = step_from(s);
+  const double h = step_;
+  range[0] = std::max(-kMaxPush / h, (-kMaxRate - s.beta) / h);
+  range[1] = std::min(kMaxPush / h, (kMaxRate - s.beta) / h);
+  bool possible = kernels.push_range(at, begin.data(), end.data(), range);
+  const int from = std::min(begin.segment, end.segment), to = std::max(begin.segment, end.segment);
+  // Where a step ends is known up to what alpha'' adds; a knot that near is passed, or not.
+  const double span = h * (s.alpha + h * s.beta / 2), unsure = kMaxPush * h * h / 6, stop = s.tau + span;
+  const bool on = span >= 0 && to + 1 < table_.segments() && table_.knot(to + 1) - stop < unsure;
+  const bool back = span < 0 && from > 0 && stop - table_.knot(from) < unsure;
+  for (int k = from - back; k < to + on; ++k) {
+    const double knot = table_.knot(k + 1), after = std::clamp(span != 0 ? (knot - s.tau) / span : 0.0, 0.0, 1.0) * h;
+    for (const int side : {k, k + 1}) {
+      table_.rates(knot, side, between_.data());
+      possible = kernels.push_range_at(at, after, between_.data(), range) && possible;
+    }
+  }
+  return possible && range[0] <= range[1];
+}
+
+bool TimeLaw::holds(const Now& s, const Now& next, double push) const noexcept {
+  return detail::lane_kernels().step_holds(step_from(s), step_from(next), push, kAllowed, begin_.data(), end_.data());
+}
+
+/// False if the way back to a constant alpha leaves the limits anywhere; where alpha leaves its range, that is what it ends with.
+bool TimeLaw::recover(Now s, Way& out) noexcept {
+  const auto allowed = [this](double alpha) { return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded; };
+  out.next = out.count = 0;
+  out.end = std::numeric_limits<double>::quiet_NaN();
+  rates_at(s.tau, begin_);
+  while (s.beta != 0) {
+    if (!allowed(s.alpha)) {
+      out.end = s.alpha;
+      return false;
+    }
+    if (out.count == kHorizon) return false;
+    rates_at(s.tau + step_ * (s.alpha + step_ * s.beta / 2), end_);
+    double range[2];
+    if (!pushes(s, begin_, end_, range)) return false;
+    const double u = std::clamp(-s.beta / step_, range[0], range[1]);
+    const Now next = next_of(s, u);
+    rates_at(next.tau, end_);
+    if (!holds(s, next, u)) return false;
+    out.pushes[static_cast<std::size_t>(out.count++)] = u;
+    s = next;
+    std::swap(begin_, end_);
+  }
+  out.end = s.alpha;
+  return allowed(s.alpha);
+}
+
+TimeLaw::Now TimeLaw::next_of(const Now& s, double u) const noexcept {
+  if (s.beta == 0 && u == 0) return {s.tau + step_ * s.alpha, s.alpha, 0};
+  Now next = moved(s, u, step_);
+  if (u == -s.beta / step_) next.beta = 0;
+  return next;
+}
+
+double TimeLaw::choose() noexcept {
+  if (now_.beta == 0 && std::abs(now_.alpha - target_) <= kLanded) {
+    now_.alpha = target_;
+    way_.stay(target_);
+    return 0;
+  }
+  const double want = target_ - way_.end;
+  if (std::abs(want) <= kLanded) return way_.take();
+  rates_at(now_.tau, begin_);
+  rates_at(now_.tau + step_ * (now_.alpha + step_ * now_.beta / 2), end_);
+  double range[2];
+  if (!pushes(now_, begin_, end_, range)) return way_.take();
+  const double safe = way_.next < way_.count ? way_.pushes[static_cast<std::size_t>(way_.next)] : 0.0, full = range[want > 0] - safe;
+  const auto miss = [&](double share, double* out) {
+    const double u = safe + share * full;
+    const Now next = next_of(now_, u);
+    rates_at(now_.tau, begin_);
+    rates_at(next.tau, end_);
+    if (!holds(now_, next, u)) return false;
+    const bool kept = recover(next, tried_);
+    *out = (target_ - tried_.end) * (want > 0 ? 1 : -1);
+    return kept || *out < 0;  // beyond its range alpha is also beyond the target: too far
+  };
+  const auto go = [&](double share, Way& with) {
+    std::swap(way_, with);
+    return safe + share * full;
+  };
+  double share = 1, left = 0;
+  while (!miss(share, &left)) {
+    share /= 2;
+    if (share < 0.006) return way_.take();
+  }
+  if (left >= -kLanded) return go(share, tried_);
+  double under = 0, over = share, left_under = std::abs(want), left_over = left;
+  for (int k = 0; k < 20; ++k) {
+    double middle = under + (over - under) * left_under / (left_under - left_over);
+    if (k % 4 == 3) middle = 0.5 * (under + over);
+    if (!miss(middle, &left)) break;
+    if (std::abs(left) <= kLanded) return go(middle, tried_);
+    if (left > 0) {
+      under = middle, left_under = left;
+      std::swap(best_, tried_);
+    } else {
+      over = middle, left_over = left;
+    }
+  }
+  return under > 0 ? go(under, best_) : way_.take();
+}
+
+void TimeLaw::advance(double dt) noexcept {
+  while (dt > 0) {
+    if (phase_ == 0) {
+      push_ = choose();
+      tick_ = now_;
+    }
+    if (phase_ + dt >= step_ * (1 - 1e-9)) {
+      dt = std::max(0.0, dt - (step_ - phase_));
+      if (dt < step_ * 1e-9) dt = 0;
+      now_ = next_of(tick_, push_);
+      phase_ = 0;
+    } else {
+      phase_ += dt;
+      dt = 0;
+      now_ = moved(tick_, push_, phase_);
+    }
+  }
+  publish();
+}
+
+void TimeLaw::publish() noexcept {
+  table_.evaluate(now_.tau, cursor_, state_);
+  if (now_.tau < 0 || now_.tau >= table_.duration()) {
+    state_.velocity.setZero();
+    state_.acceleration.setZero();
+    jerk_.setZero();
+    return;
+  }
+  const double a = now_.alpha, b = now_.beta;
+  const Eigen::Map<const Eigen::VectorXd> jerk(table_.jerks(cursor_), table_.axes());
+  if (a == 1 && b == 0 && push_ == 0) {
+    jerk_ = jerk;
+    return;
+  }
+  jerk_ = (a * a * a) * jerk + (3 * a * b) * state_.acceleration + push_ * state_.velocity;
+  state_.acceleration = (a * a) * state_.acceleration + b * state_.velocity;
+  state_.velocity *= a;
+}
+
+}  // namespace handsel
