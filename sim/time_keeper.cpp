@@ -25,8 +25,8 @@ void TimeKeeper::answered(const std::string& component, std::uint64_t process, s
 }
 
 void TimeKeeper::leave_out_stopped(const std::function<bool(std::uint64_t process)>& runs) {
-  if (blocked_ < std::max(kStopped, looked_ + kLook)) return;
-  looked_ = blocked_;
+  if (blocked_ < std::max(kStopped, checked_ + kLook)) return;
+  checked_ = blocked_;
   stop_waiting([&](const Answer& answer) { return !runs(answer.process); });
 }
 
@@ -46,13 +46,13 @@ bool TimeKeeper::everybody_answered() const {
   return std::all_of(answers_.begin(), answers_.end(), [&](const auto& answer) { return answer.second.grant >= grant_; });
 }
 
-void TimeKeeper::stop_waiting(const std::function<bool(const Answer&)>& whom) {
-  if (std::erase_if(answers_, [&](const auto& answer) { return whom(answer.second); }) > 0) setpoints_flow_ = false;
+void TimeKeeper::stop_waiting(const std::function<bool(const Answer&)>& selected) {
+  if (std::erase_if(answers_, [&](const auto& answer) { return selected(answer.second); }) > 0) setpoints_flow_ = false;
 }
 
 bool TimeKeeper::may_step(bool has_setpoint) {
   if (wall_ - waited_ < time()) {
-    blocked_ = looked_ = Duration::zero();
+    blocked_ = checked_ = Duration::zero();
     return false;
   }
   if (blocked_ > max_wait_) {
@@ -63,7 +63,7 @@ bool TimeKeeper::may_step(bool has_setpoint) {
   const bool at_boundary = time() >= start_ + clock_period_ * static_cast<std::int64_t>(grant_);
   if ((takes_setpoint() && setpoints_flow_ && !has_setpoint) || (at_boundary && !everybody_answered())) return false;
   if (at_boundary) ++grant_;
-  blocked_ = looked_ = Duration::zero();
+  blocked_ = checked_ = Duration::zero();
   return true;
 }
 

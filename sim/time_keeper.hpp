@@ -51,14 +51,14 @@ class TimeKeeper {
   };
   bool everybody_answered() const;
   /// For those: they are waited for again once they answer.
-  void stop_waiting(const std::function<bool(const Answer&)>& whom);
+  void stop_waiting(const std::function<bool(const Answer&)>& selected);
 
   Duration period_, clock_period_, max_lag_, max_wait_;
   std::uint64_t per_setpoint_;
   bool started_{false}, setpoints_flow_{false};
   TimePoint start_{}, wall_{};
   // blocked_: by the same step, while the simulator itself could continue.
-  Duration waited_{}, blocked_{}, looked_{};
+  Duration waited_{}, blocked_{}, checked_{};
   std::uint64_t steps_{0}, grant_{0};
   std::map<std::string, Answer> answers_;
 };

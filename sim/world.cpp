@@ -65,9 +65,8 @@ struct SimWorld::Impl {
     dynamics.getSolverInfo().m_numIterations = settings.solver_iterations;
     dynamics.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;  // with one, a contact slides freely across it
     build_fixed();
-    robot = std::make_unique<RobotBody>(
-        model, setup.T_world_base, setup.start, settings.servo, settings.pad,
-        BodyWorld{dynamics, shapes, kRobot, kObject | kFixed | kPerson});
+    robot = std::make_unique<RobotBody>(model, setup.T_world_base, setup.start, settings.servo, settings.pad,
+                                        BodyWorld{dynamics, shapes, kRobot, kObject | kFixed | kPerson});
     for (int i = 0; i < robot->bodies(); ++i) {
       btMultiBodyLinkCollider* collider = robot->collider(i);
       if (collider == nullptr) continue;
@@ -152,16 +151,16 @@ struct SimWorld::Impl {
   void hold_with(Hand& hand) {
     if (hand.gripped < 0 || !helped(hand.gripped)) return;
     ObjectBody& object = objects[hand.gripped];
-    const Wrench w = hand.grip.update(tool_state(hand), object.state(), object.model().mass, object.least_inertia(), settings.step);
+    const Wrench w = hand.grip.update(tool_state(hand), object.state(), object.model().mass, object.min_inertia(), settings.step);
     if (!hand.grip.holding()) {
-      let_go(hand);
+      release(hand);
       return;
     }
     object.push(w);
     robot->push(hand.grasp.palm(), object.state().T_world_body.translation(), {-w.force, -w.torque});
   }
 
-  static void let_go(Hand& hand) {
+  static void release(Hand& hand) {
     hand.grip.release();
     hand.grasp.reset();
     hand.gripped = -1;
@@ -195,7 +194,7 @@ struct SimWorld::Impl {
       hand.gripped = candidate;
       if (helped(candidate)) hand.grip.hold(tool_state(hand).T_world_body.inverse() * objects[candidate].state().T_world_body);
     } else if (hand.gripped >= 0 && !held) {
-      let_go(hand);
+      release(hand);
     }
   }
 
@@ -570,7 +569,7 @@ void SimWorld::object_observations(std::vector<Delivery<ObjectObservation>>& out
   for (ObjectSensor& sensor : impl_->object_sensors) sensor.collect(impl_->now(), out);
 }
 
-void SimWorld::truth(GroundTruth& out) const {
+void SimWorld::ground_truth(GroundTruth& out) const {
   const Impl& w = *impl_;
   out.sim_time = w.now();
   if (w.watched >= 0) {
@@ -586,13 +585,13 @@ void SimWorld::truth(GroundTruth& out) const {
   out.ssm_violations = w.ssm_violations;
   out.peak_closing_speed = w.closing.peak();
   out.contact_force = w.hands.front().measured.largest_contact();
-  out.limit_share_velocity = w.limits.share_velocity();
-  out.limit_share_acceleration = w.limits.share_acceleration();
-  out.limit_share_jerk = w.limits.share_jerk();
+  out.limit_share_velocity = w.limits.ratio_velocity();
+  out.limit_share_acceleration = w.limits.ratio_acceleration();
+  out.limit_share_jerk = w.limits.ratio_jerk();
   out.limit_violations = w.limits.violations();
   out.self_or_scene_collisions = w.collisions;
   out.commanders = w.limits.writers();
-  out.setpoint_gap_max = w.limits.longest_gap();
+  out.setpoint_gap_max = w.limits.max_gap();
   out.set_points = w.limits.count();
   out.hash = w.hash.value;
   out.robot_moving = false;
@@ -624,7 +623,7 @@ double SimWorld::robot_pressure() const {
     for (const Impl::Hand& hand : impl_->hands) sum += hand.grasp.pressure(impl_->touches, impl_->watched);
   return sum;
 }
-double SimWorld::constraint_share() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }
+double SimWorld::constraint_fraction() const { return impl_->held_time > 0 ? impl_->constraint_time / impl_->held_time : 0; }
 const Pose& SimWorld::T_world_object(const std::string& id) const {
   const int i = object_index(impl_->objects, id);
   if (i < 0) throw std::out_of_range("no object " + id);

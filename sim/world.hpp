@@ -45,7 +45,7 @@ class SimWorld {
   /// Appends what the sensors of objects hand over since the last call.
   void object_observations(std::vector<Delivery<ObjectObservation>>& out);
   /// Writes all fields but stamp and real_time_factor.
-  void truth(GroundTruth& out) const;
+  void ground_truth(GroundTruth& out) const;
 
   const std::string& last_limit_violation() const;  ///< one sentence; empty: none
   const std::string& last_collision() const;        ///< "link hits table"; empty: none
@@ -56,7 +56,7 @@ class SimWorld {
   double robot_pressure() const;                    ///< normal force of its hands on the watched object [N]
   /// Returns the fraction of the time the robot held something in which the grasp constraints
   /// carried more than the contacts; 0 if nothing was held yet.
-  double constraint_share() const;
+  double constraint_fraction() const;
   const Pose& T_world_object(const std::string& id) const;  ///< throws std::out_of_range
   /// Returns the ground truth of a person, numbered as in the scenario without those that are
   /// absent. Throws std::out_of_range.

@@ -8,12 +8,13 @@
 namespace handsel {
 
 /// The period of a recurring piece of work, adapted to advice.
-class Pace {
+class AdvisedPeriod {
  public:
   /// `fastest`: period without advice and lower bound of advice [s], > 0; `slowest` >= `fastest`:
   /// upper bound of advice [s]; `tick`: period at which due() is called [s], to which periods are
   /// rounded.
-  Pace(double fastest, double slowest, double tick) : fastest_(fastest), slowest_(std::max(fastest, slowest)), slack_(0.5 * tick) {}
+  AdvisedPeriod(double fastest, double slowest, double tick)
+      : fastest_(fastest), slowest_(std::max(fastest, slowest)), slack_(0.5 * tick) {}
 
   /// Sets the advised period [s]; 0: the fastest. The advice expires after 0.3 s.
   void advise(double period, TimePoint now) {
@@ -21,9 +22,9 @@ class Pace {
     advised_at_ = now;
   }
   /// Returns whether the last advice still holds.
-  bool heard(TimePoint now) const { return now - advised_at_ <= kHeard; }
+  bool is_advised(TimePoint now) const { return now - advised_at_ <= kHeard; }
   /// Returns the period in force [s]: the advised one within [fastest, slowest], else the fastest.
-  double period(TimePoint now) const { return heard(now) ? std::clamp(advised_, fastest_, slowest_) : fastest_; }
+  double period(TimePoint now) const { return is_advised(now) ? std::clamp(advised_, fastest_, slowest_) : fastest_; }
   /// Returns whether the period has passed since done(), up to half a tick early; true before the
   /// first done().
   bool due(TimePoint now) const { return !begun_ || to_seconds(now - done_) + slack_ >= period(now); }

@@ -25,16 +25,16 @@ Duration AgeEstimator::update(Stamp stamp, TimePoint arrival, std::string_view k
     last = last_.emplace(key, Last{}).first;
   }
   if (!seen_) {
-    least_ = offset;
+    min_offset_ = offset;
   } else if (!first && stamp < last->second.stamp) {
-    least_ = offset - last->second.age.count();
+    min_offset_ = offset - last->second.age.count();
   } else {
     const double drift = kClockDrift * static_cast<double>((arrival - last_arrival_).count());
-    least_ = std::min(offset, least_ + static_cast<std::int64_t>(drift));
+    min_offset_ = std::min(offset, min_offset_ + static_cast<std::int64_t>(drift));
   }
   seen_ = true;
   last_arrival_ = arrival;
-  last->second = {stamp, Duration(offset - least_)};
+  last->second = {stamp, Duration(offset - min_offset_)};
   return last->second.age;
 }
 

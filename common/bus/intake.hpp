@@ -36,7 +36,7 @@ class AgeEstimator {
   };
   bool seen_{false};
   TimePoint last_arrival_{};
-  std::int64_t least_{};
+  std::int64_t min_offset_{};
   std::map<std::string, Last, std::less<>> last_;  // by key
 };
 

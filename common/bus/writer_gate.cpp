@@ -31,7 +31,7 @@ bool WriterGate::passes(const dds_sample_info_t* info, void* self) {
   return false;
 }
 
-void WriterGate::hear(Intake& intake, TimePoint now) {
+void WriterGate::report_refusals(Intake& intake, TimePoint now) {
   const std::uint64_t writer = refused_writer_.exchange(0, std::memory_order_acq_rel);
   if (writer == 0) return;
   intake.count_refused(refused_.exchange(0, std::memory_order_relaxed));

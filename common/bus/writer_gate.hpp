@@ -21,7 +21,7 @@ class WriterGate {
   void open_for(std::uint64_t writer) { pinned_.store(writer, std::memory_order_release); }
   /// Reports the refusals since the last call to the intake, which may accept the refused writer
   /// from now on. On the executor.
-  void hear(Intake& intake, TimePoint now);
+  void report_refusals(Intake& intake, TimePoint now);
 
  private:
   static bool passes(const dds_sample_info_t* info, void* self);

@@ -16,7 +16,7 @@ void put_rows(const Pose& T, float out[12]) {
     for (int k = 0; k < 4; ++k) out[4 * i + k] = static_cast<float>(T.matrix()(i, k));
 }
 
-void WideChain::fold(const RobotModel& robot, const std::vector<int>& axes, const Vector& q) {
+void BatchChain::fold(const RobotModel& robot, const std::vector<int>& axes, const Vector& q) {
   row_of_dof.assign(static_cast<std::size_t>(robot.dof()), -1);
   dof_of_row = axes;
   for (std::size_t i = 0; i < axes.size(); ++i) row_of_dof[static_cast<std::size_t>(axes[i])] = static_cast<int>(i);
@@ -42,7 +42,7 @@ void WideChain::fold(const RobotModel& robot, const std::vector<int>& axes, cons
     }
     const Eigen::Matrix3d turned = along_z(joint.axis);
     T.linear() = T.linear() * turned;
-    detail::WideJoint moving{};
+    detail::SimdJoint moving{};
     put_rows(T, moving.T);
     moving.parent = body_of_link[parent];
     moving.row = row;

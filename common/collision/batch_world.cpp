@@ -12,21 +12,21 @@ namespace {
 
 constexpr double kRoundingShare = 2e-5;  // of the robot's reach: what single precision may put a sphere wrong [m/m]
 constexpr int kRowsFrom = 4;             // solids from which on they are also looked at side by side
-constexpr double kMostTurn = WideChain::kMostTurn;
+constexpr double kMaxTurn = BatchChain::kMaxTurn;
 
 bool primitive(const Shape& shape) { return !std::holds_alternative<MeshPtr>(shape); }
 
 }  // namespace
 
-WideWorld::WideWorld(const RobotModel& robot) : robot_(robot), kernels_(&detail::wide_kernels()) {}
+BatchWorld::BatchWorld(const RobotModel& robot) : robot_(robot), kernels_(&detail::simd_kernels()) {}
 
-WideWorld::Floats WideWorld::floats(std::size_t count) {
+BatchWorld::Floats BatchWorld::floats(std::size_t count) {
   auto* memory = static_cast<float*>(::operator new[](std::max<std::size_t>(count, 16) * sizeof(float), std::align_val_t(64)));
   std::fill_n(memory, std::max<std::size_t>(count, 16), 0.0f);
   return Floats(memory);
 }
 
-int WideWorld::add_tree(const SphereCover& cover, const Pose& T_body_shape, int body) {
+int BatchWorld::add_tree(const SphereCover& cover, const Pose& T_body_shape, int body) {
   const int first = static_cast<int>(nodes_.size());
   for (const CoverNode& node : cover.nodes) {
     const Eigen::Vector3f c = (T_body_shape * node.center).cast<float>();
@@ -37,7 +37,7 @@ int WideWorld::add_tree(const SphereCover& cover, const Pose& T_body_shape, int 
 }
 
 /// A sphere around trees; their roots move behind it.
-int WideWorld::add_root(const std::vector<int>& roots, int body) {
+int BatchWorld::add_root(const std::vector<int>& roots, int body) {
   if (roots.size() == 1) return roots[0];
   const int root = static_cast<int>(nodes_.size());
   Eigen::Vector3f center = Eigen::Vector3f::Zero();
@@ -65,7 +65,7 @@ int WideWorld::add_root(const std::vector<int>& roots, int body) {
   return root;
 }
 
-void WideWorld::place_trees(const std::vector<Body>& bodies) {
+void BatchWorld::place_trees(const std::vector<Body>& bodies) {
   nodes_.clear();
   parts_.clear();
   std::map<std::pair<int, std::uint8_t>, std::size_t> part_of;
@@ -78,7 +78,7 @@ void WideWorld::place_trees(const std::vector<Body>& bodies) {
   }
 }
 
-void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs) {
+void BatchWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs) {
   std::vector<int> root_of(bodies.size(), -1);
   std::vector<int> part_of(bodies.size(), -1);
   const auto place = [&](std::size_t i) { return chain_.T_body_link[static_cast<std::size_t>(bodies[i].link)] * bodies[i].T_link_shape; };
@@ -93,7 +93,7 @@ void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<st
     }
     part.root = add_root(roots, part.body);
   }
-  std::map<std::pair<int, int>, std::vector<detail::WideNodePair>> of_roots;
+  std::map<std::pair<int, int>, std::vector<detail::SimdNodePair>> of_roots;
   std::map<std::pair<int, int>, std::vector<int>> against_solid;  // part, body -> shapes of the part
   for (auto [a, b] : pairs) {
     auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
@@ -119,7 +119,7 @@ void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<st
   }
   for (const auto& [key, shapes] : against_solid) {
     const auto j = static_cast<std::size_t>(key.second);
-    detail::WideSearch search{parts_[static_cast<std::size_t>(key.first)].root,
+    detail::SimdSearch search{parts_[static_cast<std::size_t>(key.first)].root,
                               static_cast<std::int32_t>(node_list_.size()),
                               static_cast<std::int32_t>(shapes.size()),
                               static_cast<std::int32_t>(solid_list_.size()),
@@ -133,10 +133,10 @@ void WideWorld::make_pairs(const std::vector<Body>& bodies, const std::vector<st
 }
 
 /// Upper bounds of how far sphere centres can be from the axes above them, whatever the configuration.
-void WideWorld::find_reach() {
+void BatchWorld::find_reach() {
   const std::size_t n = chain_.joints.size();
   std::vector<double> across(n + 1, 0.0), norm(n + 1, 0.0), largest(n + 1, 0.0);
-  for (const detail::WideNode& node : nodes_) {
+  for (const detail::SimdNode& node : nodes_) {
     const auto b = static_cast<std::size_t>(node.body);
     across[b] = std::max(across[b], std::hypot(static_cast<double>(node.x), static_cast<double>(node.y)));
     norm[b] = std::max(norm[b], Vector3(node.x, node.y, node.z).norm());
@@ -164,7 +164,7 @@ void WideWorld::find_reach() {
 }
 
 /// False when it is out of the robot's reach.
-bool WideWorld::add_solid(const Shape& shape, const Pose& T_root_shape) {
+bool BatchWorld::add_solid(const Shape& shape, const Pose& T_root_shape) {
   Vector3 half = Vector3::Zero();
   double radius = 0, cylinder = 0;
   if (const auto* box = std::get_if<Box>(&shape)) {
@@ -194,7 +194,7 @@ bool WideWorld::add_solid(const Shape& shape, const Pose& T_root_shape) {
   const Pose T = T_root_shape * Eigen::Translation3d(0.5 * (low + high));
   const Eigen::Matrix3d axes = T.linear().transpose();
   const Vector3 at = axes * T.translation();
-  detail::WideSolid solid{};
+  detail::SimdSolid solid{};
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) solid.axes[3 * i + k] = static_cast<float>(axes(i, k));
     solid.at[i] = static_cast<float>(at[i]);
@@ -206,8 +206,8 @@ bool WideWorld::add_solid(const Shape& shape, const Pose& T_root_shape) {
   return true;
 }
 
-void WideWorld::set_robot(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs, const std::vector<int>& axes,
-                          const Vector& q) {
+void BatchWorld::set_robot(const std::vector<Body>& bodies, const std::vector<std::pair<int, int>>& pairs, const std::vector<int>& axes,
+                           const Vector& q) {
   solids_.clear();
   node_list_.clear();
   solid_list_.clear();
@@ -220,10 +220,10 @@ void WideWorld::set_robot(const std::vector<Body>& bodies, const std::vector<std
   total_reach_ = std::numeric_limits<double>::max() / 4;
   make_pairs(bodies, pairs);
   find_reach();
-  for (detail::WideNode& node : nodes_) node.radius += static_cast<float>(rounding_);
+  for (detail::SimdNode& node : nodes_) node.radius += static_cast<float>(rounding_);
   const std::size_t n = chain_.joints.size();
   pair_reach_.clear();
-  for (const detail::WidePair& pair : pairs_) {
+  for (const detail::SimdPair& pair : pairs_) {
     const float* a = reach_.data() + static_cast<std::size_t>(nodes_[static_cast<std::size_t>(pair.a)].body) * n;
     const float* b = reach_.data() + static_cast<std::size_t>(nodes_[static_cast<std::size_t>(pair.b)].body) * n;
     for (std::size_t j = 0; j < n; ++j) pair_reach_.push_back(a[j] > 0 && b[j] > 0 ? 0.0f : a[j] + b[j]);
@@ -239,7 +239,7 @@ void WideWorld::set_robot(const std::vector<Body>& bodies, const std::vector<std
   allocate();
 }
 
-void WideWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_world_base) {
+void BatchWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_world_base) {
   nodes_.resize(own_nodes_);
   solids_.resize(own_solids_);
   searches_.resize(own_searches_);
@@ -272,7 +272,7 @@ void WideWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_world
   }
   // What is far out on the arm meets things first.
   for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
-    detail::WideSearch search{part->root, 0, 0, static_cast<std::int32_t>(solid_list_.size()), 0, -1};
+    detail::SimdSearch search{part->root, 0, 0, static_cast<std::int32_t>(solid_list_.size()), 0, -1};
     for (std::size_t i = 0; i < against.size(); ++i)
       if ((against[i] & part->what) != 0) solid_list_.push_back(static_cast<std::int32_t>(first + i));
     search.solids = static_cast<std::int32_t>(solid_list_.size()) - search.first_solid;
@@ -283,26 +283,26 @@ void WideWorld::set_solids(const std::vector<Solid>& solids, const Pose& T_world
   allocate();
 }
 
-void WideWorld::put_in_rows(detail::WideSearch& search) {
+void BatchWorld::put_in_rows(detail::SimdSearch& search) {
   search.first_row = static_cast<std::int32_t>(solid_rows_.size());
   for (int k = 0; k < search.solids; ++k) {
     if (k % kStates == 0) {
       solid_rows_.emplace_back();
       std::fill(std::begin(solid_rows_.back().at[0]), std::end(solid_rows_.back().at[0]), 1e15f);
     }
-    const detail::WideSolid& solid = solids_[static_cast<std::size_t>(solid_list_[static_cast<std::size_t>(search.first_solid + k)])];
-    detail::WideSolids& row = solid_rows_.back();
-    const int lane = k % kStates;
-    for (int i = 0; i < 9; ++i) row.axes[i][lane] = solid.axes[i];
+    const detail::SimdSolid& solid = solids_[static_cast<std::size_t>(solid_list_[static_cast<std::size_t>(search.first_solid + k)])];
+    detail::SimdSolids& row = solid_rows_.back();
+    const int slot = k % kStates;
+    for (int i = 0; i < 9; ++i) row.axes[i][slot] = solid.axes[i];
     for (int i = 0; i < 3; ++i) {
-      row.at[i][lane] = solid.at[i];
-      row.half[i][lane] = solid.cylinder > 0 && i < 2 ? solid.cylinder : solid.half[i];
+      row.at[i][slot] = solid.at[i];
+      row.half[i][slot] = solid.cylinder > 0 && i < 2 ? solid.cylinder : solid.half[i];
     }
-    row.radius[lane] = solid.radius;
+    row.radius[slot] = solid.radius;
   }
 }
 
-void WideWorld::allocate() {
+void BatchWorld::allocate() {
   const std::size_t bodies = chain_.joints.size() + 1;
   if (position_room_ < nodes_.size()) {
     position_room_ = nodes_.size() + nodes_.size() / 4;
@@ -313,9 +313,9 @@ void WideWorld::allocate() {
   q_ = floats(kStates * chain_.dof_of_row.size());
   half_ = floats(kStates * chain_.dof_of_row.size());
   stamp_.assign(nodes_.size(), 0);
-  std::int32_t longest = 1;
-  for (const detail::WideSearch& search : searches_) longest = std::max(longest, search.solids);
-  lists_.assign(static_cast<std::size_t>(longest) * detail::kWideDepth, 0);
+  std::int32_t max_list_size = 1;
+  for (const detail::SimdSearch& search : searches_) max_list_size = std::max(max_list_size, search.solids);
+  lists_.assign(static_cast<std::size_t>(max_list_size) * detail::kMaxTreeDepth, 0);
   tables_.joints = chain_.joints.data();
   tables_.nodes = nodes_.data();
   tables_.solids = solids_.data();
@@ -331,57 +331,57 @@ void WideWorld::allocate() {
   tables_.node_count = static_cast<std::int32_t>(nodes_.size());
   tables_.search_count = static_cast<std::int32_t>(searches_.size());
   tables_.pair_count = static_cast<std::int32_t>(pairs_.size());
-  memory_ = {pose_.get(), margin_.get(), position_.get(), stamp_.data(), 0, lists_.data(), longest};
+  memory_ = {pose_.get(), margin_.get(), position_.get(), stamp_.data(), 0, lists_.data(), max_list_size};
 }
 
-std::uint32_t WideWorld::run(int count, bool swept, bool any) {
+std::uint32_t BatchWorld::run(int count, bool swept, bool any) {
   if (memory_.now > 0xfffffff0u) {
     std::fill(stamp_.begin(), stamp_.end(), 0);
     memory_.now = 0;
   }
   ++blocks_;
-  const std::uint32_t lanes = count >= kStates ? 0xffffu : (1u << count) - 1u;
-  return kernels_->check(tables_, memory_, q_.get(), swept ? half_.get() : nullptr, lanes, any);
+  const std::uint32_t state_bits = count >= kStates ? 0xffffu : (1u << count) - 1u;
+  return kernels_->check(tables_, memory_, q_.get(), swept ? half_.get() : nullptr, state_bits, any);
 }
 
-std::uint32_t WideWorld::unclear(const Vector* states, int count) {
+std::uint32_t BatchWorld::unclear(const Vector* states, int count) {
   for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row)
     for (int i = 0; i < count; ++i) {
       const double value = states[i][chain_.dof_of_row[row]];
-      if (!(std::abs(value) < kMostTurn)) return (1u << count) - 1u;
+      if (!(std::abs(value) < kMaxTurn)) return (1u << count) - 1u;
       q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(value);
     }
   return run(count, false);
 }
 
-std::uint32_t WideWorld::unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any) {
+std::uint32_t BatchWorld::unclear_on_line(const Vector& from, const Vector& to, const double* at, int count, bool any) {
   for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row) {
     const double start = from[chain_.dof_of_row[row]], along = to[chain_.dof_of_row[row]] - start;
-    if (!(std::abs(start) + std::abs(along) < kMostTurn)) return (1u << count) - 1u;
+    if (!(std::abs(start) + std::abs(along) < kMaxTurn)) return (1u << count) - 1u;
     float* q = q_.get() + row * kStates;
     for (int i = 0; i < count; ++i) q[i] = static_cast<float>(start + at[i] * along);
   }
   return run(count, false, any);
 }
 
-std::uint32_t WideWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {
+std::uint32_t BatchWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {
   for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row)
     for (int i = 0; i < count; ++i) {
       const double from = low[i][chain_.dof_of_row[row]], to = high[i][chain_.dof_of_row[row]];
-      if (!(std::max(std::abs(from), std::abs(to)) < kMostTurn)) return (1u << count) - 1u;
+      if (!(std::max(std::abs(from), std::abs(to)) < kMaxTurn)) return (1u << count) - 1u;
       q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(0.5 * (from + to));
       half_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(0.5000001 * (to - from));
     }
   return run(count, true);
 }
 
-const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const Vector& from, const Vector& to, double finest,
-                                                                           int most_blocks) {
+const std::vector<std::pair<double, double>>& BatchWorld::unclear_stretches(const Vector& from, const Vector& to, double finest,
+                                                                            int max_blocks) {
   unclear_.clear();
   open_.clear();
   next_.clear();
   for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row)
-    if (!(std::abs(from[chain_.dof_of_row[row]]) + std::abs(to[chain_.dof_of_row[row]]) < kMostTurn)) {
+    if (!(std::abs(from[chain_.dof_of_row[row]]) + std::abs(to[chain_.dof_of_row[row]]) < kMaxTurn)) {
       unclear_.emplace_back(0.0, 1.0);
       return unclear_;
     }
@@ -390,7 +390,7 @@ const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const
     for (std::size_t first = 0; first < open_.size(); first += kStates, ++blocks) {
       const int count = static_cast<int>(std::min<std::size_t>(kStates, open_.size() - first));
       std::uint32_t unclear = (1u << count) - 1u;
-      if (blocks < most_blocks) {
+      if (blocks < max_blocks) {
         for (std::size_t row = 0; row < chain_.dof_of_row.size(); ++row) {
           const double start = from[chain_.dof_of_row[row]], along = to[chain_.dof_of_row[row]] - start;
           for (int i = 0; i < count; ++i) {
@@ -404,7 +404,7 @@ const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const
       for (int i = 0; i < count; ++i) {
         if ((unclear >> i & 1) == 0) continue;
         const auto [low, high] = open_[first + static_cast<std::size_t>(i)];
-        if (blocks >= most_blocks || 0.5 * (high - low) < finest)
+        if (blocks >= max_blocks || 0.5 * (high - low) < finest)
           unclear_.emplace_back(low, high);
         else
           for (const auto& half : {std::pair{low, 0.5 * (low + high)}, std::pair{0.5 * (low + high), high}}) next_.push_back(half);
@@ -414,13 +414,13 @@ const std::vector<std::pair<double, double>>& WideWorld::unclear_stretches(const
   return unclear_;
 }
 
-Pose WideWorld::link_pose(int link, int lane) const {
+Pose BatchWorld::link_pose(int link, int slot) const {
   const int width = kernels_->width;
   const int body = chain_.body_of_link[static_cast<std::size_t>(link)];
   Pose T = Pose::Identity();
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 4; ++k)
-      T.matrix()(i, k) = pose_[static_cast<std::size_t>((body * 12 * kStates) + (4 * i + k) * width + lane % width)];
+      T.matrix()(i, k) = pose_[static_cast<std::size_t>((body * 12 * kStates) + (4 * i + k) * width + slot % width)];
   return T * chain_.T_body_link[static_cast<std::size_t>(link)];
 }
 

@@ -17,11 +17,11 @@
 namespace handsel {
 
 /// What of a robot a solid is an obstacle for; bits.
-enum WideClass : std::uint8_t { kWideArm = 1, kWideHand = 2, kWideHeld = 4 };
+enum RobotPart : std::uint8_t { kArmPart = 1, kHandPart = 2, kHeldPart = 4 };
 
-class WideWorld {
+class BatchWorld {
  public:
-  static constexpr int kStates = detail::kWideStates;  ///< states of one block
+  static constexpr int kStates = detail::kBatchStates;  ///< states of one block
 
   /// A shape that moves with a link (or, held, with the tool link).
   struct Body {
@@ -30,18 +30,18 @@ class WideWorld {
     std::shared_ptr<const SphereCover> cover;
     Shape shape;                          ///< for links that no axis moves
     Pose T_link_shape{Pose::Identity()};  ///< frame of the shape in the link's
-    std::uint8_t what{kWideArm};          ///< one bit of WideClass
+    std::uint8_t what{kArmPart};          ///< one bit of RobotPart
   };
   /// A shape at rest in the world; a mesh needs a cover.
   struct Solid {
     Shape shape;                               ///< in its own frame
     std::shared_ptr<const SphereCover> cover;  ///< frame of the shape; null: none
     Pose T_world_shape{Pose::Identity()};      ///< frame of the shape
-    /// Bits of WideClass it is tested with.
-    std::uint8_t against{kWideArm | kWideHand | kWideHeld};
+    /// Bits of RobotPart it is tested with.
+    std::uint8_t against{kArmPart | kHandPart | kHeldPart};
   };
 
-  explicit WideWorld(const RobotModel& robot);
+  explicit BatchWorld(const RobotModel& robot);
 
   /// The robot for states in which only `axes` differ from q: what the others join is one rigid
   /// body. `pairs`: bodies tested against each other; those whose relative pose no axis changes are
@@ -64,17 +64,17 @@ class WideWorld {
   /// shown clear; all states between them are, without steps. Checks stretches down to `finest`
   /// parts of the line, and no more than the given number of blocks of kStates stretches: what is
   /// left then is unclear.
-  const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int most_blocks);
+  const std::vector<std::pair<double, double>>& unclear_stretches(const Vector& from, const Vector& to, double finest, int max_blocks);
 
   /// Poses of the links as the registers have them, for one state among those that the
   /// kernel checked last; for tests.
-  Pose link_pose(int link, int lane) const;
+  Pose link_pose(int link, int slot) const;
   int spheres() const { return static_cast<int>(nodes_.size()); }  ///< of robot and solids
   std::uint64_t blocks() const { return blocks_; }                 ///< calls of the kernel so far
   /// Added to every radius for single precision [m].
   double rounding() const { return rounding_; }
   /// Another width than the widest, for tests and measurements.
-  void set_kernels(const detail::WideKernels& kernels) { kernels_ = &kernels; }
+  void set_kernels(const detail::SimdKernels& kernels) { kernels_ = &kernels; }
 
  private:
   struct Part {
@@ -95,21 +95,21 @@ class WideWorld {
   int add_tree(const SphereCover& cover, const Pose& T_body_shape, int body);
   int add_root(const std::vector<int>& roots, int body);
   bool add_solid(const Shape& shape, const Pose& T_root_shape);
-  void put_in_rows(detail::WideSearch& search);
+  void put_in_rows(detail::SimdSearch& search);
   void allocate();
   std::uint32_t run(int count, bool swept, bool any = false);
 
   const RobotModel& robot_;
-  const detail::WideKernels* kernels_;
-  WideChain chain_;
+  const detail::SimdKernels* kernels_;
+  BatchChain chain_;
   std::vector<Part> parts_;
-  std::vector<detail::WideNode> nodes_;
-  std::vector<detail::WideSolid> solids_;
-  std::vector<detail::WideSolids> solid_rows_;
+  std::vector<detail::SimdNode> nodes_;
+  std::vector<detail::SimdSolid> solids_;
+  std::vector<detail::SimdSolids> solid_rows_;
   std::vector<std::int32_t> node_list_, solid_list_;
-  std::vector<detail::WideSearch> searches_;
-  std::vector<detail::WidePair> pairs_;
-  std::vector<detail::WideNodePair> node_pairs_;
+  std::vector<detail::SimdSearch> searches_;
+  std::vector<detail::SimdPair> pairs_;
+  std::vector<detail::SimdNodePair> node_pairs_;
   std::vector<float> reach_, pair_reach_;
   // Of the robot alone; set_solids puts its own behind.
   std::size_t own_nodes_{}, own_solids_{}, own_searches_{}, own_pairs_{}, own_node_list_{}, own_solid_list_{}, own_node_pairs_{};
@@ -119,8 +119,8 @@ class WideWorld {
   std::size_t position_room_{};
   std::vector<std::uint32_t> stamp_;
   std::vector<std::int32_t> lists_;
-  detail::WideTables tables_{};
-  detail::WideMemory memory_{};
+  detail::SimdTables tables_{};
+  detail::SimdMemory memory_{};
   std::vector<std::pair<double, double>> open_, next_, unclear_;
   std::uint64_t blocks_{};
 };

@@ -81,7 +81,7 @@ struct CollisionWorld::Impl {
   std::uint64_t checks{}, exact_checks{};
   double turning_margin{};
 
-  std::unique_ptr<WideWorld> wide;  // null: exact only
+  std::unique_ptr<BatchWorld> wide;  // null: exact only
   std::vector<int> moving;
   std::vector<char> moves_axis;
   Vector folded_at;  // empty when the wide robot is to be made anew
@@ -89,7 +89,7 @@ struct CollisionWorld::Impl {
   std::vector<int> order;
   std::vector<char> open;
   std::vector<std::pair<Vector3, Vector3>> capsule_ends;
-  std::vector<detail::WideCapsule> wide_capsules;
+  std::vector<detail::SimdCapsule> simd_capsules;
   std::vector<float> capsule_distances;
   std::vector<double> at;
 
@@ -296,16 +296,16 @@ struct CollisionWorld::Impl {
     place(q);
     rest_touches = false;
     if (!same) fold(q);
-    std::vector<WideWorld::Solid> solids;
+    std::vector<BatchWorld::Solid> solids;
     for (const auto* things : {&scene, &obstacles, &in_peoples_hands})
       for (const SceneBody& thing : *things) {
-        const std::uint8_t all = thing.allowed ? kWideArm : kWideArm | kWideHand | kWideHeld;
-        add_solid(*thing.shape, thing.T_world_shape, thing.lowered ? all & ~kWideHeld : all, solids);
-        if (thing.lowered) add_solid(*thing.lowered, thing.T_world_lowered, all & kWideHeld, solids);
+        const std::uint8_t all = thing.allowed ? kArmPart : kArmPart | kHandPart | kHeldPart;
+        add_solid(*thing.shape, thing.T_world_shape, thing.lowered ? all & ~kHeldPart : all, solids);
+        if (thing.lowered) add_solid(*thing.lowered, thing.T_world_lowered, all & kHeldPart, solids);
       }
     for (const PersonBody& person : people)
       if (person.obstacle && !(person.allowed && person.arm))
-        add_solid(*person.shape, person.T_world_shape, kWideArm | kWideHand | kWideHeld, solids);
+        add_solid(*person.shape, person.T_world_shape, kArmPart | kHandPart | kHeldPart, solids);
     wide->set_solids(solids, T_world_base);
     for (std::size_t i = 0; i < bodies.size() && !rest_touches; ++i)
       rest_touches = bodies[i].moves && !moved(bodies[i].link) &&
@@ -326,7 +326,7 @@ struct CollisionWorld::Impl {
     return true;
   }
 
-  static void add_solid(const CollisionShape& shape, const Pose& T, int against, std::vector<WideWorld::Solid>& solids) {
+  static void add_solid(const CollisionShape& shape, const Pose& T, int against, std::vector<BatchWorld::Solid>& solids) {
     if (against == 0) return;
     solids.push_back({shape.shape(), shape.is_mesh() ? shape.cover() : nullptr, T, static_cast<std::uint8_t>(against)});
   }
@@ -336,16 +336,16 @@ struct CollisionWorld::Impl {
   }
 
   void fold(const Vector& q) {
-    std::vector<WideWorld::Body> wide_bodies;
+    std::vector<BatchWorld::Body> wide_bodies;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const RobotBody& body = bodies[i];
       const CollisionShape& shape = body.wider ? *body.wider : *body.shape;
       const bool covered = moved(body.link) || shape.is_mesh();
       wide_bodies.push_back({body.link, covered ? shape.cover() : nullptr, shape.shape(),
                              body.wider ? body.T_link_wider : body.T_link_shape,
-                             static_cast<std::uint8_t>(i >= link_bodies ? kWideHeld
-                                                       : body.hand >= 0 ? kWideHand
-                                                                        : kWideArm)});
+                             static_cast<std::uint8_t>(i >= link_bodies ? kHeldPart
+                                                       : body.hand >= 0 ? kHandPart
+                                                                        : kArmPart)});
     }
     std::vector<std::pair<int, int>> wide_pairs;
     for (const auto* pairs : {&link_pairs, &held_pairs})
@@ -375,7 +375,7 @@ struct CollisionWorld::Impl {
     for (std::size_t next = 0; next < order.size();) {
       at.clear();
       std::size_t end = next;
-      for (; end < order.size() && at.size() < static_cast<std::size_t>(WideWorld::kStates); ++end)
+      for (; end < order.size() && at.size() < static_cast<std::size_t>(BatchWorld::kStates); ++end)
         if (open[static_cast<std::size_t>(order[end])]) at.push_back(static_cast<double>(order[end]) / std::max(1, last));
       std::uint32_t unclear = at.empty() ? 0 : wide->unclear_on_line(from, to, at.data(), static_cast<int>(at.size()));
       for (; next < end; ++next) {
@@ -425,7 +425,7 @@ void CollisionWorld::set_moving_axes(const std::vector<int>& axes) {
   w.moves_axis.assign(static_cast<std::size_t>(w.robot.dof()), 0);
   for (int axis : axes) w.moves_axis[axis] = 1;
   w.folded_at.resize(0);
-  w.wide = axes.empty() ? nullptr : std::make_unique<WideWorld>(w.robot);
+  w.wide = axes.empty() ? nullptr : std::make_unique<BatchWorld>(w.robot);
   w.rebuild_wider();
 }
 
@@ -538,23 +538,23 @@ double CollisionWorld::distance_to_people(const Vector& q, Vector3* on_robot, Ve
   const Vector3 origin = w.T_world_base.translation();
   std::vector<std::pair<Vector3, Vector3>>& ends = w.capsule_ends;
   ends.clear();
-  w.wide_capsules.clear();
+  w.simd_capsules.clear();
   for (const LinkCapsule& capsule : w.capsules) {
     const Pose T_world_link = w.T_world_base * w.T_root_link[capsule.link];
     ends.emplace_back(T_world_link * capsule.a, T_world_link * capsule.b);
-    w.wide_capsules.push_back(wide_capsule(ends.back().first - origin, ends.back().second - origin, capsule.radius));
+    w.simd_capsules.push_back(simd_capsule(ends.back().first - origin, ends.back().second - origin, capsule.radius));
   }
   w.capsule_distances.resize(16 * ends.size() + 16);
   float* distances =
       w.capsule_distances.data() + (64 - reinterpret_cast<std::uintptr_t>(w.capsule_distances.data()) % 64) % 64 / sizeof(float);
   for (std::size_t first = 0; first < w.people.size(); first += 16) {
-    detail::WideCapsules lanes = no_capsules();
+    detail::SimdCapsules lanes = no_capsules();
     const std::size_t count = std::min<std::size_t>(16, w.people.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       const PersonBody& body = w.people[first + i];
-      put_capsule(wide_capsule(body.a - origin, body.b - origin, body.radius), static_cast<int>(i), lanes);
+      put_capsule(simd_capsule(body.a - origin, body.b - origin, body.radius), static_cast<int>(i), lanes);
     }
-    const float nearest = detail::wide_kernels().distances(w.wide_capsules.data(), static_cast<int>(ends.size()), lanes, kSlack, distances);
+    const float nearest = detail::simd_kernels().distances(w.simd_capsules.data(), static_cast<int>(ends.size()), lanes, kSlack, distances);
     for (std::size_t c = 0; c < ends.size(); ++c)
       for (std::size_t i = 0; i < count; ++i) {
         if (!(distances[16 * c + i] <= nearest + kSlack)) continue;
@@ -611,8 +611,8 @@ bool CollisionWorld::surely_free_at_steps(const Vector& from, const Vector& to, 
   Impl& w = *impl_;
   if (!w.wide_ready(from) || !w.moves_only(from, to)) return false;
   const int states = motion_states(from, to, step), last = std::max(1, states - 1);
-  const int blocks = (states + WideWorld::kStates - 1) / WideWorld::kStates;
-  std::array<double, WideWorld::kStates> at;
+  const int blocks = (states + BatchWorld::kStates - 1) / BatchWorld::kStates;
+  std::array<double, BatchWorld::kStates> at;
   for (int block = 0; block < blocks; ++block) {
     int count = 0;
     for (int i = block; i < states; i += blocks) at[static_cast<std::size_t>(count++)] = static_cast<double>(i) / last;
@@ -629,7 +629,7 @@ bool CollisionWorld::surely_free(const Vector& from, const Vector& to) {
 }
 
 std::uint32_t CollisionWorld::unclear_boxes(const Vector* low, const Vector* high, int count) {
-  static_assert(kMostBoxes == WideWorld::kStates);
+  static_assert(kMaxBoxes == BatchWorld::kStates);
   Impl& w = *impl_;
   w.checks += static_cast<std::uint64_t>(count);
   if (!w.wide_ready(low[0])) return (1u << count) - 1u;

@@ -100,7 +100,7 @@ class CollisionWorld {
   /// can show: true is sure, false is unknown.
   bool surely_free(const Vector& from, const Vector& to);
 
-  static constexpr int kMostBoxes = 16;  ///< upper limit of `count` in unclear_boxes()
+  static constexpr int kMaxBoxes = 16;  ///< upper limit of `count` in unclear_boxes()
   /// Returns, of up to 16 boxes of configurations (all axes; equal on those that do not move), the
   /// bits of those that the SIMD check cannot show to be free of contact everywhere; all bits
   /// without moving axes.

@@ -8,7 +8,7 @@ namespace handsel {
 
 /// Returns the capsule with axis a to b and this radius [m], with what the kernel needs of it
 /// worked out.
-inline detail::WideCapsule wide_capsule(const Vector3& a, const Vector3& b, double radius) {
+inline detail::SimdCapsule simd_capsule(const Vector3& a, const Vector3& b, double radius) {
   const Vector3 d = b - a, middle = 0.5 * (a + b);
   const auto f = [](double x) { return static_cast<float>(x); };
   const double dd = d.squaredNorm();
@@ -22,19 +22,19 @@ inline detail::WideCapsule wide_capsule(const Vector3& a, const Vector3& b, doub
 }
 
 /// Returns sixteen capsules that are a thousand kilometres away.
-inline detail::WideCapsules no_capsules() {
-  detail::WideCapsules out{};
+inline detail::SimdCapsules no_capsules() {
+  detail::SimdCapsules out{};
   for (int i = 0; i < 16; ++i) out.mx[i] = out.ax[i] = 1e6f;
   return out;
 }
 
 /// Writes a capsule to one of the sixteen places, 0 to 15.
-inline void put_capsule(const detail::WideCapsule& c, int lane, detail::WideCapsules& out) {
-  out.ax[lane] = c.ax, out.ay[lane] = c.ay, out.az[lane] = c.az;
-  out.dx[lane] = c.dx, out.dy[lane] = c.dy, out.dz[lane] = c.dz;
-  out.dd[lane] = c.dd, out.over_dd[lane] = c.over_dd;
-  out.radius[lane] = c.radius, out.reach[lane] = c.reach;
-  out.mx[lane] = c.mx, out.my[lane] = c.my, out.mz[lane] = c.mz;
+inline void put_capsule(const detail::SimdCapsule& c, int slot, detail::SimdCapsules& out) {
+  out.ax[slot] = c.ax, out.ay[slot] = c.ay, out.az[slot] = c.az;
+  out.dx[slot] = c.dx, out.dy[slot] = c.dy, out.dz[slot] = c.dz;
+  out.dd[slot] = c.dd, out.over_dd[slot] = c.over_dd;
+  out.radius[slot] = c.radius, out.reach[slot] = c.reach;
+  out.mx[slot] = c.mx, out.my[slot] = c.my, out.mz[slot] = c.mz;
 }
 
 }  // namespace handsel

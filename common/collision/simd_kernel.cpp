@@ -2,16 +2,16 @@
 
 namespace handsel::detail {
 
-const WideKernels& wide_kernels() noexcept {
-#ifdef HANDSEL_WIDE_LANES
-  static const WideKernels& best = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+const SimdKernels& simd_kernels() noexcept {
+#ifdef HANDSEL_SIMD_UNITS
+  static const SimdKernels& best = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                                            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
-                                       ? kWideKernelsAvx512
-                                   : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? kWideKernelsAvx2
-                                                                                                     : kWideKernelsBase;
+                                       ? kSimdKernelsAvx512
+                                   : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? kSimdKernelsAvx2
+                                                                                                     : kSimdKernelsBase;
   return best;
 #else
-  return kWideKernelsBase;
+  return kSimdKernelsBase;
 #endif
 }
 

@@ -9,11 +9,11 @@
 
 namespace handsel::detail {
 
-constexpr int kWideStates = 16;
+constexpr int kBatchStates = 16;
 
 /// A joint that moves a body: body number = joint number + 1, body 0 is the root. T_parent_joint by
 /// rows; z is the axis.
-struct WideJoint {
+struct SimdJoint {
   float T[12];
   std::int32_t parent;  // body
   std::int32_t row;     // of the positions
@@ -22,47 +22,47 @@ struct WideJoint {
 };
 
 /// A sphere that moves with a body; everything its children cover is inside.
-struct WideNode {
+struct SimdNode {
   float x, y, z, radius;
   std::int32_t first_child, children, body, reserved;
 };
 
 /// A box (or segment, or point) with rounded edges, or a cylinder when `cylinder` > 0: axes of the
 /// shape by rows, then their products with its centre.
-struct WideSolid {
+struct SimdSolid {
   float axes[9], at[3], half[3], radius, cylinder;
 };
 
 /// Sixteen solids side by side, cylinders as the boxes around them; those that are not there are
 /// far away.
-struct WideSolids {
-  alignas(64) float axes[9][kWideStates], at[3][kWideStates], half[3][kWideStates], radius[kWideStates];
+struct SimdSolids {
+  alignas(64) float axes[9][kBatchStates], at[3][kBatchStates], half[3][kBatchStates], radius[kBatchStates];
 };
 
 /// Spheres that must stay clear of solids: below `root`, in the trees of `nodes` (all when there
 /// are none). `first_row`: the same solids in rows of sixteen; -1: not there.
-struct WideSearch {
+struct SimdSearch {
   std::int32_t root, first_node, nodes, first_solid, solids, first_row;
 };
 
 /// Trees that must stay clear of each other: below the roots a and b, the pairs of nodes. `reach`:
 /// row of pair_reach.
-struct WidePair {
+struct SimdPair {
   std::int32_t a, b, first, pairs;
 };
-struct WideNodePair {
+struct SimdNodePair {
   std::int32_t a, b;
 };
 
-struct WideTables {
-  const WideJoint* joints;
-  const WideNode* nodes;
-  const WideSolid* solids;
-  const WideSolids* solid_rows;
+struct SimdTables {
+  const SimdJoint* joints;
+  const SimdNode* nodes;
+  const SimdSolid* solids;
+  const SimdSolids* solid_rows;
   const std::int32_t *node_list, *solid_list;
-  const WideSearch* searches;
-  const WidePair* pairs;
-  const WideNodePair* node_pairs;
+  const SimdSearch* searches;
+  const SimdPair* pairs;
+  const SimdNodePair* node_pairs;
   // [body][joint]: no sphere centre of the body is farther from the joint's axis; a row has
   // `joint_count`.
   const float* reach;
@@ -70,46 +70,46 @@ struct WideTables {
   std::int32_t joint_count, node_count, search_count, pair_count;
 };
 
-/// Memory for one check at a time; on 64 bytes. Sizes in floats: pose 12 x bodies x kWideStates,
-/// margin bodies x kWideStates, position 3 x nodes x kWideStates. stamp: one a node.
-struct WideMemory {
+/// Memory for one check at a time; on 64 bytes. Sizes in floats: pose 12 x bodies x kBatchStates,
+/// margin bodies x kBatchStates, position 3 x nodes x kBatchStates. stamp: one a node.
+struct SimdMemory {
   float *pose, *margin, *position;
   std::uint32_t* stamp;
   std::uint32_t now;
-  std::int32_t* lists;  // room for solid lists: kWideDepth x the longest list
-  std::int32_t longest;
+  std::int32_t* lists;  // room for solid lists: kMaxTreeDepth x the longest list
+  std::int32_t max_list_size;
 };
-constexpr int kWideDepth = 12;
+constexpr int kMaxTreeDepth = 12;
 
 /// Capsules of one body of bones: 16 side by side; those that are not there are a thousand
 /// kilometres away.
-struct WideCapsules {
+struct SimdCapsules {
   alignas(64) float ax[16], ay[16], az[16], dx[16], dy[16], dz[16], dd[16], over_dd[16], radius[16], reach[16], mx[16], my[16], mz[16];
 };
-struct WideCapsule {
+struct SimdCapsule {
   float ax, ay, az, dx, dy, dz, dd, over_dd, radius, reach, mx, my, mz;
 };
 
-struct WideKernels {
+struct SimdKernels {
   const char* name;
   int width;  ///< states in a register
-  /// q: positions, [row][kWideStates], radians between about -50 and 50. `half`: how far each joint
+  /// q: positions, [row][kBatchStates], radians between about -50 and 50. `half`: how far each joint
   /// row moves to either side of the state, or nullptr. Returns the bits of those of the given
   /// states in which some sphere is not clear; `any`: of the first ones found, where the search
   /// ends.
-  std::uint32_t (*check)(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
+  std::uint32_t (*check)(const SimdTables& tables, SimdMemory& memory, const float* q, const float* half, std::uint32_t state_bits,
                          bool any) noexcept;
   /// Distances of each capsule of `robot` to the sixteen, less the radii, to distance[16 * count];
   /// those surely beyond the nearest by `slack` may be lower bounds. Returns the least.
-  float (*distances)(const WideCapsule* robot, int count, const WideCapsules& people, float slack, float* distance) noexcept;
+  float (*distances)(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack, float* distance) noexcept;
 };
 
-extern const WideKernels kWideKernelsBase;
-#ifdef HANDSEL_WIDE_LANES
-extern const WideKernels kWideKernelsAvx2;
-extern const WideKernels kWideKernelsAvx512;
+extern const SimdKernels kSimdKernelsBase;
+#ifdef HANDSEL_SIMD_UNITS
+extern const SimdKernels kSimdKernelsAvx2;
+extern const SimdKernels kSimdKernelsAvx512;
 #endif
 /// Returns the kernels of the widest registers that this processor has.
-const WideKernels& wide_kernels() noexcept;
+const SimdKernels& simd_kernels() noexcept;
 
 }  // namespace handsel::detail

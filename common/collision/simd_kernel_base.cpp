@@ -1,5 +1,5 @@
 #include "common/collision/simd_kernel_body.hpp"
 
 namespace handsel::detail {
-const WideKernels kWideKernelsBase{"base", kWidth, check, distances};
+const SimdKernels kSimdKernelsBase{"base", kWidth, check, distances};
 }  // namespace handsel::detail

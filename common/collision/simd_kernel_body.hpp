@@ -12,37 +12,37 @@ namespace {
 constexpr float kRootAtRest[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 struct Pass {
-  const WideTables& tables;
-  WideMemory& memory;
+  const SimdTables& tables;
+  SimdMemory& memory;
   bool swept{}, any{};
 
   /// Nothing more is to be learnt from the states left.
   bool settled(const M& found, const M& left) const noexcept { return !any_of(left) || (any && any_of(found)); }
 
-  float* pose(int body) const noexcept { return memory.pose + body * 12 * kWideStates; }
+  float* pose(int body) const noexcept { return memory.pose + body * 12 * kBatchStates; }
 
   void spread(const float* half) const noexcept {
     for (int body = 0; body <= tables.joint_count; ++body) {
       V sum = 0.0f;
       const float* reach = tables.reach + body * tables.joint_count;
       for (int j = 0; j < tables.joint_count; ++j)
-        if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kWideStates) * tables.joints[j].factor) * reach[j];
-      store(sum, memory.margin + body * kWideStates);
+        if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kBatchStates) * tables.joints[j].factor) * reach[j];
+      store(sum, memory.margin + body * kBatchStates);
     }
   }
   V pair_margin(int pair, const float* half) const noexcept {
     V sum = 0.0f;
     const float* reach = tables.pair_reach + pair * tables.joint_count;
     for (int j = 0; j < tables.joint_count; ++j)
-      if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kWideStates) * tables.joints[j].factor) * reach[j];
+      if (reach[j] > 0.0f) sum += abs(load(half + tables.joints[j].row * kBatchStates) * tables.joints[j].factor) * reach[j];
     return sum;
   }
 
   const float* place(int index) const noexcept {
-    float* at = memory.position + index * 3 * kWideStates;
+    float* at = memory.position + index * 3 * kBatchStates;
     if (memory.stamp[index] == memory.now) return at;
     memory.stamp[index] = memory.now;
-    const WideNode& node = tables.nodes[index];
+    const SimdNode& node = tables.nodes[index];
     const float* T = pose(node.body);
     for (int i = 0; i < 3; ++i)
       store(load(T + (4 * i) * kWidth) * node.x + load(T + (4 * i + 1) * kWidth) * node.y + load(T + (4 * i + 2) * kWidth) * node.z +
@@ -51,7 +51,7 @@ struct Pass {
     return at;
   }
 
-  [[gnu::always_inline]] static M meets(const WideSolid& s, const V& x, const V& y, const V& z, const V& r) noexcept {
+  [[gnu::always_inline]] static M meets(const SimdSolid& s, const V& x, const V& y, const V& z, const V& r) noexcept {
     const V lx = x * s.axes[0] + y * s.axes[1] + (z * s.axes[2] - s.at[0]);
     const V ly = x * s.axes[3] + y * s.axes[4] + (z * s.axes[5] - s.at[1]);
     const V lz = x * s.axes[6] + y * s.axes[7] + (z * s.axes[8] - s.at[2]);
@@ -66,13 +66,13 @@ struct Pass {
   }
 
   M below(int index, const std::int32_t* list, int count, M todo, int depth) const noexcept {
-    const WideNode& node = tables.nodes[index];
+    const SimdNode& node = tables.nodes[index];
     const float* at = place(index);
     const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
     V r = node.radius;
-    if (swept) r += load(memory.margin + node.body * kWideStates);
-    const bool leaf = node.children == 0 || depth == kWideDepth;
-    std::int32_t* kept = memory.lists + depth * memory.longest;
+    if (swept) r += load(memory.margin + node.body * kBatchStates);
+    const bool leaf = node.children == 0 || depth == kMaxTreeDepth;
+    std::int32_t* kept = memory.lists + depth * memory.max_list_size;
     int left = 0;
     M found(false);
     for (int k = 0; k < count; ++k) {
@@ -98,8 +98,8 @@ struct Pass {
 
   /// Solids that can be met by the root in any state: its sphere around all states against sixteen
   /// solids at once.
-  int near(const WideSearch& s, const M& todo, std::int32_t* kept) const noexcept {
-    const WideNode& node = tables.nodes[s.root];
+  int near(const SimdSearch& s, const M& todo, std::int32_t* kept) const noexcept {
+    const SimdNode& node = tables.nodes[s.root];
     const float* at = place(s.root);
     const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
     const float low[3] = {hmin(where(todo, x)), hmin(where(todo, y)), hmin(where(todo, z))};
@@ -110,11 +110,11 @@ struct Pass {
       spread2 += 0.25f * (high[i] - low[i]) * (high[i] - low[i]);
     }
     float radius = node.radius + 1.00001f * std::sqrt(spread2) + 1e-6f;
-    if (swept) radius += hmax(where(todo, load(memory.margin + node.body * kWideStates)));
+    if (swept) radius += hmax(where(todo, load(memory.margin + node.body * kBatchStates)));
     int left = 0;
-    for (int first = 0; first < s.solids; first += kWideStates) {
-      const WideSolids& row = tables.solid_rows[s.first_row + first / kWideStates];
-      for (int g = 0; g < kWideStates && first + g < s.solids; g += kWidth) {
+    for (int first = 0; first < s.solids; first += kBatchStates) {
+      const SimdSolids& row = tables.solid_rows[s.first_row + first / kBatchStates];
+      for (int g = 0; g < kBatchStates && first + g < s.solids; g += kWidth) {
         V d2 = 0.0f;
         for (int i = 0; i < 3; ++i) {
           const V local = load(row.axes[3 * i] + g) * center[0] + load(row.axes[3 * i + 1] + g) * center[1] +
@@ -133,18 +133,18 @@ struct Pass {
     return left;
   }
 
-  M search(const WideSearch& s, M todo) const noexcept {
+  M search(const SimdSearch& s, M todo) const noexcept {
     const std::int32_t* list = tables.solid_list + s.first_solid;
     if (s.nodes == 0) {
       if (s.first_row < 0) return below(s.root, list, s.solids, todo, 0);
       const int left = near(s, todo, memory.lists);
       return left == 0 ? M(false) : below(s.root, memory.lists, left, todo, 1);
     }
-    const WideNode& node = tables.nodes[s.root];
+    const SimdNode& node = tables.nodes[s.root];
     const float* at = place(s.root);
     const V x = load(at), y = load(at + kWidth), z = load(at + 2 * kWidth);
     V r = node.radius;
-    if (swept) r += load(memory.margin + node.body * kWideStates);
+    if (swept) r += load(memory.margin + node.body * kBatchStates);
     std::int32_t* kept = memory.lists;
     int left = 0;
     for (int k = 0; k < s.solids; ++k)
@@ -160,14 +160,14 @@ struct Pass {
   }
 
   M apart(int a, int b, const V& margin, const M& todo) const noexcept {
-    const WideNode &na = tables.nodes[a], &nb = tables.nodes[b];
+    const SimdNode &na = tables.nodes[a], &nb = tables.nodes[b];
     const float *pa = place(a), *pb = place(b);
     const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth), z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
     const V reach = margin + (na.radius + nb.radius);
     M open = todo && !(x * x + y * y + z * z > reach * reach);
     if ((na.children == 0 && nb.children == 0) || !any_of(open)) return open;
     const bool first = nb.children == 0 || (na.children != 0 && na.radius > nb.radius);
-    const WideNode& split = first ? na : nb;
+    const SimdNode& split = first ? na : nb;
     M found(false);
     for (int c = 0; c < split.children; ++c) {
       const M hit = first ? apart(split.first_child + c, b, margin, open) : apart(a, split.first_child + c, margin, open);
@@ -187,9 +187,9 @@ struct Pass {
       if (settled(asked && !todo, todo)) return asked && !todo;
     }
     for (int i = 0; i < tables.pair_count; ++i) {
-      const WidePair& pair = tables.pairs[i];
+      const SimdPair& pair = tables.pairs[i];
       const V margin = swept ? pair_margin(i, half) : V(0.0f);
-      const WideNode &na = tables.nodes[pair.a], &nb = tables.nodes[pair.b];
+      const SimdNode &na = tables.nodes[pair.a], &nb = tables.nodes[pair.b];
       const float *pa = place(pair.a), *pb = place(pair.b);
       const V x = load(pa) - load(pb), y = load(pa + kWidth) - load(pb + kWidth), z = load(pa + 2 * kWidth) - load(pb + 2 * kWidth);
       const V reach = margin + (na.radius + nb.radius);
@@ -197,7 +197,7 @@ struct Pass {
       if (!any_of(near)) continue;
       M open = near;
       for (int k = 0; k < pair.pairs && any_of(open); ++k) {
-        const WideNodePair& nodes = tables.node_pairs[pair.first + k];
+        const SimdNodePair& nodes = tables.node_pairs[pair.first + k];
         open = open && !apart(nodes.a, nodes.b, margin, open);
       }
       todo = todo && !(near && !open);
@@ -207,12 +207,12 @@ struct Pass {
   }
 };
 
-std::uint32_t check(const WideTables& tables, WideMemory& memory, const float* q, const float* half, std::uint32_t lanes,
+std::uint32_t check(const SimdTables& tables, SimdMemory& memory, const float* q, const float* half, std::uint32_t state_bits,
                     bool any) noexcept {
   std::uint32_t out = 0;
   const Pass pass{tables, memory, half != nullptr, any};
-  for (int g = 0; g < kWideStates; g += kWidth) {
-    const std::uint32_t here = lanes >> g;
+  for (int g = 0; g < kBatchStates; g += kWidth) {
+    const std::uint32_t here = state_bits >> g;
     if (here == 0) break;
     const M todo = M::__from_bitset(std::bitset<kWidth>(here & ((std::uint64_t{1} << kWidth) - 1)));
     if (!any_of(todo)) continue;
@@ -223,21 +223,21 @@ std::uint32_t check(const WideTables& tables, WideMemory& memory, const float* q
   return out;
 }
 
-float distances(const WideCapsule* robot, int count, const WideCapsules& people, float slack, float* distance) noexcept {
-  float least = 1e30f;
+float distances(const SimdCapsule* robot, int count, const SimdCapsules& people, float slack, float* distance) noexcept {
+  float nearest = 1e30f;
   for (int i = 0; i < count; ++i) {
-    const WideCapsule& c = robot[i];
+    const SimdCapsule& c = robot[i];
     for (int g = 0; g < 16; g += kWidth) {
       const V x = c.mx - load(people.mx + g), y = c.my - load(people.my + g), z = c.mz - load(people.mz + g);
       const V apart = sqrt(x * x + y * y + z * z), radii = c.radius + load(people.radius + g);
-      least = std::min(least, hmin(apart - radii));
+      nearest = std::min(nearest, hmin(apart - radii));
       store(apart - (c.reach + load(people.reach + g)), distance + 16 * i + g);
     }
   }
   for (int i = 0; i < count; ++i) {
-    const WideCapsule& c = robot[i];
+    const SimdCapsule& c = robot[i];
     for (int g = 0; g < 16; g += kWidth) {
-      if (!any_of(load(distance + 16 * i + g) <= least + slack)) continue;
+      if (!any_of(load(distance + 16 * i + g) <= nearest + slack)) continue;
       const V dx = load(people.dx + g), dy = load(people.dy + g), dz = load(people.dz + g), bb = load(people.dd + g),
               over_bb = load(people.over_dd + g);
       const V rx = c.ax - load(people.ax + g), ry = c.ay - load(people.ay + g), rz = c.az - load(people.az + g);
@@ -249,10 +249,10 @@ float distances(const WideCapsule* robot, int count, const WideCapsules& people,
       const V x = rx + s * c.dx - t * dx, y = ry + s * c.dy - t * dy, z = rz + s * c.dz - t * dz;
       const V d = sqrt(x * x + y * y + z * z) - (c.radius + load(people.radius + g));
       store(d, distance + 16 * i + g);
-      least = std::min(least, hmin(d));
+      nearest = std::min(nearest, hmin(d));
     }
   }
-  return least;
+  return nearest;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace stdx = std::experimental;
 using V = stdx::native_simd<float>;
 using M = V::mask_type;
 constexpr int kWidth = static_cast<int>(V::size());
-static_assert(kWideStates % kWidth == 0);
+static_assert(kBatchStates % kWidth == 0);
 
 [[gnu::always_inline]] inline V load(const float* p) noexcept { return V(p, stdx::vector_aligned); }
 [[gnu::always_inline]] inline void store(const V& v, float* p) noexcept { v.copy_to(p, stdx::vector_aligned); }
@@ -49,15 +49,15 @@ static_assert(kWideStates % kWidth == 0);
   cosine = out_c;
 }
 
-/// Poses of the bodies behind `count` joints, 12 rows of kWidth each, kWideStates x 12 floats
-/// apart; body 0 is at `root`. q: positions, rows of kWideStates.
-[[maybe_unused]] inline void forward(const WideJoint* joints, int count, const float root[12], const float* q, float* pose) noexcept {
+/// Poses of the bodies behind `count` joints, 12 rows of kWidth each, kBatchStates x 12 floats
+/// apart; body 0 is at `root`. q: positions, rows of kBatchStates.
+[[maybe_unused]] inline void forward(const SimdJoint* joints, int count, const float root[12], const float* q, float* pose) noexcept {
   for (int i = 0; i < 12; ++i) store(V(root[i]), pose + i * kWidth);
   for (int j = 0; j < count; ++j) {
-    const WideJoint& joint = joints[j];
-    const float* above = pose + joint.parent * 12 * kWideStates;
-    float* out = pose + (j + 1) * 12 * kWideStates;
-    const V value = load(q + joint.row * kWideStates) * joint.factor + joint.offset;
+    const SimdJoint& joint = joints[j];
+    const float* above = pose + joint.parent * 12 * kBatchStates;
+    float* out = pose + (j + 1) * 12 * kBatchStates;
+    const V value = load(q + joint.row * kBatchStates) * joint.factor + joint.offset;
     V sine, cosine;
     if (!joint.slides) sine_cosine(value, sine, cosine);
     const float* T = joint.T;

@@ -431,7 +431,7 @@ class Coverer {
     double excess = settings_.excess[level];
     const double parent = level == 0 ? node.radius : settings_.excess[level - 1];
     const std::vector<Candidate> tried = candidates(node, cells, excess, level);
-    for (; clusters.empty() && excess < 0.8 * parent; excess *= 1.4) clusters = choose(tried, cells, excess, settings_.most_children);
+    for (; clusters.empty() && excess < 0.8 * parent; excess *= 1.4) clusters = choose(tried, cells, excess, settings_.max_children);
     if (clusters.empty() || clusters.size() == 1) {
       if (clusters.size() == 1) {
         const CoverNode tighter = around(clusters[0]);

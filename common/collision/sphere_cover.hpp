@@ -24,7 +24,7 @@ struct CoverSettings {
   /// How far the spheres of each level below the root may stand out of the solid [m]; a node that
   /// would need more spheres than it may have children gets larger ones.
   std::vector<double> excess{0.03, 0.01, 0.004};
-  int most_children{12};  ///< upper limit of the children of a node
+  int max_children{12};  ///< upper limit of the children of a node
 };
 
 /// Spheres around a shape: each point of it is inside at least one leaf. Boxes, cylinders, capsules

@@ -12,7 +12,7 @@ void put(const Vector3& p, float (&out)[3]) {
 
 }  // namespace
 
-WideCost::WideCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points)
+BatchCost::BatchCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points)
     : robot_(robot),
       kernel_(&detail::cost_kernel()),
       link_capsules_(std::move(capsules)),
@@ -20,31 +20,31 @@ WideCost::WideCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, s
       ends_(rows(8 * link_capsules_.size())),
       point_(rows(3 * link_points_.size())) {}
 
-WideCost::Floats WideCost::rows(std::size_t count) {
+BatchCost::Floats BatchCost::rows(std::size_t count) {
   const std::size_t size = std::max<std::size_t>(count, 1) * kStates;
   auto* memory = static_cast<float*>(::operator new[](size * sizeof(float), std::align_val_t(64)));
   std::fill_n(memory, size, 0.0f);
   return Floats(memory);
 }
 
-void WideCost::set_axes(const std::vector<int>& axes) {
+void BatchCost::set_axes(const std::vector<int>& axes) {
   axes_ = axes;
   folded_.resize(0);
 }
 
-void WideCost::set_base(const Pose& T_world_base) {
+void BatchCost::set_base(const Pose& T_world_base) {
   base_ = T_world_base;
   place_people();
 }
 
-void WideCost::set_people(std::vector<Someone> people, double safety_radius, double visibility_cutoff) {
+void BatchCost::set_people(std::vector<Someone> people, double safety_radius, double visibility_cutoff) {
   someone_ = std::move(people);
   safety_radius_ = safety_radius;
   visibility_cutoff_ = visibility_cutoff;
   place_people();
 }
 
-void WideCost::place_people() {
+void BatchCost::place_people() {
   people_.clear();
   for (const Someone& one : someone_) {
     detail::CostPerson h{};
@@ -65,7 +65,7 @@ void WideCost::place_people() {
   visibility_ = rows(people_.size());
 }
 
-bool WideCost::fold(const Vector& from, const Vector& to) {
+bool BatchCost::fold(const Vector& from, const Vector& to) {
   const auto same = [&](const Vector& a, const Vector& b) {
     for (Eigen::Index i = 0; i < a.size(); ++i)
       if (a[i] != b[i] && chain_.row_of_dof[static_cast<std::size_t>(i)] < 0) return false;
@@ -99,11 +99,11 @@ bool WideCost::fold(const Vector& from, const Vector& to) {
   return same(from, to);
 }
 
-bool WideCost::run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points) {
+bool BatchCost::run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points) {
   if (axes_.empty() || from.size() != robot_.dof() || to.size() != from.size() || !fold(from, to)) return false;
   for (std::size_t row = 0; row < axes_.size(); ++row) {
     const double start = from[axes_[row]], along = to[axes_[row]] - start;
-    if (!(std::abs(start) + std::abs(along) < WideChain::kMostTurn)) return false;
+    if (!(std::abs(start) + std::abs(along) < BatchChain::kMaxTurn)) return false;
     for (int i = 0; i < count; ++i) q_[row * kStates + static_cast<std::size_t>(i)] = static_cast<float>(start + at[i] * along);
   }
   detail::CostTables tables{};

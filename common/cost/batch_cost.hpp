@@ -21,13 +21,13 @@ struct LinkPoint {
   Vector3 p_link{Vector3::Zero()};  ///< in the frame of the link [m]
 };
 
-class WideCost {
+class BatchCost {
  public:
   /// Number of states in one batch.
-  static constexpr int kStates = detail::kWideStates;
+  static constexpr int kStates = detail::kBatchStates;
 
   /// `points`: visibility is that of the first.
-  WideCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points);
+  BatchCost(const RobotModel& robot, std::vector<LinkCapsule> capsules, std::vector<LinkPoint> points);
 
   /// Sets the axes in which the states of a batch differ; where another axis has changed, the fixed
   /// parts of the robot are placed anew. Empty: run() is false.
@@ -48,13 +48,13 @@ class WideCost {
   bool run(const Vector& from, const Vector& to, const double* at, int count, std::size_t points);
   /// Returns the safety cost, [0, 1], of a person by index in one state of the last run(), by
   /// index.
-  double safety(std::size_t person, int lane) const { return safety_[person * kStates + static_cast<std::size_t>(lane)]; }
+  double safety(std::size_t person, int slot) const { return safety_[person * kStates + static_cast<std::size_t>(slot)]; }
   /// Returns the visibility cost, [0, 1], of the first point for a person by index in one state of
   /// the last run(), by index.
-  double visibility(std::size_t person, int lane) const { return visibility_[person * kStates + static_cast<std::size_t>(lane)]; }
+  double visibility(std::size_t person, int slot) const { return visibility_[person * kStates + static_cast<std::size_t>(slot)]; }
   /// Returns where a point by index is in one state of the last run(), world [m].
-  Vector3 point(std::size_t i, int lane) const {
-    const float* p = point_.get() + 3 * i * kStates + lane;
+  Vector3 point(std::size_t i, int slot) const {
+    const float* p = point_.get() + 3 * i * kStates + slot;
     return base_.translation() + Vector3(p[0], p[kStates], p[2 * kStates]);
   }
   /// Sets another register width than the widest, for tests and measurements.
@@ -75,7 +75,7 @@ class WideCost {
   std::vector<LinkPoint> link_points_;
   std::vector<int> axes_;
   Vector folded_;  // the state the chain was folded at; empty: not yet
-  WideChain chain_;
+  BatchChain chain_;
   Pose base_{Pose::Identity()};
   std::vector<detail::CostCapsule> capsules_;
   std::vector<detail::CostPoint> points_;

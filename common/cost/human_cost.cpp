@@ -99,30 +99,30 @@ void HumanCost::set_people(const HumanState& people) {
   someone_.clear();
   for (const Person& person : people_.people) someone_.push_back({simplified_body(person), sight_of(person), placed_arms(person), nullptr});
   find_comfort_layers();
-  tell_wide();
+  set_batch_people();
 }
 
 void HumanCost::set_base(const Pose& T_world_base) {
   T_world_base_ = T_world_base;
-  if (wide_) wide_->set_base(T_world_base);
+  if (batch_) batch_->set_base(T_world_base);
 }
 
 void HumanCost::set_moving_axes(const std::vector<int>& axes) {
   if (axes.empty()) {
-    wide_.reset();
+    batch_.reset();
     return;
   }
-  if (!wide_) wide_ = std::make_unique<WideCost>(*robot_, capsules_, probes_);
-  wide_->set_axes(axes);
-  wide_->set_base(T_world_base_);
-  tell_wide();
+  if (!batch_) batch_ = std::make_unique<BatchCost>(*robot_, capsules_, probes_);
+  batch_->set_axes(axes);
+  batch_->set_base(T_world_base_);
+  set_batch_people();
 }
 
-void HumanCost::tell_wide() {
-  if (!wide_) return;
-  std::vector<WideCost::Someone> people;
+void HumanCost::set_batch_people() {
+  if (!batch_) return;
+  std::vector<BatchCost::Someone> people;
   for (const Someone& one : someone_) people.push_back({one.body, one.sight});
-  wide_->set_people(std::move(people), settings_.safety_radius, settings_.visibility_cutoff);
+  batch_->set_people(std::move(people), settings_.safety_radius, settings_.visibility_cutoff);
 }
 
 void HumanCost::set_layers(LayersNow layers) {
@@ -237,23 +237,23 @@ void HumanCost::on_line(const Vector& from, const Vector& to, const double* at, 
     std::fill_n(cost, count, 0.0);
     return;
   }
-  for (int first = 0; first < count; first += WideCost::kStates) {
-    const int here = std::min(WideCost::kStates, count - first);
-    if (!wide_ || !wide_->run(from, to, at + first, here, layers_.outside.empty() ? 1 : probes_.size())) {
+  for (int first = 0; first < count; first += BatchCost::kStates) {
+    const int here = std::min(BatchCost::kStates, count - first);
+    if (!batch_ || !batch_->run(from, to, at + first, here, layers_.outside.empty() ? 1 : probes_.size())) {
       for (int i = first; i < first + here; ++i) cost[i] = weighted_cost(parts(from + at[i] * (to - from)), settings_);
       continue;
     }
-    for (int lane = 0; lane < here; ++lane) {
-      const Vector3 p_tool = wide_->point(0, lane);
+    for (int slot = 0; slot < here; ++slot) {
+      const Vector3 p_tool = batch_->point(0, slot);
       double most = 0;
       for (std::size_t k = 0; k < someone_.size(); ++k) {
         CostParts now;
-        now.safety = wide_->safety(k, lane);
-        now.visibility = wide_->visibility(k, lane);
+        now.safety = batch_->safety(k, slot);
+        now.visibility = batch_->visibility(k, slot);
         if (settings_.w_comfort > 0) now.comfort = arm_comfort_cost(someone_[k].comfort, someone_[k].arms, p_tool);
         most = std::max(most, weighted_cost(now, settings_));
       }
-      cost[first + lane] = most + outside_cost([&](std::size_t i) { return wide_->point(i, lane); });
+      cost[first + slot] = most + outside_cost([&](std::size_t i) { return batch_->point(i, slot); });
     }
   }
 }

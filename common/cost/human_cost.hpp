@@ -133,7 +133,7 @@ class HumanCost {
   void find_comfort_layers();
   template <class PointAt>
   double outside_cost(PointAt&& point_at) const;
-  void tell_wide();
+  void set_batch_people();
   double distance_to(const SimplifiedBody&) const;
   const RobotModel* robot_;
   CostSettings settings_;
@@ -143,7 +143,7 @@ class HumanCost {
   bool forbids_{false};
   std::vector<Someone> someone_;
   std::vector<LinkPoint> probes_;  // at which outside layers are sampled; the tool first
-  std::unique_ptr<WideCost> wide_;
+  std::unique_ptr<BatchCost> batch_;
   Pose T_world_base_{Pose::Identity()};
   int tool_{-1};
   mutable std::vector<Pose> links_;

@@ -3,7 +3,7 @@
 namespace handsel::detail {
 
 const CostKernel& cost_kernel() noexcept {
-#ifdef HANDSEL_WIDE_LANES
+#ifdef HANDSEL_SIMD_UNITS
   static const CostKernel& best = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
                                           __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")
                                       ? kCostKernelAvx512

@@ -29,7 +29,7 @@ struct CostPerson {
 };
 
 struct CostTables {
-  const WideJoint* joints;
+  const SimdJoint* joints;
   const CostCapsule* capsules;
   const CostPoint* points;  ///< visibility is that of the first
   const CostPerson* people;
@@ -37,7 +37,7 @@ struct CostTables {
   float root[12];  ///< of the robot, by rows
 };
 
-/// On 64 bytes, rows of kWideStates: pose 12 a body, ends 8 a capsule; out: safety and visibility
+/// On 64 bytes, rows of kBatchStates: pose 12 a body, ends 8 a capsule; out: safety and visibility
 /// one a person, point 3 a point.
 struct CostMemory {
   float *pose, *ends, *safety, *visibility, *point;
@@ -45,12 +45,12 @@ struct CostMemory {
 
 struct CostKernel {
   const char* name;
-  /// q as in WideKernels; the first `count` of kWideStates states are written.
+  /// q as in SimdKernels; the first `count` of kBatchStates states are written.
   void (*run)(const CostTables& tables, const CostMemory& memory, const float* q, int count) noexcept;
 };
 
 extern const CostKernel kCostKernelBase;
-#ifdef HANDSEL_WIDE_LANES
+#ifdef HANDSEL_SIMD_UNITS
 extern const CostKernel kCostKernelAvx2;
 extern const CostKernel kCostKernelAvx512;
 #endif

@@ -59,48 +59,48 @@ struct Place {
 
 void run_group(const CostTables& tables, const CostMemory& memory, const float* q, int first) noexcept {
   forward(tables.joints, tables.joint_count, tables.root, q, memory.pose);
-  const auto pose = [&](int body) { return memory.pose + body * 12 * kWideStates; };
+  const auto pose = [&](int body) { return memory.pose + body * 12 * kBatchStates; };
   for (int i = 0; i < tables.point_count; ++i) {
     const Place p = transform(pose(tables.points[i].body), tables.points[i].p);
-    float* out = memory.point + 3 * kWideStates * i + first;
+    float* out = memory.point + 3 * kBatchStates * i + first;
     store(p.x, out);
-    store(p.y, out + kWideStates);
-    store(p.z, out + 2 * kWideStates);
+    store(p.y, out + kBatchStates);
+    store(p.z, out + 2 * kBatchStates);
   }
   if (tables.people_count == 0) return;
   for (int i = 0; i < tables.capsule_count; ++i) {
     const CostCapsule& capsule = tables.capsules[i];
     const Place a = transform(pose(capsule.body), capsule.a), b = transform(pose(capsule.body), capsule.b);
-    float* ends = memory.ends + 8 * kWideStates * i;
+    float* ends = memory.ends + 8 * kBatchStates * i;
     const V rows[6] = {a.x, a.y, a.z, b.x - a.x, b.y - a.y, b.z - a.z};
     for (int k = 0; k < 6; ++k) store(rows[k], ends + k * kWidth);
   }
   for (int k = 0; k < tables.people_count; ++k) {
     const CostPerson& h = tables.people[k];
-    V least = 1e9f;
+    V nearest = 1e9f;
     for (int i = 0; i < tables.capsule_count; ++i) {
-      float* ends = memory.ends + 8 * kWideStates * i;
+      float* ends = memory.ends + 8 * kBatchStates * i;
       const auto middle = [&](int c) { return load(ends + c * kWidth) + 0.5f * load(ends + (c + 3) * kWidth); };
       const Place m{middle(0), middle(1), middle(2)};
       const V d = min(to_head(h, m), to_cylinder(h, m)) - tables.capsules[i].radius;
-      least = min(least, d);
+      nearest = min(nearest, d);
       store(d - tables.capsules[i].half, ends + 6 * kWidth);
     }
     for (int i = 0; i < tables.capsule_count; ++i) {
-      const float* ends = memory.ends + 8 * kWideStates * i;
-      if (none_of(load(ends + 6 * kWidth) < min(least, V(1.0f / h.over_safety_radius)))) continue;
+      const float* ends = memory.ends + 8 * kBatchStates * i;
+      if (none_of(load(ends + 6 * kWidth) < min(nearest, V(1.0f / h.over_safety_radius)))) continue;
       const Place a{load(ends), load(ends + kWidth), load(ends + 2 * kWidth)},
           d{load(ends + 3 * kWidth), load(ends + 4 * kWidth), load(ends + 5 * kWidth)};
-      least = min(least, min(segment_to_head(h, a, d), segment_to_cylinder(h, a, d)) - tables.capsules[i].radius);
+      nearest = min(nearest, min(segment_to_head(h, a, d), segment_to_cylinder(h, a, d)) - tables.capsules[i].radius);
     }
-    store(safety_of(max(min(least * -h.over_safety_radius, V(0.0f)), V(-1.0f))), memory.safety + kWideStates * k + first);
+    store(safety_of(max(min(nearest * -h.over_safety_radius, V(0.0f)), V(-1.0f))), memory.safety + kBatchStates * k + first);
     const float* tool = memory.point + first;
-    const V x = load(tool) - h.eyes[0], y = load(tool + kWideStates) - h.eyes[1], z = load(tool + 2 * kWideStates) - h.eyes[2];
+    const V x = load(tool) - h.eyes[0], y = load(tool + kBatchStates) - h.eyes[1], z = load(tool + 2 * kBatchStates) - h.eyes[2];
     const V far = x * x + y * y + z * z;
     const V cosine = (x * h.gaze[0] + y * h.gaze[1] + z * h.gaze[2]) / sqrt(far + 1e-12f);
-    V seen = acos_share(max(min(cosine, V(1.0f)), V(-1.0f)));
+    V seen = acos_fraction(max(min(cosine, V(1.0f)), V(-1.0f)));
     where(far > (h.cutoff > 0 ? h.cutoff * h.cutoff : -1.0f), seen) = 0.0f;
-    store(seen, memory.visibility + kWideStates * k + first);
+    store(seen, memory.visibility + kBatchStates * k + first);
   }
 }
 

@@ -18,13 +18,13 @@ template <class T>
 /// Safety cost for penetration - 1 in [-1, 0].
 template <class T>
 [[gnu::always_inline]] inline T safety_of(const T& u) noexcept {
-  constexpr float kLeast = 0.36787944f;  // 1/e
-  return (exp_unit(u) - kLeast) * (1 / (1 - kLeast));
+  constexpr float kInverseE = 0.36787944f;  // 1/e
+  return (exp_unit(u) - kInverseE) * (1 / (1 - kInverseE));
 }
 
 /// acos(c) / pi for c in [-1, 1], error below 2.2e-5 (Abramowitz and Stegun 4.4.45).
 template <class T>
-[[gnu::always_inline]] inline T acos_share(const T& c) noexcept {
+[[gnu::always_inline]] inline T acos_fraction(const T& c) noexcept {
   using std::copysign;
   using std::fabs;
   using std::sqrt;

@@ -96,7 +96,7 @@ std::string checked_obj(const fs::path& file, std::string content) {
   long long before = 0;
   TriangleCount triangles(file);
   for (Lines lines(file, content); lines.next();) {
-    if (lines.goes_on()) lines.fail("a line that goes on in the next one (\\); it must be one line");
+    if (lines.is_continued()) lines.fail("a line that goes on in the next one (\\); it must be one line");
     const std::string_view kind = lines.word();
     if (kind == "v") {
       ++before;
@@ -105,7 +105,7 @@ std::string checked_obj(const fs::path& file, std::string content) {
       std::size_t corners = 0;
       for (std::string_view word = lines.word(); !word.empty() && word[0] != '#'; word = lines.word()) {
         check_obj_index(lines, word, before, all);
-        if (++corners > kMaxCorners) lines.fail("a face has more than 1000 vertices");
+        if (++corners > kMaxFaceVertices) lines.fail("a face has more than 1000 vertices");
       }
       triangles.add(corners);
     }

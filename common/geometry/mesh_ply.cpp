@@ -181,7 +181,7 @@ class Body {
     if (element.name != "face") return;
     if (is_index(property)) {
       corners = values;
-      if (values > kMaxCorners) fail("face " + std::to_string(entry_ + 1) + " has more than 1000 vertices");
+      if (values > kMaxFaceVertices) fail("face " + std::to_string(entry_ + 1) + " has more than 1000 vertices");
       triangles_ += values > 2 ? values - 2 : 0;
       if (triangles_ > kMaxTriangles) throw ConfigError(file_.string() + ": more than 500000 triangles, the most a mesh may have");
     } else if (values > 2 * corners) {

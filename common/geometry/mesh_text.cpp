@@ -40,7 +40,7 @@ bool Lines::next() {
   return true;
 }
 
-bool Lines::goes_on() const { return line_.ends_with('\\') || line_.ends_with("\\\r"); }
+bool Lines::is_continued() const { return line_.ends_with('\\') || line_.ends_with("\\\r"); }
 
 std::string_view Lines::word() {
   constexpr std::string_view kBlank = " \t\r\f\v";

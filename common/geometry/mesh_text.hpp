@@ -15,9 +15,9 @@ inline constexpr std::uintmax_t kMaxBytes = 64u << 20;
 inline constexpr std::size_t kMaxTriangles = 500'000;
 /// Each triangle has three of its own at most.
 inline constexpr std::size_t kMaxVertices = 3 * kMaxTriangles;
-inline constexpr std::size_t kMaxCorners = 1000;   ///< of one face: splitting it costs their square
-inline constexpr std::size_t kMaxLine = 1u << 16;  ///< [bytes]
-inline constexpr double kLargestCoordinate = 1e9;  ///< in the unit of the file
+inline constexpr std::size_t kMaxFaceVertices = 1000;  ///< of one face: splitting it costs their square
+inline constexpr std::size_t kMaxLine = 1u << 16;      ///< [bytes]
+inline constexpr double kLargestCoordinate = 1e9;      ///< in the unit of the file
 
 /// Returns the number that `word` is, nothing where it is none, not finite or beyond
 /// kLargestCoordinate.
@@ -37,7 +37,7 @@ class Lines {
   /// The next word as a coordinate; throws ConfigError naming `what` where it is none.
   double coordinate(const char* what);
   /// Whether a backslash at its end joins the line with the next one.
-  bool goes_on() const;
+  bool is_continued() const;
   /// The text behind the line.
   std::string_view rest() const { return rest_; }
   std::size_t number() const { return number_; }  ///< of the line, from 1; 0 before the first

@@ -89,7 +89,7 @@ GripForces squeeze(const std::vector<PointContact>& contacts, const Eigen::Matri
     const Vector3 t2 = normal.cross(t1);
     for (int k = 0; k < settings.edges; ++k) {
       const double angle = 2 * std::numbers::pi * k / settings.edges;
-      const Vector3 inside = settings.friction_share * contact.friction * normal - std::cos(angle) * t1 - std::sin(angle) * t2;
+      const Vector3 inside = settings.friction_fraction * contact.friction * normal - std::cos(angle) * t1 - std::sin(angle) * t2;
       const Eigen::RowVector3d of_load = inside.transpose() * bear.middleRows(3 * i, 3);
       A.row(i * per + k).head(n - 1) = -inside.transpose() * free.middleRows(3 * i, 3);
       A(i * per + k, n - 1) = 1;

@@ -13,7 +13,7 @@ struct GripForceSettings {
   double max_normal{15.0};  ///< a finger presses with no more than this [N]
   /// Fraction of the friction coefficient that is used; the rest is for normals that are not where
   /// they were planned.
-  double friction_share{0.8};
+  double friction_fraction{0.8};
   double acceleration{13.0};  ///< of the load, gravity included, in the worst direction [m/s^2]
   int edges{12};              ///< of a cone, linearised from outside
 };
@@ -22,7 +22,7 @@ struct GripForceSettings {
 struct GripForces {
   /// On the object, one a contact; they sum to no force and no torque [N].
   std::vector<Vector3> forces;
-  /// Smallest over the contacts of friction_share * friction * normal force - tangential force,
+  /// Smallest over the contacts of friction_fraction * friction * normal force - tangential force,
   /// when the load pulls in its worst direction [N]. Not positive: the load is not resisted with
   /// that reserve of friction.
   double margin{};

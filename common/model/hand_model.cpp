@@ -20,7 +20,7 @@ class HandModelBuilder {
     hand_.name_ = text_.name();
     read_model();
     read_fingers();
-    hand_.rest_ = posture(text_.rest(), "rest", hand_.model_.rest_posture());
+    hand_.rest_ = posture(text_.rest(), "rest", hand_.model_.rest_configuration());
     hand_.pregrasp_ = posture(text_.pregrasp(), "pregrasp", hand_.rest_);
     shrink();
     hand_.grip_force_ = text_.grip_force();

@@ -41,7 +41,7 @@ class Chain {
     lower_.resize(kept), upper_.resize(kept), rest_.resize(kept);
     for (int i = 0; i < kept; ++i) {
       const Axis& axis = robot.axes()[group.axes[i]];
-      lower_[i] = axis.lower, upper_[i] = axis.upper, rest_[i] = robot.rest_posture()[group.axes[i]];
+      lower_[i] = axis.lower, upper_[i] = axis.upper, rest_[i] = robot.rest_configuration()[group.axes[i]];
     }
     std::vector<int> path;
     for (int link = group.tip; robot.links()[link].parent_joint >= 0; link = robot.joints()[path.back()].parent)

@@ -88,7 +88,7 @@ struct Fitter {
   void operator()(const MeshPtr& m) const { out.push_back(fit(m->vertices)); }
 };
 
-bool excepted(const Exception& exception, const std::string& person, BodyPart part) {
+bool excepted(const SeparationExemption& exception, const std::string& person, BodyPart part) {
   if (exception.person.empty() || exception.person != person) return false;
   const bool right = part == BodyPart::forearm_right || part == BodyPart::hand_right;
   const bool left = part == BodyPart::forearm_left || part == BodyPart::hand_left;
@@ -111,7 +111,7 @@ std::vector<LinkCapsule> robot_capsules(const RobotModel& robot) {
 }
 
 Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link, const Pose& T_world_base,
-                      const HumanState& people, const Exception& exception) {
+                      const HumanState& people, const SeparationExemption& exception) {
   Separation best;
   best.distance = std::numeric_limits<double>::infinity();
   const Person* nearest = nullptr;

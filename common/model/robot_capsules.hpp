@@ -30,7 +30,7 @@ struct Separation {
 };
 
 /// Forearm and hand of the handover, exempt from separation (formulas: section 4).
-struct Exception {
+struct SeparationExemption {
   std::string person;      ///< empty: none
   Side side{Side::right};  ///< of the taking hand, unless both_sides
   bool both_sides{true};   ///< when the taking hand is not known yet
@@ -39,6 +39,6 @@ struct Exception {
 /// Returns the nearest approach; T_root_link from RobotModel::forward. Allocates nothing (person
 /// ids up to 15 characters, complete bodies).
 Separation separation(const std::vector<LinkCapsule>& robot, const std::vector<Pose>& T_root_link, const Pose& T_world_base,
-                      const HumanState& people, const Exception& exception = {});
+                      const HumanState& people, const SeparationExemption& exception = {});
 
 }  // namespace handsel

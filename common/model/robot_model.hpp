@@ -98,11 +98,11 @@ class RobotModel {
   const KinematicLimits& guard_limits() const { return guard_; }
   /// The maker's, for stopping and recoil; <= guard.
   const KinematicLimits& stop_limits() const { return stop_; }
-  const Vector& rest_posture() const { return rest_; }  ///< all axes
-  int tool_link() const { return tool_; }               ///< hand frame; -1 if none
-  int redundancy_axis() const { return redundancy_; }   ///< -1 if none
-  const std::string& hand() const { return hand_; }     ///< name of the hand description, may be empty
-  int gaze_link() const { return gaze_; }               ///< camera link, x forward; -1 if none
+  const Vector& rest_configuration() const { return rest_; }  ///< all axes
+  int tool_link() const { return tool_; }                     ///< hand frame; -1 if none
+  int redundancy_axis() const { return redundancy_; }         ///< -1 if none
+  const std::string& hand() const { return hand_; }           ///< name of the hand description, may be empty
+  int gaze_link() const { return gaze_; }                     ///< camera link, x forward; -1 if none
 
   /// Poses of all links in the root frame for the positions of all axes. `T_root_link` is resized
   /// once, then reused.

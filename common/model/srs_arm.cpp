@@ -95,7 +95,7 @@ double SrsArm::axis_cost(const Problem& problem, int axis, double& angle) const 
 }
 
 /// The two ways to split R into turns about three axes from `first`; one, twice, when they are in line.
-SrsArm::Ways SrsArm::ways(const Eigen::Matrix3d& R, int first, double first_when_in_line) const {
+SrsArm::Solutions SrsArm::solutions(const Eigen::Matrix3d& R, int first, double first_when_in_line) const {
   const Eigen::Matrix3d& B = basis_[first / 4];
   const Eigen::Matrix3d Z = B.transpose() * R * B;
   const double sine = std::hypot(Z(0, 2), Z(1, 2)), middle = std::atan2(sine, Z(2, 2));
@@ -116,7 +116,7 @@ SrsArm::Ways SrsArm::ways(const Eigen::Matrix3d& R, int first, double first_when
 void SrsArm::choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const {
   double best = std::numeric_limits<double>::infinity();
   std::array<double, 3> chosen{};
-  for (std::array<double, 3> q : ways(R, first, problem.seed[first])) {
+  for (std::array<double, 3> q : solutions(R, first, problem.seed[first])) {
     double cost = 0;
     for (int i = 0; i < 3; ++i) cost += axis_cost(problem, first + i, q[i]);
     if (cost < best) best = cost, chosen = q;
@@ -208,8 +208,8 @@ void SrsArm::each_branch(const Pose& T_root_tip, double elbow_angle, const Take&
     bend(problem);
     const double circle = elbow_angle - angle_of(problem.R_start * to_elbow_, problem.to_target);
     const Eigen::Matrix3d R = Eigen::AngleAxisd(circle, problem.circle_axis).toRotationMatrix() * problem.R_start;
-    const Ways wrists = ways(problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, 0.0);
-    for (const auto& shoulder : ways(R, 0, 0.0))
+    const Solutions wrists = solutions(problem.R_elbow_t * (R.transpose() * problem.R_tip), 4, 0.0);
+    for (const auto& shoulder : solutions(R, 0, 0.0))
       for (const auto& wrist : wrists) {
         Axes q(7);
         q << shoulder[0], shoulder[1], shoulder[2], problem.elbow, wrist[0], wrist[1], wrist[2];

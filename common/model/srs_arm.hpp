@@ -52,7 +52,7 @@ class SrsArm {
     Axes q;
   };
   struct Problem;
-  using Ways = std::array<std::array<double, 3>, 2>;
+  using Solutions = std::array<std::array<double, 3>, 2>;
 
   explicit SrsArm(const Chain& chain) : chain_(&chain) {}
   template <class Take>
@@ -60,7 +60,7 @@ class SrsArm {
   double axis_cost(const Problem& problem, int axis, double& angle) const;
   std::optional<double> set_target(const Pose& T_root_tip, Problem& problem) const;
   void bend(Problem& problem) const;
-  Ways ways(const Eigen::Matrix3d& R, int first, double first_when_in_line) const;
+  Solutions solutions(const Eigen::Matrix3d& R, int first, double first_when_in_line) const;
   double angle_of(const Vector3& to_elbow, const Vector3& to_wrist) const;
   Axes polished(const Pose& T_root_tip, const Axes& q) const;
   void choose(const Problem& problem, const Eigen::Matrix3d& R, int first, Candidate& candidate) const;

@@ -111,7 +111,7 @@ class RobotSide {
   Reference reference_{Reference::follows};
   std::string refusal_;
   Vector position_, velocity_, acceleration_, effort_, measured_;
-  std::vector<SoftStop> stops_;
+  std::vector<JerkLimitedStop> stops_;
   std::vector<SetpointFilter> joins_;  // from the held reference to set-points that rest near it
   Vector joined_;                      // configuration of those set-points
   bool seen_{false}, fresh_{false};

@@ -50,20 +50,20 @@ AxisExtremes extremes(const AxisTrajectory& axis) noexcept {
 }
 
 AxisExtremes rate_extremes(const AxisState& start, const Segment* segments, int count) noexcept {
-  double v = start.velocity, a = start.acceleration, most_v = std::abs(v), most_a = std::abs(a), most_j = 0;
+  double v = start.velocity, a = start.acceleration, max_v = std::abs(v), max_a = std::abs(a), most_j = 0;
   for (int k = 0; k < count; ++k) {
     const double T = segments[k].duration, j = segments[k].jerk, a_next = a + T * j;
     most_j = std::max(most_j, std::abs(j));
-    if (a * a_next < 0) most_v = std::max(most_v, std::abs(v - a * a / (2 * j)));
+    if (a * a_next < 0) max_v = std::max(max_v, std::abs(v - a * a / (2 * j)));
     v += T * (a + a_next) / 2;
     a = a_next;
-    most_v = std::max(most_v, std::abs(v));
-    most_a = std::max(most_a, std::abs(a));
+    max_v = std::max(max_v, std::abs(v));
+    max_a = std::max(max_a, std::abs(a));
   }
-  return {0, 0, most_v, most_a, most_j};
+  return {0, 0, max_v, max_a, most_j};
 }
 
-double limit_share(const Trajectory& trajectory, const KinematicLimits& limits) {
+double limit_ratio(const Trajectory& trajectory, const KinematicLimits& limits) {
   double share = 0;
   for (int i = 0; i < trajectory.size(); ++i) {
     const AxisExtremes e = extremes(trajectory.axes[i]);

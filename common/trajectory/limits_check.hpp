@@ -23,7 +23,7 @@ AxisExtremes extremes(const AxisTrajectory&) noexcept;
 AxisExtremes rate_extremes(const AxisState& start, const Segment* segments, int count) noexcept;
 
 /// Largest of |v|/V, |a|/A, |j|/J over all axes; 1 = a limit is met.
-double limit_share(const Trajectory&, const KinematicLimits&);
+double limit_ratio(const Trajectory&, const KinematicLimits&);
 
 /// Empty when every axis stays within limits * (1 + tol); else one sentence naming the axis, what
 /// and how much. Also refuses numbers that are not finite, negative durations, axes of different

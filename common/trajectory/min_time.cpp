@@ -165,7 +165,7 @@ double MotionFamily::gain(double s) const noexcept {
   return vf_ + (s * s - af_ * af_ / 2 + std::min(s, A_) * a1 / 2) / J_;
 }
 
-double MotionFamily::least_gain() const noexcept {
+double MotionFamily::min_gain() const noexcept {
   const double A2 = A_ * A_;
   if (C_ >= 0.9375 * A2) return -A_ / 4;
   const double root = kInflexion * std::sqrt(C_);
@@ -199,7 +199,7 @@ bool MotionFamily::first_root(double D, double from, double to, double* s) const
   *s = from;
   if (f >= 0) return true;
   if (from < 0) {
-    const double turn = std::clamp(least_gain(), from, to);
+    const double turn = std::clamp(min_gain(), from, to);
     if (gain(from) > 0) {
       double peak = turn;
       if (gain(turn) < 0) peak = top(from, turn);
@@ -236,8 +236,8 @@ double MotionFamily::root(double D, double from, double* cruise) const noexcept 
   return std::clamp(std::sqrt(base * base + J_ * std::max(0.0, step)), base, s_hi);
 }
 
-void MotionFamily::emit(double s, double cruise, AxisProfile& out, double share) const noexcept {
-  const double R = s * s + C_, A2 = A_ * A_, j = share * (mirrored_ ? -J_ : J_);
+void MotionFamily::emit(double s, double cruise, AxisProfile& out, double scale) const noexcept {
+  const double R = s * s + C_, A2 = A_ * A_, j = scale * (mirrored_ ? -J_ : J_);
   const double a1 = R < A2 ? std::sqrt(R) : A_, a2 = std::min(s, A_);
   const double t1 = (a1 - a0_) * over_J_, h1 = R > A2 ? (R - A2) * over_JA_ : 0.0, h2 = s > A_ ? (s * s - A2) * over_JA_ : 0.0,
                t5 = (a2 + af_) * over_J_;
@@ -378,7 +378,7 @@ void AxisProblem::settle_islands() noexcept {
 
 double AxisProblem::slack(const Span& at) const noexcept {
   const double speed = speed_ + (at.s_up * at.s_up + at.s_down * at.s_down) * over_J_;
-  return 256 * kEps * (scale_ + std::abs(at.least) + std::abs(at.largest)) + 16 * kEps * at.T * speed;
+  return 256 * kEps * (scale_ + std::abs(at.smallest) + std::abs(at.largest)) + 16 * kEps * at.T * speed;
 }
 
 AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
@@ -389,14 +389,14 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
       const double from = std::max(T, first);
       const double s_up = T <= first ? up_.island_lo : up_.parameter_in_island(T);
       const double s_down = T <= first ? down_.island_lo : down_.parameter_in_island(T);
-      const double largest = up_.displacement(s_up), least = -down_.displacement(s_down);
-      const double tolerance = 2 * slack({from, s_up, s_down, 0, 0, largest, least});
-      if (D <= largest + tolerance && D >= least - tolerance) {
-        return D - least > largest - D ? Choice{from, s_up, 0, false} : Choice{from, s_down, 0, true};
+      const double largest = up_.displacement(s_up), smallest = -down_.displacement(s_down);
+      const double tolerance = 2 * slack({from, s_up, s_down, 0, 0, largest, smallest});
+      if (D <= largest + tolerance && D >= smallest - tolerance) {
+        return D - smallest > largest - D ? Choice{from, s_up, 0, false} : Choice{from, s_down, 0, true};
       }
       double s;
       if (D > largest && up_.first_root(D, s_up, up_.island_hi, &s)) return {up_.duration(s), s, 0, false};
-      if (D < least && down_.first_root(-D, s_down, down_.island_hi, &s)) return {down_.duration(s), s, 0, true};
+      if (D < smallest && down_.first_root(-D, s_down, down_.island_hi, &s)) return {down_.duration(s), s, 0, true};
       const double ending = up_.displacement(up_.island_hi);
       if (std::abs(D - ending) <= tolerance) return {last, up_.island_hi, 0, false};
     }
@@ -409,7 +409,7 @@ AxisProblem::Choice AxisProblem::first_from(double T) const noexcept {
     const double s = up_.root(D, at.s_up, &cruise);
     return {up_.duration(s) + cruise, s, cruise, false};
   }
-  if (D < at.least && (D < at.least - tolerance || (at.s_down >= 0 && down_.gain(at.s_down) >= 0))) {
+  if (D < at.smallest && (D < at.smallest - tolerance || (at.s_down >= 0 && down_.gain(at.s_down) >= 0))) {
     const double s = down_.root(-D, at.s_down, &cruise);
     return {down_.duration(s) + cruise, s, cruise, true};
   }
@@ -427,7 +427,7 @@ AxisProblem::Span AxisProblem::span_at(double T) const noexcept {
     at.s_down = down_.parameter(T, &at.cruise_down);
   }
   at.largest = up_.displacement(at.s_up) + at.cruise_up * up_.cruise_velocity();
-  at.least = -(down_.displacement(at.s_down) + at.cruise_down * down_.cruise_velocity());
+  at.smallest = -(down_.displacement(at.s_down) + at.cruise_down * down_.cruise_velocity());
   return at;
 }
 
@@ -473,7 +473,7 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
     at.s_up = up_.parameter_in_island(T);
     at.s_down = down_.parameter_in_island(T);
     at.largest = up_.displacement(at.s_up);
-    at.least = -down_.displacement(at.s_down);
+    at.smallest = -down_.displacement(at.s_down);
   } else {
     if (T < main_ * (1 - 1e-14)) return AxisOutcome::blocked;
     at = span_at(T);
@@ -482,9 +482,9 @@ AxisOutcome AxisProblem::profile(double duration, AxisProfile& out) const noexce
 }
 
 AxisOutcome AxisProblem::profile_in(const Span& at, AxisProfile& out) const noexcept {
-  const double D = distance_, tolerance = slack(at), width = at.largest - at.least;
-  if (D > at.largest + 2 * tolerance || D < at.least - 2 * tolerance) return AxisOutcome::blocked;
-  const double weight = width > 0 ? std::clamp((D - at.least) / width, 0.0, 1.0) : 0.5;
+  const double D = distance_, tolerance = slack(at), width = at.largest - at.smallest;
+  if (D > at.largest + 2 * tolerance || D < at.smallest - 2 * tolerance) return AxisOutcome::blocked;
+  const double weight = width > 0 ? std::clamp((D - at.smallest) / width, 0.0, 1.0) : 0.5;
   out = brake_;
   if (weight == 1.0) {
     up_.emit(at.s_up, at.cruise_up, out);

@@ -106,7 +106,7 @@ class MotionFamily {
   bool gap_is_rounding() const noexcept;
   void close_gap() noexcept;
   /// Jerks times `share`.
-  void emit(double s, double cruise, AxisProfile& out, double share = 1) const noexcept;
+  void emit(double s, double cruise, AxisProfile& out, double scale = 1) const noexcept;
 
   bool island{};                    ///< short durations form a component of their own
   double island_lo{}, island_hi{};  ///< parameter range of that component
@@ -114,7 +114,7 @@ class MotionFamily {
   double s_lo{}, s_hi{};
 
  private:
-  double least_gain() const noexcept;
+  double min_gain() const noexcept;
   /// Where the displacement is largest between a place where it grows and one where it falls.
   double top(double lo, double hi) const noexcept;
   double bracketed(double D, double lo, double hi, double f_lo) const noexcept;
@@ -149,7 +149,7 @@ class AxisProblem {
   };
   /// What is possible at a duration of the main component.
   struct Span {
-    double T{-1}, s_up{}, s_down{}, cruise_up{}, cruise_down{}, largest{}, least{};
+    double T{-1}, s_up{}, s_down{}, cruise_up{}, cruise_down{}, largest{}, smallest{};
   };
   Span span_at(double T) const noexcept;
   double slack(const Span& at) const noexcept;

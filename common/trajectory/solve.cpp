@@ -59,20 +59,20 @@ std::string one_by_one(const MotionState3& from, const MotionState3& to, const K
 }  // namespace
 
 SynchronisedBatch::SynchronisedBatch(int axes, int problems) : axes_(axes) {
-  const std::size_t lanes = static_cast<std::size_t>(axes) * static_cast<std::size_t>(problems);
-  const std::size_t blocks = (lanes + detail::kLanes - 1) / detail::kLanes;
+  const std::size_t total = static_cast<std::size_t>(axes) * static_cast<std::size_t>(problems);
+  const std::size_t blocks = (total + detail::kBatchAxes - 1) / detail::kBatchAxes;
   problems_.resize(static_cast<std::size_t>(problems));
   blocks_.resize(blocks);
   odd_.resize(blocks);
-  slow_.resize(lanes);
-  minima_.resize(lanes);
-  durations_.resize(blocks * detail::kLanes);
-  profiles_.resize(lanes);
+  slow_.resize(total);
+  minima_.resize(total);
+  durations_.resize(blocks * detail::kBatchAxes);
+  profiles_.resize(total);
 }
 
-void SynchronisedBatch::take_over(const detail::LaneInput& in, int lane) noexcept {
-  const auto i = static_cast<std::size_t>(lane);
-  odd_[i / detail::kLanes] |= 1U << lane % detail::kLanes;
+void SynchronisedBatch::take_over(const detail::AxisBatchInput& in, int entry) noexcept {
+  const auto i = static_cast<std::size_t>(entry);
+  odd_[i / detail::kBatchAxes] |= 1U << entry % detail::kBatchAxes;
   const AxisOutcome outcome =
       slow_[i].init({in.position[i], in.velocity[i], in.acceleration[i]}, {in.end_position[i], in.end_velocity[i], in.end_acceleration[i]},
                     {in.max_velocity[i], in.max_acceleration[i], in.max_jerk[i]});
@@ -81,7 +81,7 @@ void SynchronisedBatch::take_over(const detail::LaneInput& in, int lane) noexcep
   minima_[i] = slow_[i].minimum();
   if (outcome == AxisOutcome::ok || problem.outcome != AxisOutcome::ok) return;
   problem.outcome = outcome;
-  problem.axis = lane % axes_;
+  problem.axis = entry % axes_;
 }
 
 void SynchronisedBatch::find_durations(int count) noexcept {
@@ -94,7 +94,7 @@ void SynchronisedBatch::find_durations(int count) noexcept {
     for (bool grown = true; grown;) {
       grown = false;
       for (int i = first; i < first + axes_; ++i) {
-        if (!(odd_[static_cast<std::size_t>(i / detail::kLanes)] >> i % detail::kLanes & 1)) continue;
+        if (!(odd_[static_cast<std::size_t>(i / detail::kBatchAxes)] >> i % detail::kBatchAxes & 1)) continue;
         const double next = slow_[static_cast<std::size_t>(i)].earliest(T);
         if (next > T) T = next, grown = true;
       }
@@ -104,14 +104,14 @@ void SynchronisedBatch::find_durations(int count) noexcept {
   }
 }
 
-int SynchronisedBatch::solve(const detail::LaneInput& in, int count) noexcept {
-  using detail::kLanes;
-  const int lanes = count * axes_, blocks = (lanes + kLanes - 1) / kLanes;
-  const detail::LaneKernels& kernels = detail::lane_kernels();
+int SynchronisedBatch::solve(const detail::AxisBatchInput& in, int count) noexcept {
+  using detail::kBatchAxes;
+  const int total = count * axes_, blocks = (total + kBatchAxes - 1) / kBatchAxes;
+  const detail::BatchKernels& kernels = detail::batch_kernels();
   for (int p = 0; p < count; ++p) problems_[static_cast<std::size_t>(p)] = {0, AxisOutcome::ok, 0, true};
   for (int b = 0; b < blocks; ++b) {
     const auto k = static_cast<std::size_t>(b);
-    const int first = b * kLanes, here = std::min(kLanes, lanes - first);
+    const int first = b * kBatchAxes, here = std::min(kBatchAxes, total - first);
     odd_[k] = 0;
     const std::uint32_t odd = kernels.prepare(in, first, here, blocks_[k]);
     std::copy_n(blocks_[k].minimum, here, minima_.begin() + first);
@@ -124,35 +124,35 @@ int SynchronisedBatch::solve(const detail::LaneInput& in, int count) noexcept {
     for (int b = 0; b < blocks; ++b) {
       const auto k = static_cast<std::size_t>(b);
       std::uint32_t blocked = 0, failed = 0;
-      failed = kernels.finish(blocks_[k], durations_.data() + k * kLanes, odd_[k], &blocked);
+      failed = kernels.finish(blocks_[k], durations_.data() + k * kBatchAxes, odd_[k], &blocked);
       for (std::uint32_t left = failed | blocked; left != 0; left &= left - 1) {
-        take_over(in, b * kLanes + std::countr_zero(left));
+        take_over(in, b * kBatchAxes + std::countr_zero(left));
         again = true;
       }
     }
   }
-  write_profiles(lanes);
+  write_profiles(total);
   int solved = 0;
   for (int p = 0; p < count; ++p) solved += problems_[static_cast<std::size_t>(p)].outcome == AxisOutcome::ok;
   return solved;
 }
 
-void SynchronisedBatch::write_profiles(int lanes) noexcept {
-  for (int i = 0; i < lanes; ++i) {
+void SynchronisedBatch::write_profiles(int total) noexcept {
+  for (int i = 0; i < total; ++i) {
     AxisProfile& out = profiles_[static_cast<std::size_t>(i)];
-    const auto b = static_cast<std::size_t>(i / detail::kLanes), lane = static_cast<std::size_t>(i % detail::kLanes);
-    if (odd_[b] >> lane & 1) {
+    const auto b = static_cast<std::size_t>(i / detail::kBatchAxes), entry = static_cast<std::size_t>(i % detail::kBatchAxes);
+    if (odd_[b] >> entry & 1) {
       Problem& problem = problems_[static_cast<std::size_t>(i / axes_)];
       if (problem.outcome != AxisOutcome::ok) continue;
       problem.outcome = slow_[static_cast<std::size_t>(i)].profile(problem.duration, out);
       problem.axis = i % axes_;
       continue;
     }
-    const detail::LaneBlock& block = blocks_[b];
+    const detail::AxisBatch& block = blocks_[b];
     int n = 0;
     for (int k = 0; k < block.segments; ++k) {
-      out.segments[static_cast<std::size_t>(n)] = {block.duration[k][lane], block.jerk[k][lane]};
-      n += block.duration[k][lane] > 0;
+      out.segments[static_cast<std::size_t>(n)] = {block.duration[k][entry], block.jerk[k][entry]};
+      n += block.duration[k][entry] > 0;
     }
     out.count = n;
   }

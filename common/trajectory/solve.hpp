@@ -33,7 +33,7 @@ class SynchronisedBatch {
   SynchronisedBatch(int axes, int problems);
   /// Problem p, axis i is entry p * axes + i of each array. Returns how many of the first `count`
   /// problems are solved.
-  int solve(const detail::LaneInput& in, int count) noexcept;
+  int solve(const detail::AxisBatchInput& in, int count) noexcept;
 
   /// Of a problem that was not solved only outcome() and axis() are to be used: what failed and
   /// where.
@@ -57,13 +57,13 @@ class SynchronisedBatch {
   std::size_t entry(int problem, int axis) const noexcept {
     return static_cast<std::size_t>(problem) * static_cast<std::size_t>(axes_) + static_cast<std::size_t>(axis);
   }
-  void take_over(const detail::LaneInput& in, int lane) noexcept;
+  void take_over(const detail::AxisBatchInput& in, int entry) noexcept;
   void find_durations(int count) noexcept;
-  void write_profiles(int lanes) noexcept;
+  void write_profiles(int total) noexcept;
 
   int axes_;
   std::vector<Problem> problems_;
-  std::vector<detail::LaneBlock> blocks_;
+  std::vector<detail::AxisBatch> blocks_;
   std::vector<std::uint32_t> odd_;  // of each block, the axes solved one by one
   std::vector<AxisProblem> slow_;   // for those
   std::vector<double> minima_, durations_;

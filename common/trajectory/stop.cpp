@@ -39,14 +39,14 @@ StopMeasure measure_stop(double v, double a, double A, double J) noexcept {
   return {p.duration(), s.position};
 }
 
-void SoftStop::init(const AxisState& state, const AxisLimits& limits) noexcept {
+void JerkLimitedStop::init(const AxisState& state, const AxisLimits& limits) noexcept {
   state_ = segment_start_ = state;
   critical_movement(state.velocity, state.acceleration, 0, 0, limits.acceleration, limits.jerk, profile_);
   segment_ = 0;
   elapsed_ = 0;
 }
 
-const AxisState& SoftStop::step(double dt) noexcept {
+const AxisState& JerkLimitedStop::step(double dt) noexcept {
   elapsed_ += dt;
   while (segment_ < profile_.count && elapsed_ >= profile_.segments[segment_].duration) {
     const Segment& s = profile_.segments[segment_++];
@@ -61,7 +61,7 @@ const AxisState& SoftStop::step(double dt) noexcept {
   return state_;
 }
 
-double SoftStop::remaining() const noexcept {
+double JerkLimitedStop::remaining() const noexcept {
   double sum = -elapsed_;
   for (int k = segment_; k < profile_.count; ++k) sum += profile_.segments[k].duration;
   return finished() ? 0 : sum;

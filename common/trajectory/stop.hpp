@@ -22,7 +22,7 @@ struct StopMeasure {
 StopMeasure measure_stop(double velocity, double acceleration, double max_acceleration, double max_jerk) noexcept;
 
 /// A stop in progress, for a cycle: no allocation.
-class SoftStop {
+class JerkLimitedStop {
  public:
   /// Starts a stop from a state, whose velocity may exceed the limits; limits.velocity is not used.
   void init(const AxisState& state, const AxisLimits& limits) noexcept;

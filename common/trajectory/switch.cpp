@@ -49,10 +49,10 @@ TrajectorySwitch::TrajectorySwitch(int axes)
 }
 
 double TrajectorySwitch::meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t,
-                                 double least) noexcept {
+                                 double min_duration) noexcept {
   next.evaluate(t, cursor_, there_);
-  if (least == 0 && same_motion(now, there_)) return 0;
-  double common = least;
+  if (min_duration == 0 && same_motion(now, there_)) return 0;
+  double common = min_duration;
   for (int i = 0; i < n_; ++i) {
     const AxisState from{now.position[i], now.velocity[i], now.acceleration[i]};
     const AxisState to{there_.position[i], there_.velocity[i], there_.acceleration[i]};

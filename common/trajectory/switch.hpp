@@ -63,7 +63,7 @@ class TrajectorySwitch {
   void add_to(SegmentTable& out, const SegmentTable& next) noexcept;
 
  private:
-  double meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t, double least) noexcept;
+  double meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, double t, double min_duration) noexcept;
   bool best_place(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
   bool earliest_meeting(const MotionState3& now, const SegmentTable& next, const KinematicLimits& limits, const SwitchSettings&) noexcept;
   bool make_profiles(const MotionState3& now, const KinematicLimits& guard) noexcept;

@@ -38,7 +38,7 @@ std::string why_not_runnable(const Trajectory& trajectory, const KinematicLimits
   return {};
 }
 
-std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& guard, double step, double alpha) {
+std::string TimeScaling::init(const Trajectory& trajectory, const KinematicLimits& guard, double step, double alpha) {
   if (std::string why = why_not_runnable(trajectory, guard); !why.empty()) return why;
   if (!(step > 0) || !(std::abs(alpha) <= 1)) return "the step must be positive and alpha in [-1, 1]";
   const MotionState3 start = trajectory.at(0);
@@ -53,25 +53,25 @@ std::string TimeLaw::init(const Trajectory& trajectory, const KinematicLimits& g
   guard_ = guard;
   from_ = row_ = state_ = start;
   jerk_ = Eigen::VectorXd::Zero(n);
-  const auto rows = static_cast<std::size_t>(table_.stride() / detail::kLanes);
-  limits_.assign(2 * rows, detail::Lane8{{1, 1, 1, 1, 1, 1, 1, 1}});
+  const auto rows = static_cast<std::size_t>(table_.stride() / detail::kBatchAxes);
+  limits_.assign(2 * rows, detail::BatchRow{{1, 1, 1, 1, 1, 1, 1, 1}});
   std::copy_n(guard.acceleration.data(), n, limits_.data()->value);
   std::copy_n(guard.jerk.data(), n, limits_.data()->value + table_.stride());
-  for (Rates* r : {&begin_, &end_, &between_}) *r = {0, std::vector<detail::Lane8>(3 * rows)};
-  for (Way* w : {&way_, &tried_, &best_}) w->pushes.resize(kHorizon);
-  way_.stay(alpha);
+  for (Rates* r : {&begin_, &end_, &between_}) *r = {0, std::vector<detail::BatchRow>(3 * rows)};
+  for (Recovery* w : {&recovery_, &tried_, &best_}) w->pushes.resize(kHorizon);
+  recovery_.stay(alpha);
   step_ = step;
   lowest_ = starts_still ? -1 : 0;
   now_ = {0, alpha, 0};
   target_ = alpha;
-  push_ = phase_ = offset_ = joined_at_ = left_at_ = 0;
+  push_ = phase_ = offset_ = joined_at_ = switched_at_ = 0;
   cursor_ = 0;
   publish();
   return {};
 }
 
-SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
-                                 const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
+                                     const SwitchSettings& settings) noexcept {
   if (const SwitchOutcome found = connection_.plan(from, next, guard_, settings); found != SwitchOutcome::ok) return found;
   const int coming = connection_.segments() + next.segments() + 1;
   const auto fits = [&](double begin) {
@@ -80,51 +80,51 @@ SwitchOutcome TimeLaw::take_over(const MotionState3& from, const Now& at, double
   const bool ahead = leave > at.tau;
   const double kept = fits(keep_from) ? keep_from : ahead ? std::max(0.0, at.tau) : leave;
   if (!fits(kept)) return SwitchOutcome::too_long;
-  before_ = {now_, lowest_, target_, offset_, joined_at_, left_at_};
+  before_ = {now_, lowest_, target_, offset_, joined_at_, switched_at_};
   spare_.clear(table_.axes());
   if (kept < leave) add_part(table_, kept, leave, spare_, row_);
   const bool has_past = spare_.segments() > 0;
-  left_at_ = has_past ? spare_.duration() : 0.0;
+  switched_at_ = has_past ? spare_.duration() : 0.0;
   connection_.add_to(spare_, next);
   if (spare_.segments() == 0) spare_.add(0.0, from.position.data(), from.velocity.data(), from.acceleration.data(), jerk_.setZero().data());
   std::swap(table_, spare_);
-  now_ = {ahead ? at.tau - kept : left_at_, at.alpha, at.beta};
+  now_ = {ahead ? at.tau - kept : switched_at_, at.alpha, at.beta};
   if (!has_past)
     lowest_ = still(from) ? -1 : 0;
   else if (kept > keep_from)
     lowest_ = 0;
   joined_at_ = connection_.joins_at();
-  offset_ = left_at_ + connection_.duration() - joined_at_;
+  offset_ = switched_at_ + connection_.duration() - joined_at_;
   target_ = std::max(target_, lowest_);
   if (!recover(now_, tried_)) {
     back_to_before();
     return SwitchOutcome::not_now;
   }
-  std::swap(way_, tried_);
+  std::swap(recovery_, tried_);
   push_ = phase_ = 0;
   cursor_ = 0;
   publish();
   return SwitchOutcome::ok;
 }
 
-void TimeLaw::back_to_before() noexcept {
+void TimeScaling::back_to_before() noexcept {
   std::swap(table_, spare_);
   now_ = before_.now;
   lowest_ = before_.lowest;
   target_ = before_.target;
   offset_ = before_.offset;
   joined_at_ = before_.joined_at;
-  left_at_ = before_.left_at;
+  switched_at_ = before_.switched_at;
   cursor_ = 0;
   publish();
 }
 
-void TimeLaw::undo_switch() noexcept {
-  std::swap(way_, tried_);
+void TimeScaling::undo_switch() noexcept {
+  std::swap(recovery_, tried_);
   back_to_before();
 }
 
-SwitchOutcome TimeLaw::switch_to(const SegmentTable& next, const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::switch_to(const SegmentTable& next, const SwitchSettings& settings) noexcept {
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   table_.evaluate(now_.tau, cursor_, from_);
   const bool ended = now_.tau <= 0 ? lowest_ < 0 && still(from_) : now_.tau >= duration();
@@ -140,7 +140,7 @@ SwitchOutcome TimeLaw::switch_to(const SegmentTable& next, const SwitchSettings&
   return take_over(from_, now_, lowest_ < 0 ? 0.0 : now_.tau, now_.tau, next, settings);
 }
 
-SwitchOutcome TimeLaw::switch_at(double leave, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::switch_at(double leave, const SegmentTable& next, const SwitchSettings& settings) noexcept {
   if (!(leave > now_.tau) || !(now_.tau < duration())) return switch_to(next, settings);
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   leave = std::min(leave, duration());
@@ -152,7 +152,7 @@ SwitchOutcome TimeLaw::switch_at(double leave, const SegmentTable& next, const S
   return take_over(from_, now_, lowest_ < 0 ? 0.0 : std::max(0.0, now_.tau), leave, next, settings);
 }
 
-SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& settings) noexcept {
+SwitchOutcome TimeScaling::start_from(const MotionState3& state, const SegmentTable& next, const SwitchSettings& settings) noexcept {
   if (table_.axes() == 0 || next.axes() != table_.axes()) return SwitchOutcome::wrong_size;
   const double target = target_;
   target_ = 1;
@@ -161,21 +161,21 @@ SwitchOutcome TimeLaw::start_from(const MotionState3& state, const SegmentTable&
   return outcome;
 }
 
-bool TimeLaw::begin_with(double alpha) noexcept {
+bool TimeScaling::begin_with(double alpha) noexcept {
   table_.evaluate(now_.tau, cursor_, row_);
   if (!still(row_)) return false;
   target_ = now_.alpha = std::isfinite(alpha) ? std::clamp(alpha, 0.0, 1.0) : 0.0;
   now_.beta = push_ = phase_ = 0;
-  way_.stay(now_.alpha);
+  recovery_.stay(now_.alpha);
   publish();
   return true;
 }
 
-void TimeLaw::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
+void TimeScaling::set_target(double alpha) noexcept { target_ = std::isfinite(alpha) ? std::clamp(alpha, lowest_, 1.0) : 0.0; }
 
-void TimeLaw::rates_at(double tau, Rates& r) const noexcept {
+void TimeScaling::rates_at(double tau, Rates& r) const noexcept {
   if (tau < 0 || tau >= table_.duration()) {
-    std::fill(r.values.begin(), r.values.end(), detail::Lane8{});
+    std::fill(r.values.begin(), r.values.end(), detail::BatchRow{});
     r.segment = tau < 0 ? 0 : table_.segments() - 1;
     return;
   }
@@ -183,13 +183,13 @@ void TimeLaw::rates_at(double tau, Rates& r) const noexcept {
   table_.rates(tau, r.segment, r.data());
 }
 
-detail::LawStep TimeLaw::step_from(const Now& s) const noexcept {
+detail::ScalingStep TimeScaling::step_from(const Now& s) const noexcept {
   return {s.alpha, s.beta, step_, kMargin, kWhole, limits_.data()->value, table_.stride()};
 }
 
-bool TimeLaw::pushes(const Now& s, const Rates& begin, const Rates& end, double* range) noexcept {
-  const detail::LaneKernels& kernels = detail::lane_kernels();
-  const detail::LawStep at = step_from(s);
+bool TimeScaling::pushes(const Now& s, const Rates& begin, const Rates& end, double* range) noexcept {
+  const detail::BatchKernels& kernels = detail::batch_kernels();
+  const detail::ScalingStep at = step_from(s);
   const double h = step_;
   range[0] = std::max(-kMaxPush / h, (-kMaxRate - s.beta) / h);
   range[1] = std::min(kMaxPush / h, (kMaxRate - s.beta) / h);
@@ -209,12 +209,12 @@ bool TimeLaw::pushes(const Now& s, const Rates& begin, const Rates& end, double*
   return possible && range[0] <= range[1];
 }
 
-bool TimeLaw::holds(const Now& s, const Now& next, double push) const noexcept {
-  return detail::lane_kernels().step_holds(step_from(s), step_from(next), push, kAllowed, begin_.data(), end_.data());
+bool TimeScaling::holds(const Now& s, const Now& next, double push) const noexcept {
+  return detail::batch_kernels().step_holds(step_from(s), step_from(next), push, kAllowed, begin_.data(), end_.data());
 }
 
 /// False if the way back to a constant alpha leaves the limits anywhere; where alpha leaves its range, that is what it ends with.
-bool TimeLaw::recover(Now s, Way& out) noexcept {
+bool TimeScaling::recover(Now s, Recovery& out) noexcept {
   const auto allowed = [this](double alpha) { return alpha >= lowest_ - kLanded && alpha <= 1 + kLanded; };
   out.next = out.count = 0;
   out.end = std::numeric_limits<double>::quiet_NaN();
@@ -240,26 +240,27 @@ bool TimeLaw::recover(Now s, Way& out) noexcept {
   return allowed(s.alpha);
 }
 
-TimeLaw::Now TimeLaw::next_of(const Now& s, double u) const noexcept {
+TimeScaling::Now TimeScaling::next_of(const Now& s, double u) const noexcept {
   if (s.beta == 0 && u == 0) return {s.tau + step_ * s.alpha, s.alpha, 0};
   Now next = moved(s, u, step_);
   if (u == -s.beta / step_) next.beta = 0;
   return next;
 }
 
-double TimeLaw::choose() noexcept {
+double TimeScaling::choose() noexcept {
   if (now_.beta == 0 && std::abs(now_.alpha - target_) <= kLanded) {
     now_.alpha = target_;
-    way_.stay(target_);
+    recovery_.stay(target_);
     return 0;
   }
-  const double want = target_ - way_.end;
-  if (std::abs(want) <= kLanded) return way_.take();
+  const double want = target_ - recovery_.end;
+  if (std::abs(want) <= kLanded) return recovery_.take();
   rates_at(now_.tau, begin_);
   rates_at(now_.tau + step_ * (now_.alpha + step_ * now_.beta / 2), end_);
   double range[2];
-  if (!pushes(now_, begin_, end_, range)) return way_.take();
-  const double safe = way_.next < way_.count ? way_.pushes[static_cast<std::size_t>(way_.next)] : 0.0, full = range[want > 0] - safe;
+  if (!pushes(now_, begin_, end_, range)) return recovery_.take();
+  const double safe = recovery_.next < recovery_.count ? recovery_.pushes[static_cast<std::size_t>(recovery_.next)] : 0.0,
+               full = range[want > 0] - safe;
   const auto miss = [&](double share, double* out) {
     const double u = safe + share * full;
     const Now next = next_of(now_, u);
@@ -270,14 +271,14 @@ double TimeLaw::choose() noexcept {
     *out = (target_ - tried_.end) * (want > 0 ? 1 : -1);
     return kept || *out < 0;  // beyond its range alpha is also beyond the target: too far
   };
-  const auto go = [&](double share, Way& with) {
-    std::swap(way_, with);
+  const auto go = [&](double share, Recovery& with) {
+    std::swap(recovery_, with);
     return safe + share * full;
   };
   double share = 1, left = 0;
   while (!miss(share, &left)) {
     share /= 2;
-    if (share < 0.006) return way_.take();
+    if (share < 0.006) return recovery_.take();
   }
   if (left >= -kLanded) return go(share, tried_);
   double under = 0, over = share, left_under = std::abs(want), left_over = left;
@@ -293,10 +294,10 @@ double TimeLaw::choose() noexcept {
       over = middle, left_over = left;
     }
   }
-  return under > 0 ? go(under, best_) : way_.take();
+  return under > 0 ? go(under, best_) : recovery_.take();
 }
 
-void TimeLaw::advance(double dt) noexcept {
+void TimeScaling::advance(double dt) noexcept {
   while (dt > 0) {
     if (phase_ == 0) {
       push_ = choose();
@@ -316,7 +317,7 @@ void TimeLaw::advance(double dt) noexcept {
   publish();
 }
 
-void TimeLaw::publish() noexcept {
+void TimeScaling::publish() noexcept {
   table_.evaluate(now_.tau, cursor_, state_);
   if (now_.tau < 0 || now_.tau >= table_.duration()) {
     state_.velocity.setZero();

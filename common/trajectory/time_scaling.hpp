@@ -24,9 +24,9 @@ namespace handsel {
 /// and ends at rest; else one sentence.
 std::string why_not_runnable(const Trajectory&, const KinematicLimits& guard);
 
-class TimeLaw {
+class TimeScaling {
  public:
-  TimeLaw() = default;
+  TimeScaling() = default;
   /// The trajectory must keep `guard` (it is planned at guard / 1.1: the rest is what alpha can be
   /// changed with) and end at rest. One that starts moving begins with alpha = 1 and is never run
   /// backwards. Returns why not, or nothing. Allocates; nothing else does as long as what a switch
@@ -71,7 +71,7 @@ class TimeLaw {
   /// Own time at which the trajectory given last was joined [s].
   double joined_at() const noexcept { return joined_at_; }
   /// Switch point of the last switch on time() [s].
-  double left_at() const noexcept { return left_at_; }
+  double switched_at() const noexcept { return switched_at_; }
   /// What is run: trajectories given and connecting motions.
   const SegmentTable& path() const noexcept { return table_; }
   /// Returns d(tau)/dt now, in [-1, 1].
@@ -92,23 +92,23 @@ class TimeLaw {
   /// Velocities, accelerations and jerks of the path at one of its times.
   struct Rates {
     int segment{};
-    std::vector<detail::Lane8> values;
+    std::vector<detail::BatchRow> values;
     double* data() noexcept { return values.data()->value; }
     const double* data() const noexcept { return values.data()->value; }
   };
   void rates_at(double tau, Rates&) const noexcept;
-  detail::LawStep step_from(const Now&) const noexcept;
+  detail::ScalingStep step_from(const Now&) const noexcept;
   bool pushes(const Now&, const Rates& begin, const Rates& end, double* range) noexcept;
   bool holds(const Now& s, const Now& next, double push) const noexcept;
   /// A return to a constant alpha: what to choose step by step, and the alpha it ends with.
-  struct Way {
+  struct Recovery {
     std::vector<double> pushes;
     int next{}, count{};
     double end{};
     double take() noexcept { return next < count ? pushes[static_cast<std::size_t>(next++)] : 0.0; }
     void stay(double alpha) noexcept { next = count = 0, end = alpha; }
   };
-  bool recover(Now s, Way& out) noexcept;
+  bool recover(Now s, Recovery& out) noexcept;
   Now next_of(const Now& s, double u) const noexcept;
   SwitchOutcome take_over(const MotionState3& from, const Now& at, double keep_from, double leave, const SegmentTable& next,
                           const SwitchSettings& settings) noexcept;
@@ -121,15 +121,15 @@ class TimeLaw {
   TrajectorySwitch connection_;
   KinematicLimits guard_;
   MotionState3 from_, row_;
-  double offset_{}, joined_at_{}, left_at_{};
+  double offset_{}, joined_at_{}, switched_at_{};
   struct Before {
     Now now;
-    double lowest{}, target{}, offset{}, joined_at{}, left_at{};
-  } before_;                           // the last switch
-  std::vector<detail::Lane8> limits_;  // of acceleration, then of jerk; as table_ lays out its axes
+    double lowest{}, target{}, offset{}, joined_at{}, switched_at{};
+  } before_;                              // the last switch
+  std::vector<detail::BatchRow> limits_;  // of acceleration, then of jerk; as table_ lays out its axes
   double step_{0.001}, lowest_{-1}, target_{1}, push_{}, phase_{};
   Now now_, tick_;
-  Way way_, tried_, best_;  // from now; of the choice tried; of the best choice so far
+  Recovery recovery_, tried_, best_;  // from now; of the choice tried; of the best choice so far
   Rates begin_, end_, between_;
   MotionState3 state_;
   Eigen::VectorXd jerk_;

@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kHandActions[] = {"move", "grasp", "release_on_pull", "release"};
 constexpr const char* kMotions[] = {"idle", "running", "finished", "refused", "stopped"};
 constexpr const char* kHands[] = {"idle", "moving", "grasped", "empty", "released", "refused"};
-constexpr Range kLimitShare{0, 1e9};
+constexpr Range kLimitRatio{0, 1e9};
 static_assert(handsel_CAUSE_SEPARATION == static_cast<int>(Cause::separation) &&
                   handsel_CAUSE_COST_AHEAD == static_cast<int>(Cause::cost_ahead),
               "the bits of ExecutionStatus.causes are the enumerators of Cause in IDL and domain");
@@ -22,7 +22,7 @@ void describe(WireIo& io, Go& m, handsel_Go& w) {
   io.integer("epoch", m.epoch, w.epoch);
   io.flag("allowed", m.allowed, w.allowed);
   io.flag("acknowledge", m.acknowledge, w.acknowledge);
-  io.number("override_factor", m.override_factor, w.override_factor, kShare);
+  io.number("override_factor", m.override_factor, w.override_factor, kFraction);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.integer("state_revision", m.state_revision, w.state_revision);
 }
@@ -66,7 +66,7 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.integer("epoch", m.epoch, w.epoch);
   io.integer("trajectory", m.trajectory, w.trajectory);
   io.choice("motion", m.motion, w.motion, kMotions);
-  io.number("progress", m.progress, w.progress, kShare);
+  io.number("progress", m.progress, w.progress, kFraction);
   io.integer("hand_command", m.hand_command, w.hand_command);
   io.choice("hand", m.hand, w.hand, kHands);
   io.list("other_hands", m.other_hands, w.other_hands, 3);
@@ -74,9 +74,9 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.integer("cycles", m.cycles, w.cycles);
   io.integer("late_cycles", m.late_cycles, w.late_cycles);
-  io.number("limit_share_velocity", m.limit_share_velocity, w.limit_share_velocity, kLimitShare);
-  io.number("limit_share_acceleration", m.limit_share_acceleration, w.limit_share_acceleration, kLimitShare);
-  io.number("limit_share_jerk", m.limit_share_jerk, w.limit_share_jerk, kLimitShare);
+  io.number("limit_share_velocity", m.limit_share_velocity, w.limit_share_velocity, kLimitRatio);
+  io.number("limit_share_acceleration", m.limit_share_acceleration, w.limit_share_acceleration, kLimitRatio);
+  io.number("limit_share_jerk", m.limit_share_jerk, w.limit_share_jerk, kLimitRatio);
   io.horizon("separation", m.separation, w.separation, -1e4);
   io.number("separation_limit", m.separation_limit, w.separation_limit, {0, 1e4});
   io.point("nearest_on_robot", m.nearest_on_robot, w.nearest_on_robot);
@@ -108,7 +108,7 @@ void describe(WireIo& io, TrajectoryForecast& m, handsel_TrajectoryForecast& w) 
   io.flag("collides", m.collides, w.collides);
   io.horizon("time_to_collision", m.time_to_collision, w.time_to_collision, 0);
   io.horizon("clearance", m.clearance, w.clearance, -1e4);
-  io.number("cost", m.cost, w.cost, kShare);
+  io.number("cost", m.cost, w.cost, kFraction);
   io.text("reason", m.reason, w.reason, Text::sentence);
 }
 

@@ -8,7 +8,7 @@ namespace handsel {
 void describe(WireIo& io, ObservedJoint& m, handsel_ObservedJoint& w) {
   io.text("name", m.name, w.name, Text::name);
   io.point("position", m.position, w.position);
-  io.number("confidence", m.confidence, w.confidence, kShare);
+  io.number("confidence", m.confidence, w.confidence, kFraction);
 }
 
 void describe(WireIo& io, ObservedPerson& m, handsel_ObservedPerson& w) {
@@ -43,7 +43,7 @@ void describe(WireIo& io, ObservedObject& m, handsel_ObservedObject& w) {
   io.text("id", m.id, w.id, Text::name);
   io.text("model", m.model, w.model, Text::maybe_empty);
   io.pose("T_world_object", m.T_world_object, w.T_world_object);
-  io.number("confidence", m.confidence, w.confidence, kShare);
+  io.number("confidence", m.confidence, w.confidence, kFraction);
   io.list("grips", m.grips, w.grips, 8);
   io.part("primitive", m.primitive, w.primitive);
 }

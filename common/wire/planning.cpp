@@ -18,7 +18,7 @@ void describe(WireIo& io, Contact& m, handsel_Contact& w) {
   io.integer("triangle", m.triangle, w.triangle);
   io.point("barycentric", m.barycentric, w.barycentric, {-1, 2});
   io.number("friction", m.friction, w.friction, {0, 10});
-  io.number("curvature", m.curvature, w.curvature, kShare);
+  io.number("curvature", m.curvature, w.curvature, kFraction);
 }
 
 void describe(WireIo& io, Grasp& m, handsel_Grasp& w) {

@@ -28,7 +28,7 @@ inline constexpr Range kCoordinate{-1e4, 1e4};    // [m], [rad], and their first
 inline constexpr Range kAcceleration{-1e6, 1e6};  // [rad/s^2]
 inline constexpr Range kForce{-1e5, 1e5};         // [N], [Nm]
 inline constexpr Range kPush{0, 1e5};             // [N]
-inline constexpr Range kShare{0, 1};
+inline constexpr Range kFraction{0, 1};
 inline constexpr Range kSigned{-1, 1};
 inline constexpr Range kTime{0, 1e9};    // [s]
 inline constexpr Range kPeriod{0, 1e4};  // [s]

@@ -52,8 +52,8 @@ bool exchanges_with(const World& w, const std::string& person) {
   return (doing(w, ActionKind::give) || doing(w, ActionKind::receive)) && (w.action->human.empty() || w.action->human == person);
 }
 
-Exception exchange_exception(const World& w) {
-  Exception exception;
+SeparationExemption exchange_exception(const World& w) {
+  SeparationExemption exception;
   if (!w.action || !w.action->exchange_engaged) return exception;
   exception.person = w.action->human;
   if (exception.person.empty() && w.people && w.people->people.size() == 1) exception.person = w.people->people.front().id;

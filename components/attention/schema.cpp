@@ -14,7 +14,8 @@ namespace handsel::attention {
 Body::Body(const RobotModel& robot, const Vector3& p_tool_grasp)
     : robot_(robot), capsules_(robot_capsules(robot)), p_tool_grasp_(p_tool_grasp) {}
 
-Separation Body::separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const Exception& exception) const {
+Separation Body::separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people,
+                               const SeparationExemption& exception) const {
   robot_.forward(q, links_);
   return separation(capsules_, links_, T_world_base, people, exception);
 }
@@ -93,7 +94,7 @@ class Avoid : public Schema {
     factor_ = 1.0;
     near_ = false;
     if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
-    const Exception exception = exchange_exception(w);
+    const SeparationExemption exception = exchange_exception(w);
     const ActiveTrajectory& active = *w.active;
     const Separation s = body_.separation_at(active.position, active.T_world_base, *w.people, exception);
     near_ = zone_.update(s.distance, now) <= Zone::interaction;
@@ -135,11 +136,11 @@ class Avoid : public Schema {
 
  private:
   /// The least distance along the running trajectory before long. At first alone would not do: what begins or ends softly seems to stand.
-  double least_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, int way) {
+  double least_along(const ActiveTrajectory& active, const HumanState& people, const SeparationExemption& exception, int way) {
     constexpr double kFirst = 0.15, kSoon = 0.4;  // [s]
     return std::min(distance_along(active, people, exception, way * kFirst), distance_along(active, people, exception, way * kSoon));
   }
-  double distance_along(const ActiveTrajectory& active, const HumanState& people, const Exception& exception, double ahead) {
+  double distance_along(const ActiveTrajectory& active, const HumanState& people, const SeparationExemption& exception, double ahead) {
     sample_ = active.rest.at(active.time + ahead);
     posture_ = active.position;
     for (std::size_t i = 0; i < active.axes.size() && static_cast<int>(i) < active.rest.size(); ++i)

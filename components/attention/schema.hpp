@@ -34,7 +34,7 @@ class Body {
   Body(const RobotModel& robot, const Vector3& p_tool_grasp);
   /// Returns the nearest approach of robot and people in configuration q (all axes); distance +inf
   /// when nobody is there.
-  Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const Exception& exception) const;
+  Separation separation_at(const Vector& q, const Pose& T_world_base, const HumanState& people, const SeparationExemption& exception) const;
   Vector3 grasp_point(const Vector& q, const Pose& T_world_base) const;  ///< world [m]
   /// Returns a point of the base frame [m] in the world [m].
   Vector3 base_point(const Pose& T_world_base, const Vector3& p_base) const { return T_world_base * p_base; }

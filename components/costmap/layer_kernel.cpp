@@ -3,7 +3,7 @@
 namespace handsel::costmap::detail {
 
 FillRow fill_row() noexcept {
-#ifdef HANDSEL_WIDE_LANES
+#ifdef HANDSEL_SIMD_UNITS
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return fill_row_avx2;
 #endif
   return fill_row_base;

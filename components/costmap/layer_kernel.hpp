@@ -24,7 +24,7 @@ using FillRow = void (*)(const RowPerson& person, float y, float z, float step, 
                          std::uint8_t* visibility, std::uint8_t* total) noexcept;
 
 void fill_row_base(const RowPerson&, float, float, float, int, const std::uint8_t*, std::uint8_t*, std::uint8_t*, std::uint8_t*) noexcept;
-#ifdef HANDSEL_WIDE_LANES
+#ifdef HANDSEL_SIMD_UNITS
 void fill_row_avx2(const RowPerson&, float, float, float, int, const std::uint8_t*, std::uint8_t*, std::uint8_t*, std::uint8_t*) noexcept;
 #endif
 /// The widest this processor has.

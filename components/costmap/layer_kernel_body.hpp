@@ -26,7 +26,7 @@ void HANDSEL_FILL_ROW(const RowPerson& person, float y, float z, float step, int
     const float ex = x - h.eyes[0], far = ex * ex + eyes_yz;
     float cosine = (ex * h.gaze[0] + gaze_yz) / std::sqrt(far + 1e-12f);
     cosine = cosine > 1 ? 1 : cosine < -1 ? -1 : cosine;
-    const float seen = handsel::detail::acos_share(cosine), v = far > cut ? 0 : seen;
+    const float seen = handsel::detail::acos_fraction(cosine), v = far > cut ? 0 : seen;
     const float byte = static_cast<float>(static_cast<int>(comfort[i])), c = byte > 254 ? 254 : byte;
     safety[i] = static_cast<std::uint8_t>(static_cast<int>(254 * s + 0.5f));
     visibility[i] = static_cast<std::uint8_t>(static_cast<int>(254 * v + 0.5f));

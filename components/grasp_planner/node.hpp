@@ -31,7 +31,7 @@ class Node {
   Bus& bus_;
   config::GraspPlannerSettings settings_;
   ObjectLibrary objects_;
-  std::shared_ptr<const HandKit> kit_;
+  std::shared_ptr<const HandGeometry> kit_;
   std::shared_ptr<const GraspChooser> chooser_;
   std::shared_ptr<GraspBook> book_;  // used by jobs only, one after the other
   // used by jobs only; nullptr: no hand of a person is known

@@ -40,7 +40,7 @@ class Node {
   PeopleTracker tracker_;
   SceneModel scene_;
   FactFinder facts_;
-  Pace facts_period_, scene_period_, news_period_;
+  AdvisedPeriod facts_period_, scene_period_, news_period_;
   std::unique_ptr<Publisher<HumanState>> human_out_;
   std::unique_ptr<Publisher<Scene>> scene_out_;
   std::unique_ptr<Publisher<Facts>> facts_out_;

@@ -379,9 +379,9 @@ class CartesianPlanning {
     path.middles_.clear();
     double begin = 0;
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
-      for (const CornerReport& corner : motion_.corners)
+      for (const BlendReport& corner : motion_.corners)
         if (corner.node == static_cast<int>(k)) begin -= corner.saved;
-      const double lasts = smoothed.legs[k];
+      const double lasts = smoothed.segment_durations[k];
       path.middles_.push_back(begin + 0.5 * lasts);
       begin += lasts;
     }
@@ -432,7 +432,7 @@ class CartesianPlanning {
       low.push_back(least);
       high.push_back(most);
       begin = end > begin && end + 1 < postures.size() ? end : postures.size();
-      if (runs.size() < CollisionWorld::kMostBoxes && begin < postures.size()) continue;
+      if (runs.size() < CollisionWorld::kMaxBoxes && begin < postures.size()) continue;
       if (const auto touching = judge()) return *touching;
     }
     return postures.size();

@@ -107,9 +107,9 @@ struct CartesianMotion {
   /// Nodes of the request on the path that follows; all of them when solved. Never a node that
   /// collides.
   std::size_t reached{};
-  CartesianTrajectory path;           ///< TR, as far as the motion goes
-  double duration_ptp{};              ///< with a stop at each node [s]
-  std::vector<CornerReport> corners;  ///< of nodes of `path`
+  CartesianTrajectory path;          ///< TR, as far as the motion goes
+  double duration_ptp{};             ///< with a stop at each node [s]
+  std::vector<BlendReport> corners;  ///< of nodes of `path`
   /// Of each node of `path` the number in the request; the start is 0.
   std::vector<std::size_t> given;
   /// Of each segment of `path`, because of people; empty: no people.

@@ -69,8 +69,8 @@ MotionJudge::MotionJudge(const RobotModel& robot, CollisionWorld& world, const s
       rest_(rest),
       finest_(finest),
       acceleration_(static_cast<Eigen::Index>(axes.size())),
-      low_(CollisionWorld::kMostBoxes, rest),
-      high_(CollisionWorld::kMostBoxes, rest) {
+      low_(CollisionWorld::kMaxBoxes, rest),
+      high_(CollisionWorld::kMaxBoxes, rest) {
   world_.set_moving_axes(axes_);
 }
 
@@ -110,12 +110,12 @@ bool MotionJudge::free(const Trajectory& trajectory, const SegmentTable& table) 
   at_begin_ = at_end_ = trajectory.at(0);
   cursor_ = 0;
   open_.clear();
-  const double part = table.duration() / CollisionWorld::kMostBoxes;
-  for (int i = CollisionWorld::kMostBoxes; i > 0; --i) open_.push_back({(i - 1) * part, i * part});
-  std::array<Piece, CollisionWorld::kMostBoxes> judged;
+  const double part = table.duration() / CollisionWorld::kMaxBoxes;
+  for (int i = CollisionWorld::kMaxBoxes; i > 0; --i) open_.push_back({(i - 1) * part, i * part});
+  std::array<Piece, CollisionWorld::kMaxBoxes> judged;
   while (!open_.empty()) {
     int count = 0;
-    for (; count < CollisionWorld::kMostBoxes && !open_.empty(); ++count, open_.pop_back()) {
+    for (; count < CollisionWorld::kMaxBoxes && !open_.empty(); ++count, open_.pop_back()) {
       const auto at = static_cast<std::size_t>(count);
       judged[at] = open_.back();
       enclose(table, judged[at], low_[at], high_[at]);

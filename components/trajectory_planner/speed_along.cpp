@@ -77,7 +77,7 @@ SpeedZones SpeedAlong::zones(const std::vector<Look>& looks) {
   for (std::size_t k = 0; k + 1 < looks.size(); ++k) {
     const double lower = std::min(looks[k].share, looks[k + 1].share);
     const double share = std::max(kStep, kStep * std::floor(lower / kStep + 1e-9));
-    if (!zones.empty() && zones.back().share == share)
+    if (!zones.empty() && zones.back().scale == share)
       zones.back().end = looks[k + 1].at;
     else
       zones.push_back({looks[k + 1].at, share});

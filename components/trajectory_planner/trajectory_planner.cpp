@@ -103,13 +103,13 @@ void tell_speeds(const TrajectoryRequest& request, Result& result) {
   speeds = Vector::Ones(static_cast<Eigen::Index>(result.speeds.size()));
   for (std::size_t k = 0; k < result.speeds.size(); ++k)
     for (const SpeedZone& zone : result.speeds[k])
-      speeds[static_cast<Eigen::Index>(k)] = std::min(speeds[static_cast<Eigen::Index>(k)], zone.share);
+      speeds[static_cast<Eigen::Index>(k)] = std::min(speeds[static_cast<Eigen::Index>(k)], zone.scale);
   result.speed_factor *= speeds.minCoeff();
 }
 
-void tell_stops(const std::vector<CornerReport>& corners, TrajectoryReply& reply) {
-  for (const CornerReport& corner : corners)
-    if (corner.method == CornerMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
+void tell_stops(const std::vector<BlendReport>& corners, TrajectoryReply& reply) {
+  for (const BlendReport& corner : corners)
+    if (corner.method == BlendMethod::stop) reply.corners.push_back({"corner " + std::to_string(corner.node), corner.reason});
 }
 
 /// One request, and what it is planned with.
@@ -121,8 +121,7 @@ struct PlanningCase {
   const Settings& settings;
 };
 
-void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAlong& people,
-                 Result& result) {
+void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAlong& people, Result& result) {
   const auto& [robot, group, world, request, settings] = given;
   look_along(people, request, group, result);
   tell_speeds(request, result);
@@ -141,8 +140,7 @@ void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAl
   reply.trajectory = std::move(smoothed.trajectory);
 }
 
-void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& T_world_base,
-               Result& result) {
+void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& T_world_base, Result& result) {
   const auto& [robot, group, world, request, settings] = given;
   const Pose T_base_world = T_world_base.inverse();
   CartesianRequest wanted;
@@ -165,7 +163,7 @@ void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& 
   result.speeds = std::move(motion.speeds);
   result.cost = motion.cost;
   tell_speeds(request, result);
-  for (CornerReport& corner : motion.corners) corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
+  for (BlendReport& corner : motion.corners) corner.node = static_cast<int>(motion.given[static_cast<std::size_t>(corner.node)]);
   tell_stops(motion.corners, reply);
 }
 

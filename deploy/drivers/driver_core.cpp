@@ -56,7 +56,7 @@ bool DriverCore::command(const JointCommand& command, double now) {
 
 void DriverCore::settle() noexcept {
   for (SetpointFilter& f : fading_) f = {};
-  told_ = {side_.position(), side_.velocity(), side_.acceleration()};
+  commanded_ = {side_.position(), side_.velocity(), side_.acceleration()};
 }
 
 void DriverCore::update(const Measured& measured, double now, double dt) {
@@ -88,17 +88,17 @@ void DriverCore::follow_set_points(double dt) noexcept {
   reference_ = side_.position();
   for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
     const int axis = arm_axes_[i];
-    const double expected = told_.position[axis] + dt * (told_.velocity[axis] + 0.5 * dt * told_.acceleration[axis]);
+    const double expected = commanded_.position[axis] + dt * (commanded_.velocity[axis] + 0.5 * dt * commanded_.acceleration[axis]);
     AxisState off = fading_[i].state();
     off.position += expected - side_.position()[axis];
     AxisLimits limits = limits_of(guard, axis);
-    limits.velocity *= settings_.fade_share;
-    limits.acceleration *= settings_.fade_share;
-    limits.jerk *= settings_.fade_share;
+    limits.velocity *= settings_.fade_fraction;
+    limits.acceleration *= settings_.fade_fraction;
+    limits.jerk *= settings_.fade_fraction;
     fading_[i] = SetpointFilter(off, limits);
     reference_[axis] += fading_[i].toward({}, dt).position;
   }
-  told_ = {side_.position(), side_.velocity(), side_.acceleration()};
+  commanded_ = {side_.position(), side_.velocity(), side_.acceleration()};
 }
 
 void DriverCore::hold(const std::string& why) {
@@ -111,7 +111,7 @@ void DriverCore::hold(const std::string& why) {
 void DriverCore::start_from(const Vector& position) noexcept {
   for (std::size_t i = 0; i < arm_axes_.size(); ++i) {
     const int axis = arm_axes_[i];
-    fading_[i] = SetpointFilter({position[axis] - told_.position[axis], 0.0, 0.0}, limits_of(model_.guard_limits(), axis));
+    fading_[i] = SetpointFilter({position[axis] - commanded_.position[axis], 0.0, 0.0}, limits_of(model_.guard_limits(), axis));
   }
 }
 

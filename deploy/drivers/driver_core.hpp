@@ -21,7 +21,7 @@ struct DriverSettings {
   /// reported.
   bool dry_run{false};
   /// Fraction of the guard limits with which a jump between set-points and reference fades.
-  double fade_share{0.1};
+  double fade_fraction{0.1};
   Pose T_world_base{Pose::Identity()};  ///< root link of the robot in the world
   RobotSideSettings watch;              ///< limits of the check of the set-points
 };
@@ -89,7 +89,7 @@ class DriverCore {
   Measured measured_;
   bool side_known_{}, has_followed_{}, waits_for_person_{};
   Vector reference_;
-  MotionState3 told_;                   // set-points of the cycle before
+  MotionState3 commanded_;              // set-points of the cycle before
   std::vector<SetpointFilter> fading_;  // reference minus set-points
   mutable std::uint64_t sequence_{};
   std::string why_{"no set-points yet"};

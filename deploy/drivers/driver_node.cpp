@@ -48,8 +48,8 @@ void DriverNode::publish() {
     trouble = driver_->trouble();
   }
   state_out_->publish(state);
-  if (trouble == told_trouble_) return;
-  told_trouble_ = trouble;
+  if (trouble == reported_trouble_) return;
+  reported_trouble_ = trouble;
   bus_.set_degraded(trouble);
 }
 

@@ -39,7 +39,7 @@ class DriverNode {
   std::unique_ptr<CycleSource> source_;
   std::unique_ptr<Driver> driver_;
   std::unique_ptr<Publisher<RobotState>> state_out_;
-  std::string told_trouble_{"-"};
+  std::string reported_trouble_{"-"};
   std::uint64_t acknowledged_{};  // epoch
   std::mutex mutex_;              // the driver: between its cycles and the bus
   std::atomic<bool> ends_{false};

@@ -31,7 +31,7 @@ Place read_common(const std::filesystem::path& folder, const File& file, const R
                   DriverSettings& out) {
   out.dry_run = in.dry_run();
   out.watch.max_ahead = file.in(in.wire_jitter(), "wire_jitter", 0.0, 0.1);
-  out.fade_share = file.in(in.fade_share(), "fade_share", 0.01, 1.0);
+  out.fade_fraction = file.in(in.fade_share(), "fade_share", 0.01, 1.0);
   out.watch.min_stop = file.in(in.min_stop(), "min_stop", 0.1, 60.0);
   config::TrajectoryControllerSettings controller;
   out.watch.period = File(folder / "trajectory_controller.txtpb", controller).in(controller.period(), "period", kTiny, 0.02);
@@ -55,7 +55,7 @@ Place load_settings(const std::filesystem::path& folder, const RobotModel& robot
   config::ReflexArmSettings in;
   const File file(folder / "reflex_arm.txtpb", in);
   out.joint_deceleration = file.in(in.joint_deceleration(), "joint_deceleration", kTiny, 1000.0);
-  out.limit_share = file.in(in.limit_share(), "limit_share", 0.1, 1.0);
+  out.limit_ratio = file.in(in.limit_share(), "limit_share", 0.1, 1.0);
   out.lost_cycles = static_cast<int>(file.in(in.lost_cycles(), "lost_cycles", 1, 1000));
   if (in.has_gripper()) {
     const config::GripperSettings& g = in.gripper();
@@ -69,8 +69,8 @@ Place load_settings(const std::filesystem::path& folder, const RobotModel& robot
     out.gripper.closed_width = file.in(g.closed_width(), "closed_width", 0.0, out.gripper.open_width - kTiny);
     out.gripper.speed = file.in(g.speed(), "speed", kTiny, 1.0);
     out.gripper.stiffness = file.in(g.stiffness(), "stiffness", kTiny, 1e6);
-    out.gripper.least_force = file.in(g.least_force(), "least_force", 0.0, 1000.0);
-    out.gripper.most_force = file.in(g.most_force(), "most_force", out.gripper.least_force, 1000.0);
+    out.gripper.min_force = file.in(g.least_force(), "least_force", 0.0, 1000.0);
+    out.gripper.max_force = file.in(g.most_force(), "most_force", out.gripper.min_force, 1000.0);
   }
   return read_common(folder, file, robot, in.common(), out.common);
 }

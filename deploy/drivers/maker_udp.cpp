@@ -234,13 +234,13 @@ void UdpPort::send_to(int port, const std::string& datagram) const {
 }
 
 bool UdpCyclicLink::receive(CyclicState& out) { return newest(port_, out, cycle_); }
-void UdpCyclicLink::set_load(double mass) { tell(OrderKind::load, values({mass})); }
+void UdpCyclicLink::set_load(double mass) { send_order(OrderKind::load, values({mass})); }
 
 bool UdpReflexLink::read(ReflexState& out) { return newest(port_, out, cycle_); }
-void UdpReflexLink::set_load(double mass) { tell(OrderKind::load, values({mass})); }
-void UdpReflexLink::gripper_move(double width, double speed) { tell(OrderKind::gripper_move, values({width, speed})); }
+void UdpReflexLink::set_load(double mass) { send_order(OrderKind::load, values({mass})); }
+void UdpReflexLink::gripper_move(double width, double speed) { send_order(OrderKind::gripper_move, values({width, speed})); }
 void UdpReflexLink::gripper_grasp(double width, double speed, double force) {
-  tell(OrderKind::gripper_grasp, values({width, speed, force}));
+  send_order(OrderKind::gripper_grasp, values({width, speed, force}));
 }
 
 }  // namespace handsel::drivers

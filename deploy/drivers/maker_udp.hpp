@@ -73,12 +73,12 @@ class UdpCyclicLink : public CyclicLink {
  public:
   explicit UdpCyclicLink(UdpPort& port) : port_(port) {}
   bool receive(CyclicState& out) override;
-  void answer(const Vector& position) override { tell(OrderKind::position, position); }
-  void request_commanding() override { tell(OrderKind::request_commanding, {}); }
+  void answer(const Vector& position) override { send_order(OrderKind::position, position); }
+  void request_commanding() override { send_order(OrderKind::request_commanding, {}); }
   void set_load(double mass) override;
 
  private:
-  void tell(OrderKind kind, const Vector& values) const { port_.answer(encode(Order{kind, cycle_, values})); }
+  void send_order(OrderKind kind, const Vector& values) const { port_.answer(encode(Order{kind, cycle_, values})); }
   UdpPort& port_;
   std::uint64_t cycle_{};
 };
@@ -87,14 +87,14 @@ class UdpReflexLink : public ReflexLink {
  public:
   explicit UdpReflexLink(UdpPort& port) : port_(port) {}
   bool read(ReflexState& out) override;
-  void move_to(const Vector& position) override { tell(OrderKind::position, position); }
-  void recover() override { tell(OrderKind::recover, {}); }
+  void move_to(const Vector& position) override { send_order(OrderKind::position, position); }
+  void recover() override { send_order(OrderKind::recover, {}); }
   void set_load(double mass) override;
   void gripper_move(double width, double speed) override;
   void gripper_grasp(double width, double speed, double force) override;
 
  private:
-  void tell(OrderKind kind, const Vector& values) const { port_.answer(encode(Order{kind, cycle_, values})); }
+  void send_order(OrderKind kind, const Vector& values) const { port_.answer(encode(Order{kind, cycle_, values})); }
   UdpPort& port_;
   std::uint64_t cycle_{};
 };

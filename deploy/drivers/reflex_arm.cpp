@@ -10,8 +10,8 @@ constexpr int kGripperPeriod = 50;     // cycles between two commands to the gri
 constexpr double kWidthStep = 0.0005;  // [m]
 }  // namespace
 
-double velocity_toward_end(double position, double end, double most, double deceleration) {
-  return std::min(most, std::sqrt(2.0 * deceleration * std::max(0.0, end - position)));
+double velocity_toward_end(double position, double end, double max_velocity, double deceleration) {
+  return std::min(max_velocity, std::sqrt(2.0 * deceleration * std::max(0.0, end - position)));
 }
 
 ReflexArm::ReflexArm(const RobotModel& model, std::vector<int> arm_axes, ReflexLink& link, const ReflexSettings& settings)
@@ -24,9 +24,10 @@ bool ReflexArm::follow(const JointCommand& command, double now) {
   if (core_.following() && command.position.size() == model.dof() && command.velocity.size() == model.dof()) {
     for (int axis : core_.arm_axes()) {
       const Axis& bounds = model.axes()[static_cast<std::size_t>(axis)];
-      const double q = command.position[axis], v = command.velocity[axis], most = model.guard_limits().velocity[axis];
-      const double allowed = settings_.limit_share * (v > 0 ? velocity_toward_end(q, bounds.upper, most, settings_.joint_deceleration)
-                                                            : velocity_toward_end(-q, -bounds.lower, most, settings_.joint_deceleration));
+      const double q = command.position[axis], v = command.velocity[axis], max_velocity = model.guard_limits().velocity[axis];
+      const double allowed =
+          settings_.limit_ratio * (v > 0 ? velocity_toward_end(q, bounds.upper, max_velocity, settings_.joint_deceleration)
+                                         : velocity_toward_end(-q, -bounds.lower, max_velocity, settings_.joint_deceleration));
       if (std::abs(v) <= allowed + 1e-6) continue;
       core_.stop("axis " + bounds.name + " at " + std::to_string(q) + " rad may move at " + std::to_string(allowed) + " rad/s, not at " +
                  std::to_string(v));
@@ -36,7 +37,7 @@ bool ReflexArm::follow(const JointCommand& command, double now) {
   return core_.command(command, now);
 }
 
-void ReflexArm::judge() {
+void ReflexArm::update_mode() {
   measured_.by_person = true;
   if (state_.mode == ArmMode::emergency_stopped) {
     measured_.mode = DriveMode::emergency_stop;
@@ -80,7 +81,7 @@ void ReflexArm::cycle(double now) {
     measured_.position[g.axis] = g.closed + (state_.gripper_width - g.closed_width) / (g.open_width - g.closed_width) * (g.open - g.closed);
     measured_.effort[g.axis] = state_.gripper_force;
   }
-  judge();
+  update_mode();
   core_.update(measured_, now, dt);
   if (recovering_ && measured_.mode == DriveMode::enabled) {
     recovering_ = false;
@@ -112,13 +113,13 @@ void ReflexArm::drive_gripper() {
   const GripperSettings& g = settings_.gripper;
   if (++gripper_wait_ < kGripperPeriod) return;
   const double wanted = width_of(core_.reference()[g.axis]), beyond = state_.gripper_width - wanted;
-  const double force = std::clamp(g.stiffness * beyond, g.least_force, g.most_force);
+  const double force = std::clamp(g.stiffness * beyond, g.min_force, g.max_force);
   const bool closing = beyond > kWidthStep;
-  const bool new_width = std::abs(wanted - told_width_) > kWidthStep;
-  if (!new_width && !(closing && std::abs(force - told_force_) > 0.1 * told_force_)) return;
+  const bool new_width = std::abs(wanted - commanded_width_) > kWidthStep;
+  if (!new_width && !(closing && std::abs(force - commanded_force_) > 0.1 * commanded_force_)) return;
   gripper_wait_ = 0;
-  told_width_ = wanted;
-  told_force_ = closing ? force : 0.0;
+  commanded_width_ = wanted;
+  commanded_force_ = closing ? force : 0.0;
   if (closing)
     link_.gripper_grasp(wanted, g.speed, force);
   else

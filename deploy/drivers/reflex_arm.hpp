@@ -42,7 +42,7 @@ struct GripperSettings {
   double open_width{0.08}, closed_width{0.0};  ///< [m]
   double speed{0.1};                           ///< [m/s]
   double stiffness{400.0};                     ///< force for a set-point beyond the measured position [N/m of width]
-  double least_force{5.0}, most_force{40.0};   ///< [N]
+  double min_force{5.0}, max_force{40.0};      ///< [N]
 };
 
 struct ReflexSettings {
@@ -50,13 +50,13 @@ struct ReflexSettings {
   GripperSettings gripper;  ///< axis -1 when the arm has none
   /// Of the velocity limit toward a joint's end: v = sqrt(2 a (end - q)) [rad/s^2].
   double joint_deceleration{3.0};
-  double limit_share{0.95};  ///< fraction of the maker's velocity limit that set-points may use
+  double limit_ratio{0.95};  ///< fraction of the maker's velocity limit that set-points may use
   int lost_cycles{20};       ///< so many without a state: the arm's controller is silent
 };
 
-/// Returns the largest speed allowed at `position` toward `end`: the smaller of `most` and the
+/// Returns the largest speed allowed at `position` toward `end`: the smaller of `max_velocity` and the
 /// speed from which `deceleration` stops at `end` [rad/s]; 0 at `end` and beyond.
-double velocity_toward_end(double position, double end, double most, double deceleration);
+double velocity_toward_end(double position, double end, double max_velocity, double deceleration);
 
 class ReflexArm : public Driver {
  public:
@@ -78,7 +78,7 @@ class ReflexArm : public Driver {
   void set_load(double mass) override;
 
  private:
-  void judge();
+  void update_mode();
   void drive_gripper();
   double width_of(double position) const;
 
@@ -90,7 +90,7 @@ class ReflexArm : public Driver {
   CycleCount count_;
   bool commanding_{}, recovering_{};
   int lost_{};
-  double told_width_{-1.0}, told_force_{};
+  double commanded_width_{-1.0}, commanded_force_{};
   int gripper_wait_{};
 };
 

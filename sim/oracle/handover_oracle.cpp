@@ -31,18 +31,18 @@ void HandoverOracle::observe(const ObjectSituation& now, double dt) {
   last_ = now;
 }
 
-void HandoverOracle::write(GroundTruth& truth) const {
-  truth.carrier = last_.robot_grips && last_.human_grips ? "both"
-                  : last_.robot_grips                    ? "robot"
-                  : last_.human_grips                    ? "human"
-                  : last_.on_surface                     ? "surface"
-                                                         : "";
-  truth.lifted = height_ - start_height_;
-  truth.max_lifted = max_lifted_;
-  truth.human_contact_before_release = contact_before_release_;
-  truth.human_alone = alone_;
-  truth.dropped = dropped_;
-  truth.handover_done = done_;
+void HandoverOracle::write(GroundTruth& ground_truth) const {
+  ground_truth.carrier = last_.robot_grips && last_.human_grips ? "both"
+                         : last_.robot_grips                    ? "robot"
+                         : last_.human_grips                    ? "human"
+                         : last_.on_surface                     ? "surface"
+                                                                : "";
+  ground_truth.lifted = height_ - start_height_;
+  ground_truth.max_lifted = max_lifted_;
+  ground_truth.human_contact_before_release = contact_before_release_;
+  ground_truth.human_alone = alone_;
+  ground_truth.dropped = dropped_;
+  ground_truth.handover_done = done_;
 }
 
 }  // namespace handsel::sim

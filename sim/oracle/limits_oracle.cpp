@@ -38,11 +38,11 @@ void LimitsOracle::violated(const char* what, Eigen::Index axis, double value, d
   last_ = std::string(what) + " of " + model_.axes()[axis].name + ": " + std::to_string(value) + " beyond " + std::to_string(bound);
 }
 
-void LimitsOracle::judge_bounds(const JointCommand& c) {
+void LimitsOracle::check_bounds(const JointCommand& c) {
   for (Eigen::Index i = 0; i < c.position.size(); ++i) {
     const double v = std::abs(c.velocity[i]), a = std::abs(c.acceleration[i]);
-    shares_[0] = std::max(shares_[0], v / limits_.velocity[i]);
-    shares_[1] = std::max(shares_[1], a / limits_.acceleration[i]);
+    ratios_[0] = std::max(ratios_[0], v / limits_.velocity[i]);
+    ratios_[1] = std::max(ratios_[1], a / limits_.acceleration[i]);
     if (v > limits_.velocity[i] * (1 + kTolerance)) violated("velocity", i, v, limits_.velocity[i]);
     if (a > limits_.acceleration[i] * (1 + kTolerance)) violated("acceleration", i, a, limits_.acceleration[i]);
     const Axis& axis = model_.axes()[i];
@@ -56,21 +56,21 @@ double LimitsOracle::between(const JointCommand& from, const JointCommand& to) c
   return period_ * static_cast<double>(to.sequence - from.sequence);
 }
 
-void LimitsOracle::judge_step(const JointCommand& from, const JointCommand& to, double t) {
+void LimitsOracle::check_step(const JointCommand& from, const JointCommand& to, double t) {
   for (Eigen::Index i = 0; i < to.position.size(); ++i) {
     const double J = limits_.jerk[i];
     const double da = std::abs(to.acceleration[i] - from.acceleration[i]);
     const double dv = std::abs(to.velocity[i] - from.velocity[i] - from.acceleration[i] * t);
     const double dp = std::abs(to.position[i] - from.position[i] - from.velocity[i] * t - from.acceleration[i] * t * t / 2);
     const double share = std::max(da / (J * t), dv / (J * t * t / 2));
-    shares_[2] = std::max(shares_[2], share);
+    ratios_[2] = std::max(ratios_[2], share);
     if (share > 1 + kTolerance) violated("jerk", i, share * J, J);
     const double room = J * t * t * t / 6 * (1 + kTolerance) + kRounding;
     if (dp > room) violated("position step", i, dp, room);
   }
 }
 
-void LimitsOracle::judge_change(const JointCommand& from, const JointCommand& to, double T) {
+void LimitsOracle::check_change(const JointCommand& from, const JointCommand& to, double T) {
   for (Eigen::Index i = 0; i < to.position.size(); ++i) {
     const double J = limits_.jerk[i], v0 = from.velocity[i], a0 = from.acceleration[i];
     const double da = std::abs(to.acceleration[i] - a0);
@@ -94,12 +94,12 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
   bad_ = false;
   const bool first = count_ == 0;
   const double silence = now - last_time_;
-  if (!first) longest_gap_ = std::max(longest_gap_, silence);
+  if (!first) max_gap_ = std::max(max_gap_, silence);
   const bool starts = first || silence > restart_after_;
   const bool continues = !starts && writer == last_writer_ && command.sequence > previous_.sequence;
   writers_.insert(writer);
   ++count_;
-  judge_bounds(command);
+  check_bounds(command);
   if (starts) {
     for (Eigen::Index i = 0; i < actual.size(); ++i) {
       const double at = command.position[i];
@@ -107,10 +107,10 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
       if (jump > kRestartJump) violated("jump at a new start", i, jump, kRestartJump);
     }
   } else if (!continues) {
-    judge_change(previous_, command, std::max(0.0, silence) + (period_ > 0 ? period_ : kUsual.back()));
+    check_change(previous_, command, std::max(0.0, silence) + (period_ > 0 ? period_ : kUsual.back()));
   }
   if (period_ > 0) {
-    if (continues) judge_step(previous_, command, between(previous_, command));
+    if (continues) check_step(previous_, command, between(previous_, command));
   } else {
     if (starts) waiting_.clear();
     waiting_.push_back({command, command.stamp != 0 ? static_cast<double>(command.stamp) * 1e-9 : now, continues});
@@ -118,7 +118,7 @@ void LimitsOracle::observe(const JointCommand& command, std::uint64_t writer, do
     if (period_ > 0) {
       for (std::size_t i = 1; i < waiting_.size(); ++i)
         if (waiting_[i].continues)
-          judge_step(waiting_[i - 1].command, waiting_[i].command, between(waiting_[i - 1].command, waiting_[i].command));
+          check_step(waiting_[i - 1].command, waiting_[i].command, between(waiting_[i - 1].command, waiting_[i].command));
       waiting_.clear();
       waiting_.shrink_to_fit();
     }

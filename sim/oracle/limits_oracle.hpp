@@ -38,30 +38,30 @@ class LimitsOracle {
   /// Checks a set-point where the servos hold the measured positions.
   void observe(const JointCommand& c, std::uint64_t writer, double now, const Vector& actual) { observe(c, writer, now, actual, actual); }
 
-  double share_velocity() const { return shares_[0]; }      ///< largest |velocity| / limit so far
-  double share_acceleration() const { return shares_[1]; }  ///< the same of the acceleration
-  double share_jerk() const { return shares_[2]; }          ///< the same of the jerk between set-points
+  double ratio_velocity() const { return ratios_[0]; }      ///< largest |velocity| / limit so far
+  double ratio_acceleration() const { return ratios_[1]; }  ///< the same of the acceleration
+  double ratio_jerk() const { return ratios_[2]; }          ///< the same of the jerk between set-points
   /// Set-points that broke a bound by more than 1e-6 of it.
   std::uint64_t violations() const { return violations_; }
   const std::string& last_violation() const { return last_; }  ///< one sentence; empty: none
   std::uint64_t count() const { return count_; }               ///< set-points checked so far
   std::uint64_t writers() const { return writers_.size(); }    ///< different writers so far
-  double longest_gap() const { return longest_gap_; }          ///< between arrivals so far [s]
+  double max_gap() const { return max_gap_; }                  ///< between arrivals so far [s]
   double period() const { return period_; }                    ///< 0 while not known
 
  private:
   /// Time between two set-points of a stream by their sequence numbers [s].
   double between(const JointCommand& from, const JointCommand& to) const;
-  void judge_step(const JointCommand& from, const JointCommand& to, double t);
+  void check_step(const JointCommand& from, const JointCommand& to, double t);
   /// Checks a step that took a time unknown but for its bound T [s].
-  void judge_change(const JointCommand& from, const JointCommand& to, double T);
-  void judge_bounds(const JointCommand&);
+  void check_change(const JointCommand& from, const JointCommand& to, double T);
+  void check_bounds(const JointCommand&);
   void violated(const char* what, Eigen::Index axis, double value, double bound);
 
   const RobotModel& model_;
   KinematicLimits limits_;
-  double restart_after_, period_, longest_gap_{0}, last_time_{0};
-  std::array<double, 3> shares_{};
+  double restart_after_, period_, max_gap_{0}, last_time_{0};
+  std::array<double, 3> ratios_{};
   std::uint64_t violations_{0}, count_{0}, last_writer_{0};
   bool bad_{false};
   std::set<std::uint64_t> writers_;

@@ -95,17 +95,17 @@ bool People::follow_somebody() const {
 
 void People::move(double dt, const BodyState& robot_hand, int gripped) {
   for (Body& person : people_) {
-    look(person, dt, robot_hand, gripped);
-    hold_or_let_go(person);
+    observe(person, dt, robot_hand, gripped);
+    hold_or_release(person);
     pull(person, dt);
   }
 }
 
-void People::look(Body& person, double dt, const BodyState& robot_hand, int gripped) {
+void People::observe(Body& person, double dt, const BodyState& robot_hand, int gripped) {
   PersonView view;
   view.robot_hand = robot_hand.T_world_body.translation();
   if (!person.grip.holding() && !person.model.wants_grip())
-    person.object = person.fetches >= 0 ? person.fetches : gripped >= 0 ? gripped : person.model.exchanging() ? person.object : -1;
+    person.object = person.fetches >= 0 ? person.fetches : gripped >= 0 ? gripped : person.model.in_handover() ? person.object : -1;
   if (person.object >= 0) {
     const ObjectBody& object = objects_[person.object];
     view.object = &object.model();
@@ -125,7 +125,7 @@ void People::look(Body& person, double dt, const BodyState& robot_hand, int grip
   for (int s = 0; s < 2; ++s) person.hands[s]->place(person.model.hand(s));
 }
 
-void People::hold_or_let_go(Body& person) {
+void People::hold_or_release(Body& person) {
   if (!person.model.wants_grip()) {
     person.grip.release();
   } else if (!person.grip.holding() && !person.broke && person.object >= 0) {
@@ -138,7 +138,7 @@ void People::hold_or_let_go(Body& person) {
 }
 
 void People::pull(Body& person, double dt) {
-  const bool soft = person.model.exchanging();
+  const bool soft = person.model.in_handover();
   person.capsules = body_capsules(person.model.body());
   for (int s = 0; s < 2; ++s) person.hands[s]->pull_to(person.model.hand(s), dt);
   for (std::size_t c = 0; c < person.colliders.size(); ++c) {
@@ -151,7 +151,7 @@ void People::pull(Body& person, double dt) {
   }
   if (!person.grip.holding()) return;
   ObjectBody& object = objects_[person.object];
-  const Wrench& w = person.grip.update(person.hand().state(), object.state(), object.model().mass, object.least_inertia(), dt);
+  const Wrench& w = person.grip.update(person.hand().state(), object.state(), object.model().mass, object.min_inertia(), dt);
   object.push(w);
   person.hand().push(object.state().T_world_body.translation(), {-w.force, -w.torque});
   person.broke = !person.grip.holding();
@@ -177,7 +177,7 @@ bool People::touches(int object) const {
 
 bool People::yields(int code) const {
   const Body& person = people_[code / kCodes];
-  return person.model.exchanging() && of_hand(person.capsules[code % kCodes].part, person.model.side());
+  return person.model.in_handover() && of_hand(person.capsules[code % kCodes].part, person.model.side());
 }
 
 const std::string& People::id(int code) const { return people_[code / kCodes].model.id(); }
@@ -187,7 +187,7 @@ void People::volumes(const Vector3& robot_hand, std::vector<PersonVolume>& out) 
   for (const Body& person : people_) {
     const bool exchanged = person.model.phase() == PersonPhase::keeping && person.object >= 0 &&
                            (robot_hand - objects_[person.object].state().T_world_body.translation()).norm() < 0.35;
-    out.push_back({&person.model.body(), person.model.exchanging() || exchanged, person.model.side()});
+    out.push_back({&person.model.body(), person.model.in_handover() || exchanged, person.model.side()});
   }
 }
 

@@ -72,8 +72,8 @@ class People {
     const PersonHand& hand() const { return *hands[model.side() == Side::left ? 0 : 1]; }
   };
   void build(const StartPerson&, const SimSettings&, int number, ShapeStore&);
-  void look(Body&, double dt, const BodyState& robot_hand, int gripped);
-  void hold_or_let_go(Body&);
+  void observe(Body&, double dt, const BodyState& robot_hand, int gripped);
+  void hold_or_release(Body&);
   void pull(Body&, double dt);
   double hand_gap(const Body&) const;
 

@@ -29,8 +29,8 @@ const char* name(PersonPhase phase) {
 
 PersonModel::PersonModel(const PersonSettings& settings)
     : settings_(settings), feet_(settings.feet), home_(settings.feet), yaw_(settings.yaw) {
-  const std::vector<BodyJoint> rest =
-      settings_.manner.seated ? sitting_body(Vector3::Zero(), 0, settings_.stature) : standing_body(Vector3::Zero(), 0, settings_.stature);
+  const std::vector<BodyJoint> rest = settings_.behaviour.seated ? sitting_body(Vector3::Zero(), 0, settings_.stature)
+                                                                 : standing_body(Vector3::Zero(), 0, settings_.stature);
   for (std::size_t i = 0; i < template_.size(); ++i) template_[i] = rest[i].position;
   side_ = settings_.left_handed ? Side::left : Side::right;
   if (settings_.recording) {
@@ -64,7 +64,7 @@ PersonModel::PersonModel(const PersonSettings& settings)
   step(0, PersonView{});
 }
 
-bool PersonModel::exchanging() const {
+bool PersonModel::in_handover() const {
   if (settings_.kind == PersonKind::fetcher) return false;
   switch (phase_) {
     case PersonPhase::reaching:
@@ -207,7 +207,7 @@ void PersonModel::act(double dt, const PersonView& view) {
 bool PersonModel::out_of_hand(const PersonView& view) const { return view.held_by_robot == (settings_.kind == PersonKind::fetcher); }
 
 bool PersonModel::offered(const PersonView& view, int side) const {
-  const double fastest = settings_.manner.early ? kEarly : kStill;
+  const double fastest = settings_.behaviour.early ? kEarly : kStill;
   if (refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest) return false;
   if (settings_.kind == PersonKind::fetcher && clock_ < settings_.fetches_at) return false;
   return (object_centre(view) - shoulder(side)).norm() < reach_ + (settings_.recording ? kStep : kLeanReach);
@@ -237,7 +237,7 @@ void PersonModel::watch(double dt, const PersonView& view) {
   side_of_object_ = (toward + (away.norm() > 1e-3 ? Vector3(0.7 * away.normalized()) : Vector3(Vector3::Zero()))).normalized();
   from_ = hand_point();
   const Vector3 goal = grasp_point(view);
-  duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.manner.pace;
+  duration_ = std::clamp(0.5 + 0.8 * (goal - from_).norm(), 0.8, 1.2) / settings_.behaviour.speed_scale;
   lean_from_ = lean_;
   const double excess = (goal - shoulder(index())).norm() - 0.95 * reach_;
   lean_to_ = std::clamp(lean_ + excess / std::max(0.2, template_[kShoulder[index()]].z() - template_[kWaist].z()), 0.0, 0.35);
@@ -276,15 +276,15 @@ Vector3 PersonModel::nearest_hold(const PersonView& view, const Vector3& from) c
 }
 
 void PersonModel::reach_out(double dt, const PersonView& view) {
-  const double fastest = settings_.manner.early ? kGoneEarly : kGone;
+  const double fastest = settings_.behaviour.early ? kGoneEarly : kGone;
   const bool lost = refusing_ || view.object == nullptr || out_of_hand(view) || view.object_velocity.norm() > fastest;
   lost_time_ = lost ? lost_time_ + dt : 0;
   if (lost_time_ > 0.3) return give_up();
   if (view.object == nullptr) return;
-  const double s = reach_share();
+  const double s = reach_fraction();
   lean_ = lean_from_ + s * (lean_to_ - lean_from_);
   hand_target_ = from_ + s * (grasp_point(view) - from_);
-  if (s >= kMidway && settings_.manner.withdraws && !came_once_) return give_up();
+  if (s >= kMidway && settings_.behaviour.withdraws && !came_once_) return give_up();
   if (s < 1) return;
   if (gap(view) < kPalm + 0.012) {
     enter(PersonPhase::closing);
@@ -341,7 +341,7 @@ void PersonModel::withdraw(double dt, const PersonView& view) {
   progress_ += dt / duration_ * std::clamp(1 - (view.grip_force.norm() - 15) / 15, 0.0, 1.0);
   const double s = min_jerk(progress_);
   lean_ = (1 - s) * lean_from_;
-  if (!settings_.manner.seated) feet_ = home_ - s * kStepBack * forward();
+  if (!settings_.behaviour.seated) feet_ = home_ - s * kStepBack * forward();
   hand_target_ = from_ + s * (keep_point() - from_);
   if (progress_ >= 1) enter(PersonPhase::keeping);
 }

@@ -22,8 +22,8 @@ namespace handsel::sim {
 enum class PersonKind { taker, still, walker, recording, giver, external, fetcher };
 
 /// What makes a person different from the next.
-struct Manner {
-  double pace{1};                     ///< of the hand, times the usual
+struct BehaviourProfile {
+  double speed_scale{1};              ///< of the hand, times the usual
   double hesitation{};                ///< stops midway on the first reach or offer [s]
   bool withdraws{};                   ///< withdraws the hand once from its first reach or offer, and comes again
   double look_away{};                 ///< looks elsewhere once, so long [s] ...
@@ -57,7 +57,7 @@ struct PersonSettings {
   double max_warp{0.10};             ///< a recorded hand is moved by no more than this [m]
   double warp_time{0.5};             ///< over the last part before contact [s]
   double fetches_at{};               ///< a fetcher reaches for its object from then on [s]
-  Manner manner{};                   ///< what this person does differently
+  BehaviourProfile behaviour{};      ///< what this person does differently
   std::vector<Furniture> furniture;  ///< what they hold is kept above it
 };
 
@@ -99,7 +99,7 @@ class PersonModel {
   bool wants_grip() const { return wants_grip_; }                   ///< whether that hand is to hold its object
   /// Whether a handover is under way: from reach or offer until the object is withdrawn or
   /// the hand is back. Never for a fetcher, which takes an object by itself.
-  bool exchanging() const;
+  bool in_handover() const;
   /// Where the handover hand is wanted; axes turn with the body.
   const BodyState& hand() const { return hands_[index()]; }
   const BodyState& hand(int side) const { return hands_[side]; }  ///< 0 left, 1 right
@@ -126,12 +126,12 @@ class PersonModel {
   Vector3 offer_from_shoulder(const PersonView&) const;
   void offer(double dt, const PersonView&);
   void step_aside(double dt);
-  double reach_share() const;
+  double reach_fraction() const;
   double reach_time() const;
   Vector3 looked_at(const PersonView&) const;
   void accompany(double dt, const PersonView&);
   void pull_after(const Vector3& would_be, double dt, const PersonView&);
-  void let_go();
+  void release();
   bool offered(const PersonView&, int side) const;
   bool out_of_hand(const PersonView&) const;
   void choose_hand(const PersonView&);

@@ -27,20 +27,20 @@ constexpr double kLift = 1.2, kClearOfHand = 0.30, kOffHand = 0.15;
 }  // namespace
 
 /// Share of the way of a reach or an offer.
-double PersonModel::reach_share() const {
-  const double t = since(), part = kPart * duration_, stop = settings_.manner.hesitation;
-  const bool wavers = !came_once_ && (stop > 0 || settings_.manner.withdraws);
+double PersonModel::reach_fraction() const {
+  const double t = since(), part = kPart * duration_, stop = settings_.behaviour.hesitation;
+  const bool wavers = !came_once_ && (stop > 0 || settings_.behaviour.withdraws);
   if (!wavers) return min_jerk(t / duration_);
   return t < part + stop ? kMidway * min_jerk(t / part) : kMidway + (1 - kMidway) * min_jerk((t - part - stop) / part);
 }
 
 double PersonModel::reach_time() const {
-  const bool wavers = !came_once_ && (settings_.manner.hesitation > 0 || settings_.manner.withdraws);
-  return wavers ? 2 * kPart * duration_ + settings_.manner.hesitation : duration_;
+  const bool wavers = !came_once_ && (settings_.behaviour.hesitation > 0 || settings_.behaviour.withdraws);
+  return wavers ? 2 * kPart * duration_ + settings_.behaviour.hesitation : duration_;
 }
 
 void PersonModel::hold_back(const PersonView& view) {
-  const double back = kOfferTime / settings_.manner.pace;
+  const double back = kOfferTime / settings_.behaviour.speed_scale;
   hand_target_ = from_ + min_jerk(since() / back) * (keep_point() - from_);
   if (refusing_ || since() < duration_) return;
   from_ = hand_target_;
@@ -64,23 +64,23 @@ void PersonModel::offer(double dt, const PersonView& view) {
   lost_time_ = view.held_by_robot ? lost_time_ + dt : 0;
   if (lost_time_ > kLetGo) return give_up();
   if (view.held_by_robot) return;
-  hand_target_ = from_ + reach_share() * (shoulder(index()) + p_shoulder_offer_ - from_);
+  hand_target_ = from_ + reach_fraction() * (shoulder(index()) + p_shoulder_offer_ - from_);
   const bool near = view.object != nullptr && (view.robot_hand - object_centre(view)).norm() < kComeNear;
   if (near || since() < duration_) ignored_ = 0;
   if ((ignored_ += dt) > kImpatience) {  // holds it out anew, nearer to where the robot's hand is
     ignored_ = 0;
     from_ = hand_target_;
     p_shoulder_offer_ = offer_from_shoulder(view);
-    if (!settings_.manner.seated && steps_nearer_ < kMostSteps) {
+    if (!settings_.behaviour.seated && steps_nearer_ < kMostSteps) {
       ++steps_nearer_;
-      settings_.manner.sidestep = kStepNearer * (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
+      settings_.behaviour.sidestep = kStepNearer * (view.robot_hand - points_[kTorso]).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
       home_aside_ = aside_;
       step_clock_ = 0;
-      settings_.manner.sidestep_at = clock_;
+      settings_.behaviour.sidestep_at = clock_;
     }
     enter(PersonPhase::offering);
   }
-  if (!refusing_ && !(near && settings_.manner.withdraws && !came_once_)) return;
+  if (!refusing_ && !(near && settings_.behaviour.withdraws && !came_once_)) return;
   came_once_ = true;
   from_ = hand_target_;
   duration_ = kReconsider;
@@ -89,15 +89,15 @@ void PersonModel::offer(double dt, const PersonView& view) {
 
 /// Not while both have hold of the object, or reach for it.
 void PersonModel::step_aside(double dt) {
-  const double length = settings_.manner.sidestep.norm();
+  const double length = settings_.behaviour.sidestep.norm();
   if (length <= 0) return;
   const bool free =
       phase_ == PersonPhase::watching || phase_ == PersonPhase::keeping || (phase_ == PersonPhase::offering && lost_time_ <= 0);
   const double duration = step_time(length);
   const bool under_way = step_clock_ > 0 && step_clock_ < duration;
-  if (clock_ < settings_.manner.sidestep_at || !(free || under_way)) return;
+  if (clock_ < settings_.behaviour.sidestep_at || !(free || under_way)) return;
   step_clock_ += dt;
-  aside_ = home_aside_ + min_jerk(step_clock_ / duration) * settings_.manner.sidestep;
+  aside_ = home_aside_ + min_jerk(step_clock_ / duration) * settings_.behaviour.sidestep;
 }
 
 /// The least height of a hand that holds something, there [m].
@@ -125,8 +125,9 @@ void PersonModel::keep_above_furniture(const Vector3& robot_hand) {
 
 Vector3 PersonModel::looked_at(const PersonView& view) const {
   if (refusing_ || phase_ == PersonPhase::leaving || settings_.kind == PersonKind::walker) return points_[kHead] + forward();
-  const Manner& manner = settings_.manner;
-  if (clock_ >= manner.look_away_at && clock_ < manner.look_away_at + manner.look_away) return points_[kHead] + left() + 0.3 * forward();
+  const BehaviourProfile& behaviour = settings_.behaviour;
+  if (clock_ >= behaviour.look_away_at && clock_ < behaviour.look_away_at + behaviour.look_away)
+    return points_[kHead] + left() + 0.3 * forward();
   const bool interesting = view.object != nullptr && (view.held_by_robot || wants_grip_ || settings_.kind == PersonKind::fetcher);
   return interesting ? object_centre(view) : view.robot_hand;
 }

@@ -68,7 +68,7 @@ void PersonModel::accompany(double dt, const PersonView& view) {
       return;
     case PersonPhase::withdrawing:
     case PersonPhase::keeping:
-      if (!wants_grip_ || view.grip_broke) return let_go();
+      if (!wants_grip_ || view.grip_broke) return release();
       led_ -= limited(led_, kLead * min_jerk(since() / 0.5) * dt);
       hand_target_ = told(index()) + led_;
       if (phase_ == PersonPhase::withdrawing && led_.norm() < kBack) enter(PersonPhase::keeping);
@@ -89,7 +89,7 @@ void PersonModel::accompany(double dt, const PersonView& view) {
 
 /// Holds on while the robot does, and pulls toward where the hand would be.
 void PersonModel::pull_after(const Vector3& would_be, double dt, const PersonView& view) {
-  if (!wants_grip_ || view.grip_broke || view.object == nullptr) return let_go();
+  if (!wants_grip_ || view.grip_broke || view.object == nullptr) return release();
   const Vector3 away = would_be - hand_target_;
   const Vector3 direction = away.stableNormalized();
   const double wanted = std::min(settings_.pull, kStretch * away.norm());
@@ -97,13 +97,13 @@ void PersonModel::pull_after(const Vector3& would_be, double dt, const PersonVie
   hand_target_ += speed * dt * direction;
   sore_time_ = view.grip_force.norm() > kSoreForce ? sore_time_ + dt : 0;
   lost_time_ = view.held_by_robot ? 0 : lost_time_ + dt;
-  if (sore_time_ > 0.1 || away.norm() > kGivesUp) return let_go();
+  if (sore_time_ > 0.1 || away.norm() > kGivesUp) return release();
   if (lost_time_ <= 0.1) return;
   led_ += hand_target_ - would_be;
   enter(PersonPhase::withdrawing);
 }
 
-void PersonModel::let_go() {
+void PersonModel::release() {
   wants_grip_ = false;
   cooldown_ = 1.0;
   led_ = hand_target_ - points_[kHand[index()]];

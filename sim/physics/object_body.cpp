@@ -22,7 +22,7 @@ ObjectBody::ObjectBody(const StartObject& start, int index, ShapeStore& shapes, 
   info.m_angularDamping = 0.02;
   body_ = std::make_unique<btRigidBody>(info);
   body_->setActivationState(DISABLE_DEACTIVATION);
-  least_inertia_ = std::min({inertia.x(), inertia.y(), inertia.z()});
+  min_inertia_ = std::min({inertia.x(), inertia.y(), inertia.z()});
   own(*body_, Owner::object, index);
   world_.addRigidBody(body_.get(), kObject, kRobot | kFixed | kObject);
   read();

@@ -20,7 +20,7 @@ class ObjectBody {
 
   const StartObject& start() const { return start_; }         ///< as the scenario places it
   const ObjectModel& model() const { return *start_.model; }  ///< of the object library
-  double least_inertia() const { return least_inertia_; }     ///< least principal moment [kg m^2]
+  double min_inertia() const { return min_inertia_; }         ///< least principal moment [kg m^2]
   /// Returns the pose of the object frame as of the last read().
   const Pose& T_world_object() const { return T_world_object_; }
   const BodyState& state() const { return state_; }  ///< of the centre of mass
@@ -36,7 +36,7 @@ class ObjectBody {
   StartObject start_;
   btDynamicsWorld& world_;
   std::unique_ptr<btRigidBody> body_;
-  double least_inertia_{};
+  double min_inertia_{};
   Pose T_world_object_{Pose::Identity()};
   BodyState state_;
 };

@@ -79,7 +79,7 @@ class Reader {
   }
 
   void read_start() {
-    out_.start = robot_.rest_posture();
+    out_.start = robot_.rest_configuration();
     if (out_.start.size() != robot_.dof()) out_.start = Vector::Zero(robot_.dof());
     std::vector<std::string> names;
     for (const auto& entry : scenario_.start()) names.push_back(entry.first);
@@ -180,22 +180,22 @@ class Reader {
     s.stature = std::clamp(s.stature + jitter(v.stature()), 1.2, 2.2);
     s.left_handed = chance(v.left_handed());
     const double pace = within(v.slowest(), v.fastest());
-    if (v.fastest() > 0) s.manner.pace = pace;
+    if (v.fastest() > 0) s.behaviour.speed_scale = pace;
     const auto some = [&](double share, double most) {
       const bool does = chance(share);
       const double size = within(0.3, 1) * most;
       return does ? size : 0.0;
     };
-    s.manner.hesitation = some(v.hesitates(), v.hesitation());
-    s.manner.withdraws = chance(v.withdraws());
-    s.manner.look_away = some(v.looks_away(), v.away());
-    s.manner.look_away_at = within(v.begins_after(), v.begins_before());
+    s.behaviour.hesitation = some(v.hesitates(), v.hesitation());
+    s.behaviour.withdraws = chance(v.withdraws());
+    s.behaviour.look_away = some(v.looks_away(), v.away());
+    s.behaviour.look_away_at = within(v.begins_after(), v.begins_before());
     const double step = some(v.sidesteps(), v.sidestep()), way = within(M_PI_2, 3 * M_PI_2);
-    s.manner.sidestep_at = within(v.begins_after(), v.begins_before());
-    s.manner.seated = chance(v.seated());
+    s.behaviour.sidestep_at = within(v.begins_after(), v.begins_before());
+    s.behaviour.seated = chance(v.seated());
     const Vector3 to_robot = (out_.T_world_base.translation() - s.feet).cwiseProduct(Vector3(1, 1, 0)).stableNormalized();
-    if (!s.manner.seated) s.manner.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
-    s.manner.early = chance(v.early());
+    if (!s.behaviour.seated) s.behaviour.sidestep = step * (Eigen::AngleAxisd(way, Vector3::UnitZ()) * to_robot);
+    s.behaviour.early = chance(v.early());
     return !absent;
   }
 

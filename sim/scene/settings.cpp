@@ -36,7 +36,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   if (s.step > 0.005) throw ConfigError(file.string() + ": step is " + std::to_string(s.step) + ", must be at most 0.005");
   s.solver_iterations = static_cast<int>(positive(read.solver_iterations(), "solver_iterations"));
   s.state_rate = positive(read.state_rate(), "state_rate");
-  s.truth_rate = positive(read.truth_rate(), "truth_rate");
+  s.ground_truth_rate = positive(read.truth_rate(), "truth_rate");
   s.servo.bandwidth = positive(read.servo_bandwidth(), "servo_bandwidth");
   s.robot_side.max_gap = positive(read.max_setpoint_gap(), "max_setpoint_gap");
   s.robot_side.max_ahead = s.robot_side.max_gap;

@@ -12,11 +12,11 @@
 namespace handsel::sim {
 
 struct SimSettings {
-  double step{0.001};                      ///< [s]
-  int solver_iterations{10};               ///< of the contact solver in one step
-  double state_rate{500}, truth_rate{50};  ///< of robot state and ground truth [Hz]
-  ServoSettings servo;                     ///< joint servos of the robot
-  PadSettings pad;                         ///< surface of its fingers
+  double step{0.001};                             ///< [s]
+  int solver_iterations{10};                      ///< of the contact solver in one step
+  double state_rate{500}, ground_truth_rate{50};  ///< of robot state and ground truth [Hz]
+  ServoSettings servo;                            ///< joint servos of the robot
+  PadSettings pad;                                ///< surface of its fingers
   /// A grasp constraint of limited force helps to hold while the contacts pass force closure.
   bool constraint{true};
   RobotSideSettings robot_side;  ///< how the robot's driver takes set-points

@@ -149,7 +149,7 @@ const std::string& HumanSensor::shown_id(const std::string& id) {
   return other == shown_.end() ? id : other->second;
 }
 
-void HumanSensor::exchange_ids(const Sight& sight) {
+void HumanSensor::swap_ids(const Sight& sight) {
   if (sight.people.empty()) return;
   const std::size_t n = sight.people.size();
   const auto first = static_cast<std::size_t>(stream_.uniform() * static_cast<double>(n)) % n;
@@ -167,7 +167,7 @@ void HumanSensor::exchange_ids(const Sight& sight) {
 
 void HumanSensor::observe(double now, const Sight& sight) {
   const bool lost = stream_.lost(now);
-  if (stream_.happens(settings_.swap_rate / settings_.rate)) exchange_ids(sight);
+  if (stream_.happens(settings_.swap_rate / settings_.rate)) swap_ids(sight);
   HumanObservation seen;
   seen.source = settings_.source;
   if (settings_.gaze != GazeOutput::only) seen.coverage = settings_.coverage;

@@ -144,7 +144,7 @@ class HumanSensor {
 
  private:
   bool sees(const Sight&, std::size_t person, const Vector3& point) const;
-  void exchange_ids(const Sight&);
+  void swap_ids(const Sight&);
   const std::string& shown_id(const std::string& id);
 
   SensorSettings settings_;

@@ -43,7 +43,7 @@ int run(int rounds) {
   action.object = "mug";
   action.holding = true;
   ActiveTrajectory active;
-  active.position = context.robot->rest_posture();
+  active.position = context.robot->rest_configuration();
   active.velocity = active.acceleration = Vector::Zero(active.position.size());
   active.trajectory = 1;
   const Group& arm = context.robot->require_group("arm");

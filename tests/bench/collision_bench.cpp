@@ -122,12 +122,12 @@ class FclManager {
   std::vector<Pose> T_root_link_;
 };
 
-void fold(const RobotModel& robot, const Vector& q, WideWorld& wide) {
-  std::vector<WideWorld::Body> bodies;
+void fold(const RobotModel& robot, const Vector& q, BatchWorld& wide) {
+  std::vector<BatchWorld::Body> bodies;
   for (std::size_t i = 0; i < robot.links().size(); ++i)
     for (const PlacedShape& placed : robot.links()[i].collision)
       bodies.push_back({static_cast<int>(i), std::make_shared<const SphereCover>(cover_shape(placed.shape)), placed.shape,
-                        placed.T_parent_shape, kWideArm});
+                        placed.T_parent_shape, kArmPart});
   std::vector<std::pair<int, int>> pairs;
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j)
@@ -140,12 +140,12 @@ void state_rates(int rounds) {
   const RobotModel robot = test::load_panda();
   const auto problems = test::panda_problems(robot);
   const std::vector<int> arm = test::panda_arm(robot);
-  WideWorld wide(robot);
+  BatchWorld wide(robot);
   const double made = seconds([&] { fold(robot, problems[0].start, wide); });
   FclManager fcl(robot);
   CollisionWorld both(robot, nullptr);
   both.set_moving_axes(arm);
-  std::printf("panda: %d spheres in trees, made in %.2f s; registers: %s\n", wide.spheres(), made, detail::wide_kernels().name);
+  std::printf("panda: %d spheres in trees, made in %.2f s; registers: %s\n", wide.spheres(), made, detail::simd_kernels().name);
   std::printf("states on lines of %d, 0.02 rad apart, in seven scenes; million states a second\n", kStatesOnLine);
   std::printf("%-24s %7s %9s %9s %9s %8s %9s %11s\n", "scene", "free", "wide", "unclear", "FCL", "ratio", "with FCL", "(left to it)");
   std::map<std::string, const test::PandaProblem*> scenes;
@@ -155,7 +155,7 @@ void state_rates(int rounds) {
   for (const auto& [name, problem] : scenes) {
     fcl.set_obstacles(problem->obstacles);
     both.set_obstacles(problem->obstacles);
-    std::vector<WideWorld::Solid> solids;
+    std::vector<BatchWorld::Solid> solids;
     for (const Obstacle& o : problem->obstacles) solids.push_back({o.placed.shape, nullptr, o.placed.T_parent_shape});
     wide.set_solids(solids, Pose::Identity());
     std::vector<std::pair<Vector, Vector>> lines;
@@ -181,8 +181,8 @@ void state_rates(int rounds) {
       a.push_back(seconds([&] {
                     for (int repeat = 0; repeat < kRepeats; ++repeat)
                       for (const auto& [from, to] : lines)
-                        for (int i = 0; i < kStatesOnLine; i += WideWorld::kStates)
-                          unclear += __builtin_popcount(wide.unclear_on_line(from, to, at.data() + i, WideWorld::kStates));
+                        for (int i = 0; i < kStatesOnLine; i += BatchWorld::kStates)
+                          unclear += __builtin_popcount(wide.unclear_on_line(from, to, at.data() + i, BatchWorld::kStates));
                   }) /
                   kRepeats);
       b.push_back(seconds([&] {
@@ -211,8 +211,8 @@ void capsule_distances(int rounds) {
   std::mt19937 random(kSeed);
   std::uniform_real_distribution<double> unit(-1, 1), size(0.04, 0.14);
   struct Case {
-    std::vector<detail::WideCapsule> robot;
-    detail::WideCapsules person;
+    std::vector<detail::SimdCapsule> robot;
+    detail::SimdCapsules person;
     std::vector<fcl::Transform3d> T_robot, T_person;
   };
   std::vector<Case> cases(kCases);
@@ -228,7 +228,7 @@ void capsule_distances(int rounds) {
       const Vector3 middle = around + 0.5 * Vector3(unit(random), unit(random), unit(random)),
                     axis = Vector3(unit(random), unit(random), unit(random)).normalized();
       poses.push_back(make_pose(middle, Eigen::Quaterniond::FromTwoVectors(Vector3::UnitZ(), axis)));
-      return wide_capsule(middle - 0.5 * length[i] * axis, middle + 0.5 * length[i] * axis, radius[i]);
+      return simd_capsule(middle - 0.5 * length[i] * axis, middle + 0.5 * length[i] * axis, radius[i]);
     };
     for (std::size_t i = 0; i < kRobot; ++i) one.robot.push_back(make(i, Vector3(0, 0, 0.8), one.T_robot));
     one.person = no_capsules();
@@ -239,7 +239,7 @@ void capsule_distances(int rounds) {
   double worst = 0;
   alignas(64) float distance[16 * kRobot];
   const auto nearest = [&](const Case& one) {
-    return detail::wide_kernels().distances(one.robot.data(), kRobot, one.person, 0.0f, distance);
+    return detail::simd_kernels().distances(one.robot.data(), kRobot, one.person, 0.0f, distance);
   };
   const auto nearest_fcl = [&](const Case& one) {
     double least = 1e9;

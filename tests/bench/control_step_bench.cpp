@@ -45,7 +45,7 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
   TimePoint now{from_seconds(10)};
   RobotState state;
   state.robot = robot->name();
-  state.position = robot->rest_posture();
+  state.position = robot->rest_configuration();
   state.velocity = state.effort = Vector::Zero(robot->dof());
   state.mode = DriveMode::enabled;
   HumanState people;
@@ -85,7 +85,7 @@ Run run(const std::shared_ptr<const RobotModel>& robot, int steps) {
       c.robot = robot->name();
       c.id = ++out.trajectories;
       c.epoch = 1;
-      Vector goal = of_arm(robot->rest_posture());
+      Vector goal = of_arm(robot->rest_configuration());
       for (Eigen::Index i = 0; i < goal.size(); ++i) goal[i] += (c.id % 2 ? 0.4 : -0.2) * (i % 2 ? 1 : -1);
       for (int axis : arm.axes) c.axes.push_back(static_cast<std::uint32_t>(axis));
       c.trajectory = solve(rest_state(of_arm(core.set_point().position)), rest_state(goal), comfort).trajectory;
@@ -113,10 +113,10 @@ std::vector<double> judge_paths(const RobotModel& robot, int times) {
   active.robot = robot.name();
   active.trajectory = 1;
   active.speed_factor = 1.0;
-  active.position = robot.rest_posture();
+  active.position = robot.rest_configuration();
   active.velocity = active.acceleration = Vector::Zero(robot.dof());
   active.axes.assign(arm.axes.begin(), arm.axes.end());
-  const Vector from = of_arm(robot.rest_posture());
+  const Vector from = of_arm(robot.rest_configuration());
   active.rest =
       solve(rest_state(from), rest_state(from + Vector::Constant(from.size(), 0.4)),
             {of_arm(robot.comfort_limits().velocity), of_arm(robot.comfort_limits().acceleration), of_arm(robot.comfort_limits().jerk)})

@@ -95,7 +95,7 @@ void cost_of_states(const char* name, const RobotModel& robot, const std::vector
   std::mt19937 random(kSeed);
   std::vector<std::pair<Vector, Vector>> lines;
   for (int k = 0; k < kLines; ++k) {
-    Vector from = robot.rest_posture(), to = from;
+    Vector from = robot.rest_configuration(), to = from;
     for (int i : axes) {
       const Axis& axis = robot.axes()[static_cast<std::size_t>(i)];
       std::uniform_real_distribution<double> inside(std::max(axis.lower, -3.0), std::min(axis.upper, 3.0));

@@ -84,7 +84,7 @@ ObjectModel fine_mug() {
 }
 
 struct Setup {
-  std::shared_ptr<const HandKit> kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  std::shared_ptr<const HandGeometry> kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   std::shared_ptr<const FingerWorkspaces> workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
   ObjectModel model = fine_mug();
   GraspListSettings settings = [] {
@@ -203,12 +203,12 @@ void BM_choose_from_list(benchmark::State& state) {
   const GraspChooser chooser(robot, s.kit, [](const std::string&) { return &mug; }, {});
   Scene scene;
   scene.robot_known = true;
-  scene.robot_position = robot->rest_posture();
+  scene.robot_position = robot->rest_configuration();
   scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
   scene.objects.push_back({"cup", "mug", make_pose({0.7, -0.4, 0.72 + mug.height_above_support}), Holder::surface, "table", 0});
   GraspRequest request;
   request.object = "cup";
-  request.start = robot->rest_posture();
+  request.start = robot->rest_configuration();
   request.max_grasps = static_cast<std::uint32_t>(state.range(0));
   std::size_t chosen = 0;
   for (auto _ : state) chosen = chooser.choose(request, page->list, *page->object, scene, {}).grasps.size();

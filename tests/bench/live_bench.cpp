@@ -27,7 +27,7 @@ int run(int cases) {
   HumanCost cost(robot, {});
   Scene scene;
   scene.robot_known = true;
-  scene.robot_position = robot.rest_posture();
+  scene.robot_position = robot.rest_configuration();
   scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
   world.set_scene(scene);
   std::mt19937 engine(kSeed);
@@ -36,7 +36,7 @@ int run(int cases) {
   std::array<int, 5> outcomes{}, outcomes_dear{};
   int anew_solved = 0, blocked_cases = 0;
   const auto random_posture = [&] {
-    Vector q = robot.rest_posture();
+    Vector q = robot.rest_configuration();
     do {
       for (int axis : arm.axes) q[axis] = robot.axes()[axis].lower + unit(engine) * (robot.axes()[axis].upper - robot.axes()[axis].lower);
     } while (!world.check(q).free);

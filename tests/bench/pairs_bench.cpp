@@ -37,7 +37,7 @@ int run(int rounds) {
   GraspRequest request;
   request.object = "thing";
   request.for_human = "anna";
-  request.start = robot->rest_posture();
+  request.start = robot->rest_configuration();
   request.max_grasps = 1;
   for (const char* object : {"mug", "bottle", "box", "can", "ball"}) {
     const HandOnObject &right = hand_on_object("sah", object, 60, 144), &left = hand_on_object("sah_left", object, 60, 144),
@@ -53,7 +53,7 @@ int run(int rounds) {
     const TransferTable table(a, h, *right.object);
     Scene scene;
     scene.robot_known = true;
-    scene.robot_position = robot->rest_posture();
+    scene.robot_position = robot->rest_configuration();
     scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
     scene.objects.push_back(
         {"thing", object, make_pose({0.68, -0.42, 0.72 + object_model(object)->height_above_support}), Holder::surface, "table", 0});

@@ -121,7 +121,7 @@ class Probe {
             {.component = "reaction_probe sim spark supervisor manipulation_planner", .domain = domain, .realtime = true, .health = false}),
         wanted_(wanted) {
     state_.robot = robot_.name();
-    state_.position = robot_.rest_posture();
+    state_.position = robot_.rest_configuration();
     state_.velocity = state_.effort = Vector::Zero(robot_.dof());
     state_.mode = DriveMode::enabled;
     people_.covered = true;
@@ -164,7 +164,7 @@ class Probe {
   void send() {
     idle_ = 0;
     const Group& arm = robot_.require_group("arm");
-    Vector from = RobotModel::part(state_.position, arm), to = RobotModel::part(robot_.rest_posture(), arm);
+    Vector from = RobotModel::part(state_.position, arm), to = RobotModel::part(robot_.rest_configuration(), arm);
     to[0] += (++command_.id % 2) ? 0.6 : -0.3;
     command_.robot = robot_.name();
     command_.epoch = status_.epoch;

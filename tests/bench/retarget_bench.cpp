@@ -35,7 +35,7 @@ int run(int cases) {
   HumanCost cost(robot, {});
   Scene scene;
   scene.robot_known = true;
-  scene.robot_position = robot.rest_posture();
+  scene.robot_position = robot.rest_configuration();
   scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
   Attachment attachment;
   attachment.object = "mug";
@@ -70,7 +70,7 @@ int run(int cases) {
     const Vector3 feet{1.35 + 0.3 * unit(engine), -0.4 + 0.8 * unit(engine), 0};
     const double way = 6.283185307179586 * unit(engine), step = 0.15 + 0.25 * unit(engine);
     const HumanState before = test::person_at(feet), after = test::person_at(feet + step * Vector3{std::cos(way), std::sin(way), 0});
-    const Vector rest = robot.rest_posture();
+    const Vector rest = robot.rest_configuration();
     put(before);
     path_planner::Problem problem;
     problem.axes = arm.axes;
@@ -101,9 +101,7 @@ int run(int cases) {
     });
     goals_of_search();
     if (!problem.goals.empty()) {
-      const double t_path = seconds([&] {
-        live = path_planner::continue_path({robot, world, cost}, problem, first.path, {}, {});
-      });
+      const double t_path = seconds([&] { live = path_planner::continue_path({robot, world, cost}, problem, first.path, {}, {}); });
       const double t_motion = seconds([&] {
         if (live.result.solved) soft = smooth(after, live.result.path, problem.start);
       });

@@ -98,7 +98,7 @@ struct Flat {
       for (std::size_t k = 0; k < 9; ++k) parts[k].insert(parts[k].end(), numbers[k]->begin(), numbers[k]->end());
     }
   }
-  detail::LaneInput from(std::size_t problem) const {
+  detail::AxisBatchInput from(std::size_t problem) const {
     const auto at = [&](std::size_t k) { return parts[k].data() + problem * kAxes; };
     return {at(0), at(1), at(2), at(3), at(4), at(5), at(6), at(7), at(8)};
   }
@@ -275,14 +275,14 @@ struct Running {
   Eigen::VectorXd one = Eigen::VectorXd::Ones(kAxes);
   KinematicLimits guard{one, 2 * one, 8 * one}, comfort{one / 1.1, 2 * one / 1.1, 8 * one / 1.1};
   Trajectory trajectory = straight_motion(Eigen::VectorXd::Zero(kAxes), Eigen::VectorXd::LinSpaced(kAxes, 1, 5), comfort);
-  TimeLaw law;
+  TimeScaling law;
   Running() { law.init(trajectory, guard); }
 };
 
 /// A control tick while alpha stays as it is. The peer's: its update while its target stays as it is.
 void control_tick(benchmark::State& state) {
   Running running;
-  TimeLaw fresh = running.law;
+  TimeScaling fresh = running.law;
   const auto ours = [&](std::size_t) {
     if (running.law.finished()) running.law = fresh;
     running.law.advance(0.001);

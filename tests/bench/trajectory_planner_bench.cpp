@@ -78,8 +78,8 @@ int main(int argc, char** argv) {
   const int count = argc > 1 ? std::max(1, std::atoi(argv[1])) : 40;
   lines(count);
   const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
-  motions("Jido, 22 axes", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_posture(), count);
-  motions("Jido, hand and head still", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_posture(), count, true);
+  motions("Jido, 22 axes", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_configuration(), count);
+  motions("Jido, hand and head still", jido, jido.require_group("arm"), test::hand_and_head(jido), jido.rest_configuration(), count, true);
   if (const auto file = test::reference_data("robots/kuka_iiwa14/model.urdf")) {
     const RobotModel iiwa = RobotModel::load_urdf(*file);
     Group arm = iiwa.require_group("all");

@@ -33,7 +33,7 @@ bool read_robot(const std::string& name, const fs::path& urdf, const fs::path& s
   try {
     const RobotModel robot = RobotModel::load_urdf(urdf, srdf, Meshes::skip);
     std::vector<Pose> poses;
-    robot.forward(robot.rest_posture(), poses);
+    robot.forward(robot.rest_configuration(), poses);
     for (const Pose& pose : poses)
       if (!pose.matrix().allFinite()) std::abort();
     return true;

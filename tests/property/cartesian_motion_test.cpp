@@ -100,7 +100,7 @@ TEST(CartesianMotion, of_jido_is_that_of_the_tool_with_22_active_axes) {
   const Group& arm = robot.require_group("arm");
   const std::vector<int> also = test::hand_and_head(robot);
   Tally tally;
-  follow(robot, arm, also, robot.rest_posture(), runs(), tally);
+  follow(robot, arm, also, robot.rest_configuration(), runs(), tally);
   report("Jido", tally);
   EXPECT_EQ(7 + also.size(), 22u);
   EXPECT_EQ(tally.solved, runs());

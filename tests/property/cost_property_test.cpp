@@ -92,7 +92,7 @@ TEST(CostProperty, many_states_at_once_cost_what_they_cost_one_by_one) {
         one->set_base(T_world_base);
       }
       if (k % 2 == 1) cost.set_moving_axes(axes);
-      Vector from = robot->rest_posture(), to = from;
+      Vector from = robot->rest_configuration(), to = from;
       if (k % 5 == 0) from[robot->dof() - 1] = to[robot->dof() - 1] += 0.1;  // another axis moved: the robot is folded anew
       for (int axis : axes) from[axis] = angle(random), to[axis] = angle(random);
       std::vector<double> at, costs(40);
@@ -117,22 +117,22 @@ TEST(CostProperty, every_width_gives_the_same_bits) {
   const RobotModel jido = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   std::mt19937 random(kSeed + 4);
   std::uniform_real_distribution<double> angle(-2.9, 2.9);
-  WideCost wide(jido, robot_capsules(jido), {{jido.tool_link(), Vector3::Zero()}, {jido.tool_link(), Vector3(0.1, 0, 0)}});
+  BatchCost wide(jido, robot_capsules(jido), {{jido.tool_link(), Vector3::Zero()}, {jido.tool_link(), Vector3(0.1, 0, 0)}});
   const std::vector<int>& axes = jido.require_group("arm").axes;
   wide.set_axes(axes);
   for (int k = 0; k < 30; ++k) {
     const Person person = somebody(random, "anna");
     wide.set_people({{simplified_body(person), sight_of(person)}}, 1.0, 3.0);
-    Vector from = jido.rest_posture(), to = from;
+    Vector from = jido.rest_configuration(), to = from;
     for (int axis : axes) from[axis] = angle(random), to[axis] = angle(random);
-    double at[WideCost::kStates];
-    for (int i = 0; i < WideCost::kStates; ++i) at[i] = i / 15.0;
+    double at[BatchCost::kStates];
+    for (int i = 0; i < BatchCost::kStates; ++i) at[i] = i / 15.0;
     std::vector<double> first;
     for (const detail::CostKernel* kernel : kernels()) {
       wide.set_kernel(*kernel);
-      ASSERT_TRUE(wide.run(from, to, at, WideCost::kStates, 2));
+      ASSERT_TRUE(wide.run(from, to, at, BatchCost::kStates, 2));
       std::vector<double> all;
-      for (int lane = 0; lane < WideCost::kStates; ++lane)
+      for (int lane = 0; lane < BatchCost::kStates; ++lane)
         for (double x : {wide.safety(0, lane), wide.visibility(0, lane), wide.point(0, lane).x(), wide.point(1, lane).z()})
           all.push_back(x);
       if (first.empty()) first = all;

@@ -83,8 +83,8 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
     const Eigen::MatrixXd G = grasp_matrix(contacts, com);
     EXPECT_LT((G * f).norm(), 1e-6 * std::max(1.0, f.norm())) << "seed " << GetParam() << " trial " << trial;
     // The cone is linearised from outside: the true margin is at most the force by which the polygon is larger away from it.
-    const double true_margin = sampled_margin(contacts, com, f, load, settings.friction_share, ways);
-    const double rough = (polygon - 1) * settings.friction_share * 0.6 * settings.max_normal + 0.05 * load;
+    const double true_margin = sampled_margin(contacts, com, f, load, settings.friction_fraction, ways);
+    const double rough = (polygon - 1) * settings.friction_fraction * 0.6 * settings.max_normal + 0.05 * load;
     EXPECT_GT(true_margin, grip.margin - rough - 0.05 * std::abs(grip.margin)) << "seed " << GetParam() << " trial " << trial;
     EXPECT_LT(grip.margin, true_margin + rough + 0.05 * std::abs(grip.margin));
     held += grip.margin > 0;
@@ -98,7 +98,7 @@ TEST_P(GripForce, is_balanced_within_its_cap_and_no_other_squeeze_bears_more) {
       for (std::size_t i = 0; i < contacts.size(); ++i)
         allowed = allowed && other.segment<3>(static_cast<Eigen::Index>(3 * i)).dot(contacts[i].inward_normal) <= settings.max_normal;
       if (allowed) {
-        EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_share, ways), grip.margin + rough);
+        EXPECT_LT(sampled_margin(contacts, com, other, load, settings.friction_fraction, ways), grip.margin + rough);
       }
     }
   }
@@ -111,7 +111,7 @@ TEST_P(GripForce, without_load_there_is_a_squeeze_exactly_when_the_grasp_is_forc
   for (int trial = 0; trial < 200; ++trial) {
     auto contacts = random_contacts(random_, 3 + trial % 3);
     const bool squeezes = grip_forces(contacts, Vector3::Zero(), 0.0, settings).margin > 1e-6;
-    for (PointContact& c : contacts) c.friction *= 0.98 * settings.friction_share;
+    for (PointContact& c : contacts) c.friction *= 0.98 * settings.friction_fraction;
     const bool inside = force_closure(contact_wrenches(contacts, settings.edges, Vector3::Zero(), 25));
     for (PointContact& c : contacts) c.friction /= 0.98 * std::cos(M_PI / settings.edges);
     const bool outside = force_closure(contact_wrenches(contacts, 2 * settings.edges, Vector3::Zero(), 25));
@@ -186,11 +186,11 @@ TEST(SharedGripForces, each_hand_balances_itself_and_the_margin_is_that_of_the_s
           const PointContact& c = hands[h][static_cast<std::size_t>(i)];
           const Vector3 force = total.segment<3>(3 * i);
           const double normal = force.dot(c.inward_normal);
-          least = std::min(least, settings.friction_share * c.friction * normal - (force - normal * c.inward_normal).norm());
+          least = std::min(least, settings.friction_fraction * c.friction * normal - (force - normal * c.inward_normal).norm());
         }
       }
       // The cone is linearised from outside.
-      const double rough = (1 / std::cos(M_PI / settings.edges) - 1) * settings.friction_share * 0.6 * (settings.max_normal + 6) + 0.1;
+      const double rough = (1 / std::cos(M_PI / settings.edges) - 1) * settings.friction_fraction * 0.6 * (settings.max_normal + 6) + 0.1;
       EXPECT_NEAR(grips[h].margin, least, rough + 0.05 * std::abs(least)) << "trial " << trial;
       held += grips[h].margin > 0;
       row += 3 * m;

@@ -78,11 +78,11 @@ Errors follow(const Motion& motion, unsigned seed) {
       for (std::size_t k = 0; k < hand.ahead.size(); ++k) {
         const HandAhead& ahead = hand.ahead[k];
         if (t + ahead.time > motion.duration()) continue;
-        const Vector3 truth = motion.where(hand.joint, t + ahead.time);
-        const double error = (ahead.position - truth).norm();
+        const Vector3 ground_truth = motion.where(hand.joint, t + ahead.time);
+        const double error = (ahead.position - ground_truth).norm();
         out.ours[k] += error * error;
-        out.stays[k] += (now.position - truth).squaredNorm();
-        out.goes_on[k] += (now.position + ahead.time * now.velocity - truth).squaredNorm();
+        out.stays[k] += (now.position - ground_truth).squaredNorm();
+        out.goes_on[k] += (now.position + ahead.time * now.velocity - ground_truth).squaredNorm();
         out.radius[k] += ahead.uncertainty;
         out.inside[k] += error <= ahead.uncertainty;
         ++out.count[k];

@@ -120,7 +120,7 @@ struct Story {
 
   std::mt19937_64 random;
   KinematicLimits guard, planning;
-  TimeLaw law;
+  TimeScaling law;
   MotionState3 last;
   double dt{}, largest{};
   bool failed{};

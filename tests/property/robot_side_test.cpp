@@ -274,7 +274,7 @@ TEST(DriverGate, no_garbage_makes_references_outside_the_limits) {
     const auto chance = [&](double p) { return std::uniform_real_distribution(0.0, 1.0)(random) < p; };
     drivers::DriverSettings settings;
     settings.watch = checked();
-    settings.fade_share = kFade;
+    settings.fade_fraction = kFade;
     drivers::DriverCore core(robot(), {0, 1, 2}, settings);
     drivers::Measured measured;
     measured.position = measured.velocity = measured.effort = measured.external_torque = Vector::Zero(robot().dof());

@@ -23,7 +23,7 @@ int poses() {
 double turn_between(double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); }
 
 void every_branch_returns(const RobotModel& robot, const Group& group) {
-  const Chain chain(robot, group, robot.rest_posture());
+  const Chain chain(robot, group, robot.rest_configuration());
   const auto arm = SrsArm::recognise(chain);
   ASSERT_TRUE(arm) << robot.name() << " is no arm of shoulder, elbow and wrist";
   std::mt19937_64 random(kSeed);
@@ -72,7 +72,7 @@ TEST(SrsArm, every_branch_of_the_iiwa_returns_to_the_pose) {
 
 TEST(SrsArm, there_is_no_branch_out_of_reach) {
   const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
-  const Chain chain(robot, robot.require_group("arm"), robot.rest_posture());
+  const Chain chain(robot, robot.require_group("arm"), robot.rest_configuration());
   const auto arm = SrsArm::recognise(chain);
   ASSERT_TRUE(arm);
   EXPECT_TRUE(arm->branches(make_pose({5, 0, 0}), 0.3).empty());

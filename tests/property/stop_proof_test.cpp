@@ -62,7 +62,7 @@ TEST_F(StopProofStories, whoever_touches_a_stopping_arm_touches_it_at_rest_or_wi
   double worst = 0.0;
   std::vector<Pose> before, after;
   for (int done = 0; done < motions;) {
-    MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
+    MotionState3 state{robot_.rest_configuration(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
     const double pace = std::pow(unit(random), 2.0);
     for (int axis : arm.axes) {
       const Axis& bounds = robot_.axes()[static_cast<std::size_t>(axis)];
@@ -103,7 +103,7 @@ TEST_F(StopProofStories, whoever_touches_a_stopping_arm_touches_it_at_rest_or_wi
     constexpr double kStep = 2e-3;
     std::vector<AxisState> axes;
     for (Eigen::Index i = 0; i < state.position.size(); ++i) axes.push_back({state.position[i], state.velocity[i], state.acceleration[i]});
-    std::vector<SoftStop> stops(axes.size());
+    std::vector<JerkLimitedStop> stops(axes.size());
     Vector q = state.position;
     Vector3 wish = Vector3(both(random), both(random), both(random)).normalized();
     bool stopping = false, was_moving = false;
@@ -156,7 +156,7 @@ TEST_F(StopProofStories, whoever_touches_a_stopping_arm_touches_it_at_rest_or_wi
 }
 
 TEST_F(StopProofStories, a_fast_arm_beside_a_head_is_refused_and_a_slow_one_is_not) {
-  MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
+  MotionState3 state{robot_.rest_configuration(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
   std::vector<Pose> links;
   robot_.forward(state.position, links);
   PersonCapsules people;
@@ -180,7 +180,7 @@ TEST_F(StopProofStories, a_fast_arm_beside_a_head_is_refused_and_a_slow_one_is_n
 }
 
 TEST_F(StopProofStories, a_turning_head_takes_nothing_from_the_speed_of_the_arm) {
-  MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
+  MotionState3 state{robot_.rest_configuration(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
   std::vector<Pose> links;
   robot_.forward(state.position, links);
   PersonCapsule face{};
@@ -213,7 +213,7 @@ TEST_F(StopProofStories, a_turning_head_takes_nothing_from_the_speed_of_the_arm)
 }
 
 TEST_F(StopProofStories, a_stop_that_would_leave_the_bounds_of_an_axis_is_refused) {
-  MotionState3 state{robot_.rest_posture(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
+  MotionState3 state{robot_.rest_configuration(), Vector::Zero(robot_.dof()), Vector::Zero(robot_.dof())};
   const int axis = robot_.require_group("arm").axes.front();
   state.position[axis] = robot_.axes()[static_cast<std::size_t>(axis)].upper - 0.01;
   state.velocity[axis] = 0.5;

@@ -247,7 +247,7 @@ TEST(SevenAxes, end_together_inside_the_limits_and_as_soon_as_the_slow_solver) {
       "%ld problems of 7 axes, inputs %016llx, %s: %ld waited for a blocked duration, %ld axes started outside the limits;\n"
       "%ld also by the slow solver, of them %ld that waited, %ld with starts outside: %ld equal within 1e-9, none longer (largest %.1e); "
       "%ld the slow solver does not know\n",
-      tally.problems, static_cast<unsigned long long>(hash.value), detail::lane_kernels().name, tally.blocked, tally.outside, tally.slow,
+      tally.problems, static_cast<unsigned long long>(hash.value), detail::batch_kernels().name, tally.blocked, tally.outside, tally.slow,
       tally.slow_blocked, tally.slow_outside, tally.equal_to_slow, tally.longest_against_slow, tally.unknown);
   peer.print();
   if (count < 100000) return;
@@ -417,7 +417,7 @@ TEST(SevenAxes, imposed_durations_are_inside_the_limits_whenever_that_is_possibl
     ASSERT_LT((end.acceleration - p.to.acceleration).lpNorm<Eigen::Infinity>(), 1e-9);
     if (blocked) {
       ++three;
-      ASSERT_NEAR(1 + s.excess, limit_share(s.trajectory, p.limits), 1e-9);
+      ASSERT_NEAR(1 + s.excess, limit_ratio(s.trajectory, p.limits), 1e-9);
     } else {
       ++inside;
       ASSERT_EQ(s.excess, 0);

@@ -30,7 +30,7 @@ TEST(UprightPaths, keep_tilt_and_limits_on_every_sample) {
   std::mt19937 random(kSeed);
   const auto tilt = [&](const Vector& q) { return std::acos(std::clamp(robot.link_pose(q, robot.tool_link()).linear()(2, 2), -1.0, 1.0)); };
   const auto draw = [&] {
-    Vector q = robot.rest_posture();
+    Vector q = robot.rest_configuration();
     do {
       for (int axis : problem.axes)
         q[axis] = std::uniform_real_distribution<double>(robot.axes()[axis].lower, robot.axes()[axis].upper)(random);
@@ -88,7 +88,7 @@ TEST(UprightPaths, a_start_or_goal_that_leans_and_a_bound_that_means_nothing_are
   HumanCost cost(robot, {});
   Problem problem;
   problem.axes = robot.require_group("arm").axes;
-  problem.start = robot.rest_posture();
+  problem.start = robot.rest_configuration();
   problem.goals = {RobotModel::part(problem.start, robot.require_group("arm"))};
   const Vector3 up = robot.link_pose(problem.start, robot.tool_link()).linear().transpose() * Vector3::UnitX();
   problem.upright = Upright{up, Vector3::UnitZ(), 0.2};

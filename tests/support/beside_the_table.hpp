@@ -29,7 +29,7 @@ struct BesideTheTable {
   Vector whole(const Vector& q) const { return RobotModel::with(problem.start, robot.require_group("arm"), q); }
 
   Vector draw() {
-    Vector q = robot.rest_posture();
+    Vector q = robot.rest_configuration();
     do {
       for (int axis : problem.axes) q[axis] = between(robot.axes()[axis].lower, robot.axes()[axis].upper);
     } while (!world.check(q).free);

@@ -29,7 +29,7 @@ inline BrokenLine broken_line(const RobotModel& robot, CollisionWorld& world, in
     TrajectoryRequest& request = line.request;
     request.id = {1, 0};
     request.group = "arm";
-    request.start = robot.rest_posture();
+    request.start = robot.rest_configuration();
     if (!world.is_free(request.start)) continue;
     Vector at = request.start;
     request.nodes = {RobotModel::part(at, arm)};

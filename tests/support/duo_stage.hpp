@@ -20,7 +20,7 @@ struct DuoStage {
   Scene scene() const {
     Scene s;
     s.robot_known = true;
-    s.robot_position = robot.rest_posture();
+    s.robot_position = robot.rest_configuration();
     s.boxes.push_back({"table", make_pose({0.65, 0, 0.375}), {0.6, 1.6, 0.75}, true});
     return s;
   }

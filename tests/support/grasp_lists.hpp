@@ -12,10 +12,10 @@ namespace handsel::grasp_planner {
 
 inline std::filesystem::path deploy_folder() { return std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy"; }
 
-inline std::shared_ptr<const HandKit> hand_kit(const std::string& name) {
-  static std::map<std::string, std::shared_ptr<const HandKit>> kits;
+inline std::shared_ptr<const HandGeometry> hand_kit(const std::string& name) {
+  static std::map<std::string, std::shared_ptr<const HandGeometry>> kits;
   auto& kit = kits[name];
-  if (!kit) kit = std::make_shared<const HandKit>(HandModel::load(deploy_folder() / "hands" / name / (name + ".txtpb")));
+  if (!kit) kit = std::make_shared<const HandGeometry>(HandModel::load(deploy_folder() / "hands" / name / (name + ".txtpb")));
   return kit;
 }
 
@@ -26,7 +26,7 @@ inline const ObjectModel* object_model(const std::string& name) {
 }
 
 struct HandOnObject {
-  std::shared_ptr<const HandKit> kit;
+  std::shared_ptr<const HandGeometry> kit;
   std::shared_ptr<const Graspable> object;
   GraspList list;
 };

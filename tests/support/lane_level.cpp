@@ -9,7 +9,7 @@ namespace {
 
 const bool kChosen = [] {
   const char* wanted = std::getenv("HANDSEL_LANES");
-  if (wanted && !handsel::detail::choose_lanes(wanted)) {
+  if (wanted && !handsel::detail::choose_batch_kernels(wanted)) {
     std::printf("this processor has no lanes called %s\n", wanted);
     std::exit(77);
   }

@@ -82,7 +82,7 @@ class BlindOverDds : public testing::Test {
     std::mt19937_64 random(seed);
     ASSERT_TRUE(wait_moving(random)) << what << ": it does not move: " << s.now().execution.sample.reason;
     const std::uint64_t task = s.task();
-    const std::uint64_t ssm = s.now().truth.sample.ssm_violations, limits = s.now().truth.sample.limit_violations;
+    const std::uint64_t ssm = s.now().ground_truth.sample.ssm_violations, limits = s.now().ground_truth.sample.limit_violations;
     const double bound = kSensorPeriod + kViewAge + s.longest_stop() + kPromised + kTransport + kServo;
     const TimePoint begin = monotonic_now();
     const auto since = [&] { return to_seconds(monotonic_now() - begin); };
@@ -113,8 +113,8 @@ class BlindOverDds : public testing::Test {
     EXPECT_TRUE(s.wait(kCompletes, over)) << what << ": the task does not end\n" << s.timeline();
     const TaskStatus end = over() ? s.now().tasks.at(task) : TaskStatus{};
     EXPECT_EQ(end.state, TaskState::succeeded) << what << ": " << name(end.state) << ": " << end.reason;
-    EXPECT_EQ(s.now().truth.sample.ssm_violations, ssm) << what;
-    EXPECT_EQ(s.now().truth.sample.limit_violations, limits) << what;
+    EXPECT_EQ(s.now().ground_truth.sample.ssm_violations, ssm) << what;
+    EXPECT_EQ(s.now().ground_truth.sample.limit_violations, limits) << what;
     std::printf("%-22s moved %.6f rad from %.2f s on, named after %.2f s, in health after %.2f s, moved again %.2f s after the end\n",
                 what.c_str(), moved, bound, named, healthy, resumed);
     std::fflush(stdout);

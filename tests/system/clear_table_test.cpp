@@ -25,10 +25,10 @@ TEST(ClearTable, five_of_six_things_are_put_away_while_a_person_takes_one) {
   for (std::uint64_t seed = 11; seed < 11 + (seeds == nullptr ? 1 : std::strtoull(seeds, nullptr, 10)); ++seed) {
     LockstepSystem system(name, "", seed);
     std::map<std::string, Vector3> at;
-    system.seat().subscribe<ObjectObservation>([&](const ObjectObservation& seen, const Receipt&) {
+    system.bus().subscribe<ObjectObservation>([&](const ObjectObservation& seen, const Receipt&) {
       for (const ObservedObject& object : seen.objects) at[object.id] = object.T_world_object.translation();
     });
-    Performer performer(system.seat(), system.observer(), scenario, 0, [&] { return not_ready(system.snapshot(), false).empty(); });
+    Performer performer(system.bus(), system.observer(), scenario, 0, [&] { return not_ready(system.snapshot(), false).empty(); });
     system.network().run_until([&] { return performer.finished(); }, TimePoint(from_seconds(500)));
     ASSERT_TRUE(performer.finished());
     const std::string what = "seed " + std::to_string(seed) + ": " + performer.outcomes().back().reason;
@@ -40,11 +40,11 @@ TEST(ClearTable, five_of_six_things_are_put_away_while_a_person_takes_one) {
       EXPECT_FALSE(stands_on(scenario.boxes(0), p)) << what << ", " << object << " is still on the table";
       EXPECT_EQ(p.x() > 1.5, taken) << "anna goes with what she takes; " << object << " is at " << p.transpose();
     }
-    const GroundTruth& truth = system.snapshot().truth.sample;
-    EXPECT_EQ(truth.ssm_violations, 0u) << what;
-    EXPECT_EQ(truth.limit_violations, 0u) << what;
-    EXPECT_EQ(truth.self_or_scene_collisions, 0u) << what;
-    EXPECT_FALSE(truth.dropped) << what;
+    const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
+    EXPECT_EQ(ground_truth.ssm_violations, 0u) << what;
+    EXPECT_EQ(ground_truth.limit_violations, 0u) << what;
+    EXPECT_EQ(ground_truth.self_or_scene_collisions, 0u) << what;
+    EXPECT_FALSE(ground_truth.dropped) << what;
     std::printf("seed %llu: cleared in %.0f s\n", static_cast<unsigned long long>(seed), performer.duration());
     std::fflush(stdout);
   }

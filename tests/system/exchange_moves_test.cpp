@@ -41,7 +41,7 @@ Carried carry(std::uint64_t seed, double step, double after, const std::string& 
   const std::string file = folder + "/exchange_moves.txtpb";
   std::ofstream(file) << kScenario;
   LockstepSystem system(system_context(file, "", seed));
-  Bus& seat = system.seat();
+  Bus& seat = system.bus();
   auto goals = seat.advertise<TaskGoal>();
   auto body_out = seat.advertise<HumanObservation>();
   Carried out;

@@ -51,11 +51,11 @@ Performance perform(const std::string& name, std::uint64_t seed, const std::opti
   Session& session = system.session();
   Performer performer(session.bus(), session.observer(), scenario, 0, [&] { return not_ready(session.snapshot()).empty(); });
   Performance out;
-  const auto ready = system.wait_ready(kReadyPatience);
+  const auto ready = system.wait_ready(kReadyTimeout);
   if (!ready) return out;
   ReportInputs inputs{.scenario = name, .robot = robot_of(system.options()), .seed = seed, .ready = to_seconds(*ready)};
   inputs.before = counters(session.snapshot());
-  inputs.truth_before = session.snapshot().truth.sample;
+  inputs.ground_truth_before = session.snapshot().ground_truth.sample;
   if (death) {
     system.wait(kPatience, [&] {
       return performer.finished() || (performer.started() && session.bus().now() - performer.begin() > from_seconds(death->at));
@@ -65,7 +65,7 @@ Performance perform(const std::string& name, std::uint64_t seed, const std::opti
   }
   out.over = system.wait(kPatience, [&] { return performer.finished(); });
   out.at_rest = system.wait(kRestPatience, [&] {
-    return !session.snapshot().truth.sample.robot_moving && session.snapshot().action.sample.state != ActionState::running;
+    return !session.snapshot().ground_truth.sample.robot_moving && session.snapshot().action.sample.state != ActionState::running;
   });
   out.report = make_report(inputs, performer, session.observer());
   return out;

@@ -27,14 +27,16 @@ struct Steps {
 /// What truly happened, from the true body and from who truly carries the object.
 class Truth {
  public:
-  void see(const GroundTruth& truth) {
-    const double t = truth.sim_time;
-    if (truth.carrier == "robot" && truth.lifted > kOffTheTable && !steps.lifted) steps.lifted = t;
-    if (truth.carrier == "both" && !steps.taken) steps.taken = t;
-    if (truth.carrier == "human" && steps.lifted && !steps.released) steps.released = t;
-    const auto place = [&](const char* joint) { return truth.person.at(static_cast<std::size_t>(body_joint_index(joint))).position; };
-    if (truth.person.size() == kBodyJoints.size() && t > last_) {
-      const Vector3 object = truth.T_world_object.translation();
+  void see(const GroundTruth& ground_truth) {
+    const double t = ground_truth.sim_time;
+    if (ground_truth.carrier == "robot" && ground_truth.lifted > kOffTheTable && !steps.lifted) steps.lifted = t;
+    if (ground_truth.carrier == "both" && !steps.taken) steps.taken = t;
+    if (ground_truth.carrier == "human" && steps.lifted && !steps.released) steps.released = t;
+    const auto place = [&](const char* joint) {
+      return ground_truth.person.at(static_cast<std::size_t>(body_joint_index(joint))).position;
+    };
+    if (ground_truth.person.size() == kBodyJoints.size() && t > last_) {
+      const Vector3 object = ground_truth.T_world_object.translation();
       for (const char* hand : {"l_hand", "r_hand"}) {
         const Vector3 from_torso = place(hand) - place("torso");
         const Vector3 velocity = last_ > 0 ? Vector3((from_torso - before_[hand]) / (t - last_)) : Vector3(Vector3::Zero());
@@ -87,14 +89,14 @@ class Expected {
         for (const HandAhead& ahead : hand.ahead) open_.push_back({t + ahead.time, joint, ahead, person.joints.at(joint)});
       }
   }
-  void see(const GroundTruth& truth) {
-    const double t = truth.sim_time;
-    if (truth.person.size() != kBodyJoints.size()) return;
+  void see(const GroundTruth& ground_truth) {
+    const double t = ground_truth.sim_time;
+    if (ground_truth.person.size() != kBodyJoints.size()) return;
     std::erase_if(open_, [&](const Open& one) {
       if (one.due > t) return false;
-      if (one.due < before_ || last_.size() != truth.person.size()) return true;
+      if (one.due < before_ || last_.size() != ground_truth.person.size()) return true;
       const double share = (one.due - before_) / std::max(1e-9, t - before_);
-      const Vector3 is = (1 - share) * last_[one.joint].position + share * truth.person[one.joint].position;
+      const Vector3 is = (1 - share) * last_[one.joint].position + share * ground_truth.person[one.joint].position;
       const double error = (one.ahead.position - is).norm();
       Sum& sum = sums_[static_cast<int>(std::lround(10 * one.ahead.time))];
       ++sum.count;
@@ -104,7 +106,7 @@ class Expected {
       sum.goes_on += (one.now.position + one.ahead.time * one.now.velocity - is).squaredNorm();
       return true;
     });
-    last_ = truth.person;
+    last_ = ground_truth.person;
     before_ = t;
   }
   void judge() const {
@@ -146,23 +148,23 @@ TEST(SimulatedHandovers, facts_agree_with_the_truth) {
     config::Scenario scenario;
     load_text_proto(scenario_file("give_mug"), scenario);
     LockstepSystem system("give_mug", "", static_cast<std::uint64_t>(seed));
-    Truth truth;
+    Truth ground_truth;
     Told told;
     double sim_time = 0;
     TimePoint sim_at{};
     std::string object;
-    system.seat().subscribe<GroundTruth>([&](const GroundTruth& sample, const Receipt&) {
-      truth.see(sample);
+    system.bus().subscribe<GroundTruth>([&](const GroundTruth& sample, const Receipt&) {
+      ground_truth.see(sample);
       sim_time = sample.sim_time;
       sim_at = system.now();
       hands.see(sample);
       object = sample.object;
     });
-    system.seat().subscribe<Facts>([&](const Facts& facts, const Receipt&) { told.hear(facts, sim_time, object); });
-    system.seat().subscribe<HumanState>(
+    system.bus().subscribe<Facts>([&](const Facts& facts, const Receipt&) { told.hear(facts, sim_time, object); });
+    system.bus().subscribe<HumanState>(
         [&](const HumanState& people, const Receipt&) { hands.hear(people, sim_time + to_seconds(system.now() - sim_at)); });
     bool ready = false;
-    Performer performer(system.seat(), system.observer(), scenario, 0,
+    Performer performer(system.bus(), system.observer(), scenario, 0,
                         [&] { return ready = ready || not_ready(system.snapshot(), false).empty(); });
     system.network().run_until([&] { return performer.finished(); }, system.now() + std::chrono::minutes(3));
     ASSERT_TRUE(performer.finished());
@@ -175,9 +177,9 @@ TEST(SimulatedHandovers, facts_agree_with_the_truth) {
       EXPECT_NEAR(*said, *is, kAgree + kRounding) << what;
       std::printf("seed %2d  %-8s true %.2f s, told %.2f s\n", seed, what, *is, *said);
     };
-    compare("lifted", truth.steps.lifted, told.steps.lifted);
-    compare("reaches", truth.steps.reaches, told.steps.reaches);
-    compare("released", truth.steps.released, told.steps.released);
+    compare("lifted", ground_truth.steps.lifted, told.steps.lifted);
+    compare("reaches", ground_truth.steps.reaches, told.steps.reaches);
+    compare("released", ground_truth.steps.released, told.steps.released);
     EXPECT_EQ(told.doubled, 0);
     EXPECT_EQ(told.begun["held_by_robot " + object + " "], 1) << "flicker";
     EXPECT_EQ(told.begun["held_by_human " + object + " anna"], 1) << "flicker";

@@ -43,7 +43,7 @@ double heap_in_use() { return static_cast<double>(mallinfo2().uordblks); }
 
 /// The arm a little off its rest posture.
 Vector moved(const RobotModel& robot) {
-  Vector out = RobotModel::part(robot.rest_posture(), robot.require_group("arm"));
+  Vector out = RobotModel::part(robot.rest_configuration(), robot.require_group("arm"));
   for (Eigen::Index i = 0; i < out.size(); ++i) out[i] += out[i] > 0 ? -0.1 : 0.1;
   return out;
 }
@@ -101,7 +101,7 @@ class Stranger {
       PathRequest path;
       path.id = {500'000 + number_, 1};
       path.group = "arm";
-      path.start = robot_.rest_posture();
+      path.start = robot_.rest_configuration();
       path.goals = {moved(robot_)};
       path.time_limit = 1;
       paths_out_->publish(path);
@@ -144,7 +144,7 @@ class Room {
     RobotState state;
     state.robot = robot_.name();
     state.sequence = ++sequence_;
-    state.position = robot_.rest_posture();
+    state.position = robot_.rest_configuration();
     state.velocity = Vector::Zero(state.position.size());
     state.mode = DriveMode::enabled;
     state_out_->publish(state);
@@ -294,7 +294,7 @@ TEST_F(Flood, a_person_pauses_in_the_flood_and_asks_for_work_after_it) {
   PathRequest request;
   request.id = {kClient, 1};
   request.group = "arm";
-  request.start = context_.robot->rest_posture();
+  request.start = context_.robot->rest_configuration();
   request.goals = {moved(*context_.robot)};
   request.time_limit = 5;
   paths_out_->publish(request);

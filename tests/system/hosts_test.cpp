@@ -78,7 +78,7 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
   ASSERT_TRUE(session.wait(from_seconds(15), [&] { return now.health.size() == services.size() - 1; })) << told(now);
   EXPECT_THAT(not_ready(now), testing::Contains("spark (not heard yet)"));
   ASSERT_TRUE(session.send({.id = session.new_task_id(), .kind = TaskKind::give, .object = "mug"}));
-  EXPECT_FALSE(session.wait(from_seconds(1.0), [&] { return now.truth.ever && now.truth.sample.robot_moving; })) << told(now);
+  EXPECT_FALSE(session.wait(from_seconds(1.0), [&] { return now.ground_truth.ever && now.ground_truth.sample.robot_moving; })) << told(now);
   session.send({.id = session.new_task_id(), .kind = TaskKind::cancel});
 
   const TimePoint begun = monotonic_now();
@@ -89,7 +89,7 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
   const std::uint64_t task = session.new_task_id();
   ASSERT_TRUE(session.wait(from_seconds(5), [&] { return !now.task.ever || is_over(now.task.sample.state); })) << told(now);
   ASSERT_TRUE(session.send({.id = task, .kind = TaskKind::give, .object = "mug"}));
-  ASSERT_TRUE(session.wait(from_seconds(20), [&] { return now.truth.sample.robot_moving; })) << told(now);
+  ASSERT_TRUE(session.wait(from_seconds(20), [&] { return now.ground_truth.sample.robot_moving; })) << told(now);
   const std::uint64_t incarnation = now.health.at("path_planner").sample.incarnation;
   running_.erase("path_planner");
   start_service("path_planner");
@@ -99,9 +99,9 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
   })) << told(now);
   EXPECT_TRUE(session.wait(from_seconds(60), [&] { return now.tasks.contains(task) && is_over(now.tasks.at(task).state); })) << told(now);
   EXPECT_EQ(now.tasks.at(task).state, TaskState::succeeded) << told(now);
-  EXPECT_TRUE(now.truth.sample.handover_done);
-  EXPECT_EQ(now.truth.sample.limit_violations, 0u);
-  EXPECT_EQ(now.truth.sample.ssm_violations, 0u);
+  EXPECT_TRUE(now.ground_truth.sample.handover_done);
+  EXPECT_EQ(now.ground_truth.sample.limit_violations, 0u);
+  EXPECT_EQ(now.ground_truth.sample.ssm_violations, 0u);
 }
 
 TEST_F(OnHosts, the_link_to_perception_is_cut_for_two_seconds) {
@@ -117,7 +117,7 @@ TEST_F(OnHosts, the_link_to_perception_is_cut_for_two_seconds) {
   ASSERT_TRUE(session.wait(from_seconds(15), [&] { return not_ready(now).empty(); })) << told(now) << said("robot") << said("perception");
   const std::uint64_t task = session.new_task_id();
   ASSERT_TRUE(session.send({.id = task, .kind = TaskKind::give, .object = "mug", .human = "visitor"}));
-  ASSERT_TRUE(session.wait(from_seconds(20), [&] { return now.truth.sample.robot_moving; })) << told(now);
+  ASSERT_TRUE(session.wait(from_seconds(20), [&] { return now.ground_truth.sample.robot_moving; })) << told(now);
   session.listen(from_seconds(0.5));
   std::map<std::string, std::uint64_t> before;
   for (const auto& [component, health] : now.health) before[component] = health.sample.incarnation;
@@ -133,21 +133,21 @@ TEST_F(OnHosts, the_link_to_perception_is_cut_for_two_seconds) {
   note("mode " + std::string(name(now.execution.sample.mode)) + " because of " + cause_names(now.execution.sample.causes) + ", " +
        seconds(since()) + " after the cut");
   EXPECT_TRUE(session.wait(from_seconds(1.5), named)) << told(now) << "; spark: " << now.health.at("spark").sample.reason;
-  EXPECT_TRUE(session.wait(from_seconds(1.5), [&] { return !now.truth.sample.robot_moving; })) << told(now);
+  EXPECT_TRUE(session.wait(from_seconds(1.5), [&] { return !now.ground_truth.sample.robot_moving; })) << told(now);
   note("at rest after " + seconds(since()));
   session.listen(from_seconds(2.0) - since());
-  EXPECT_FALSE(now.truth.sample.robot_moving);
+  EXPECT_FALSE(now.ground_truth.sample.robot_moving);
   hosts_->link("perception", true);
   const TimePoint mended = monotonic_now();
-  EXPECT_TRUE(session.wait(from_seconds(10), [&] { return now.truth.sample.robot_moving; })) << told(now);
+  EXPECT_TRUE(session.wait(from_seconds(10), [&] { return now.ground_truth.sample.robot_moving; })) << told(now);
   note("moving again " + seconds(monotonic_now() - mended) + " after the link was back");
 
   EXPECT_TRUE(session.wait(from_seconds(60), [&] { return now.tasks.contains(task) && is_over(now.tasks.at(task).state); })) << told(now);
   EXPECT_EQ(now.tasks.at(task).state, TaskState::succeeded) << told(now);
-  EXPECT_TRUE(now.truth.sample.handover_done);
-  EXPECT_FALSE(now.truth.sample.dropped);
-  EXPECT_EQ(now.truth.sample.limit_violations, 0u);
-  EXPECT_EQ(now.truth.sample.ssm_violations, 0u);
+  EXPECT_TRUE(now.ground_truth.sample.handover_done);
+  EXPECT_FALSE(now.ground_truth.sample.dropped);
+  EXPECT_EQ(now.ground_truth.sample.limit_violations, 0u);
+  EXPECT_EQ(now.ground_truth.sample.ssm_violations, 0u);
   for (const auto& [component, incarnation] : before)
     EXPECT_EQ(now.health.at(component).sample.incarnation, incarnation) << component << " was started again";
 }

@@ -176,9 +176,9 @@ TEST_F(LatchesOverDds, outlive_every_process_until_a_person_releases_them) {
     if (testing::Test::HasFatalFailure()) return;
     ++done;
   }
-  const GroundTruth& truth = busy_->now().truth.sample;
-  EXPECT_EQ(truth.limit_violations, 0u);
-  EXPECT_EQ(truth.ssm_violations, 0u);
+  const GroundTruth& ground_truth = busy_->now().ground_truth.sample;
+  EXPECT_EQ(ground_truth.limit_violations, 0u);
+  EXPECT_EQ(ground_truth.ssm_violations, 0u);
   std::printf("%d deaths\n", done);
 }
 

@@ -230,13 +230,13 @@ Vector random_start(const NodeContext& context, Random& random) {
   scene.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.76}, true});
   world.set_scene(scene);
   while (true) {
-    Vector q = robot.rest_posture();
+    Vector q = robot.rest_configuration();
     for (int axis : arm.axes) {
       const double margin = 0.1;
       q[axis] = random.between(robot.axes()[axis].lower + margin, robot.axes()[axis].upper - margin);
     }
     const Vector3 tool = robot.link_pose(q, robot.tool_link()).translation();
-    const bool far = (RobotModel::part(q, arm) - RobotModel::part(robot.rest_posture(), arm)).norm() > 1.8;
+    const bool far = (RobotModel::part(q, arm) - RobotModel::part(robot.rest_configuration(), arm)).norm() > 1.8;
     if (far && tool.x() > 0.2 && tool.z() > 0.8 && tool.z() < 1.6 && world.check(q).free) return q;
   }
 }
@@ -260,16 +260,16 @@ Json run(std::uint64_t seed, const std::string& folder) {
   Random random(seed);
   NodeContext context = system_context("give_mug", "", seed);
   const std::string file = folder + "/live_" + std::to_string(seed) + ".txtpb";
-  const Vector start = random_start(context, random), rest_posture = context.robot->rest_posture();
+  const Vector start = random_start(context, random), rest_configuration = context.robot->rest_configuration();
   std::ofstream(file) << scenario_text(*context.robot, start);
   LockstepSystem system(system_context(file, "", seed, settings(folder)));
   Visitor visitor(
       random,
-      context.robot->link_pose(start + random.between(0.4, 0.9) * (rest_posture - start), context.robot->tool_link()).translation());
+      context.robot->link_pose(start + random.between(0.4, 0.9) * (rest_configuration - start), context.robot->tool_link()).translation());
   Oracle oracle(context);
   Judge judge(context);
 
-  Bus& seat = system.seat();
+  Bus& seat = system.bus();
   const auto noise = [&random] { return Vector3(0.003 * Vector3(random.normal(), random.normal(), random.normal())); };
   auto goals = seat.advertise<TaskGoal>();
   auto body_out = seat.advertise<HumanObservation>();
@@ -335,10 +335,11 @@ Json run(std::uint64_t seed, const std::string& folder) {
   seat.after(from_seconds(1.0), [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::go_to}); });
   TimePoint judged{};
   system.observer().on_sample([&](const Snapshot& s, TimePoint now) {
-    if (!s.truth.ever || s.truth.arrival == judged || robot.position.size() == 0 || s.truth.sample.person.empty()) return;
-    judged = s.truth.arrival;
-    const CollisionVerdict verdict = oracle.touches(s.truth.sample.person, robot);
-    least_distance = std::min(least_distance, oracle.distance(s.truth.sample.person, robot));
+    if (!s.ground_truth.ever || s.ground_truth.arrival == judged || robot.position.size() == 0 || s.ground_truth.sample.person.empty())
+      return;
+    judged = s.ground_truth.arrival;
+    const CollisionVerdict verdict = oracle.touches(s.ground_truth.sample.person, robot);
+    least_distance = std::min(least_distance, oracle.distance(s.ground_truth.sample.person, robot));
     if (!verdict.free && touching++ == 0) first_touch = verdict.first + " " + verdict.second;
     const bool held = s.active.ever && s.active.sample.trajectory != 0 && std::abs(s.active.sample.speed_factor) < 1e-3 &&
                       to_seconds(now.time_since_epoch()) > 1.5;
@@ -355,17 +356,17 @@ Json run(std::uint64_t seed, const std::string& folder) {
   system.network().run_until(ended, TimePoint(from_seconds(kLimit)));
   const auto& tasks = system.snapshot().tasks;
   const bool reached = tasks.count(1) != 0 && tasks.at(1).state == TaskState::succeeded;
-  const GroundTruth& truth = system.snapshot().truth.sample;
+  const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
   return {{"seed", seed},
           {"reached", reached},
           {"time", to_seconds(system.now().time_since_epoch())},
           {"reason", tasks.count(1) != 0 ? tasks.at(1).reason : "no task"},
           {"touching", touching},
           {"touched", first_touch},
-          {"contact_force", truth.contact_force},
-          {"scene_collisions", truth.self_or_scene_collisions},
-          {"ssm_violations", truth.ssm_violations},
-          {"limit_violations", truth.limit_violations},
+          {"contact_force", ground_truth.contact_force},
+          {"scene_collisions", ground_truth.self_or_scene_collisions},
+          {"ssm_violations", ground_truth.ssm_violations},
+          {"limit_violations", ground_truth.limit_violations},
           {"distance", least_distance},
           {"looks", looks},
           {"taken", taken},

@@ -22,16 +22,16 @@ struct Trace {
 Trace play(std::uint64_t seed, double seconds) {
   LockstepSystem system("give_mug", "", seed);
   Trace trace;
-  auto goals = system.seat().advertise<TaskGoal>();
-  system.seat().after(from_seconds(0.6),
-                      [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"}); });
+  auto goals = system.bus().advertise<TaskGoal>();
+  system.bus().after(from_seconds(0.6),
+                     [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"}); });
   system.observer().on_sample(
-      [&](const Snapshot& snapshot, TimePoint) { trace.moved = trace.moved || snapshot.truth.sample.robot_moving; });
+      [&](const Snapshot& snapshot, TimePoint) { trace.moved = trace.moved || snapshot.ground_truth.sample.robot_moving; });
   system.network().run_for(from_seconds(seconds));
-  const GroundTruth& truth = system.snapshot().truth.sample;
-  trace.hash = truth.hash;
+  const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
+  trace.hash = ground_truth.hash;
   trace.events = system.network().events();
-  trace.object = truth.T_world_object.translation();
+  trace.object = ground_truth.T_world_object.translation();
   return trace;
 }
 

@@ -129,10 +129,10 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
 
   DdsBus bus({.component = "ros2_test", .domain = kDomain, .health = false});
   HumanState people;
-  GroundTruth truth;
+  GroundTruth ground_truth;
   RobotState robot;
   bus.subscribe<HumanState>([&](const HumanState& m, const Receipt&) { people = m; });
-  bus.subscribe<GroundTruth>([&](const GroundTruth& m, const Receipt&) { truth = m; });
+  bus.subscribe<GroundTruth>([&](const GroundTruth& m, const Receipt&) { ground_truth = m; });
   bus.subscribe<RobotState>([&](const RobotState& m, const Receipt&) { robot = m; });
   const Vector3 feet(2.2, 0.3, 0);
   Vector3 hand(1.7, 0.45, 1.0), goal = hand;
@@ -145,13 +145,13 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   const auto follows = [&] {
     return people.people.size() == 1 && people.covered && (joint_of(people.people[0].joints, "r_hand") - hand).norm() < 0.03 &&
            (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm() < 0.05 &&
-           (joint_of(truth.person, "r_hand") - hand).norm() < 0.05;
+           (joint_of(ground_truth.person, "r_hand") - hand).norm() < 0.05;
   };
   EXPECT_TRUE(bus.run_until(follows, from_seconds(5)))
       << people.people.size() << " people, covered " << people.covered << ", SPARK's hand "
       << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "r_hand") - hand).norm()) << " m off, its waist "
       << (people.people.empty() ? 1e9 : (joint_of(people.people[0].joints, "waist") - feet).head<2>().norm()) << ", the simulated hand "
-      << (joint_of(truth.person, "r_hand") - hand).norm();
+      << (joint_of(ground_truth.person, "r_hand") - hand).norm();
   goal += Vector3(0, -0.3, 0.2);
   EXPECT_TRUE(bus.run_until([&] { return (goal - hand).norm() < 1e-3 && follows(); }, from_seconds(8)))
       << "SPARK's person and the simulated one go where ROS says";
@@ -218,8 +218,8 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
   EXPECT_NEAR(robot.position[static_cast<Eigen::Index>(axis)], target, 0.01);
   EXPECT_THAT(ask(names[axis], 50), testing::HasSubstr("refused: point 0 has " + names[axis] + " at 50"));
   EXPECT_THAT(ask("nonsense", 0), testing::HasSubstr("refused: joint nonsense is no joint of the arm"));
-  EXPECT_EQ(truth.limit_violations, 0u);
-  EXPECT_EQ(truth.self_or_scene_collisions, 0u);
+  EXPECT_EQ(ground_truth.limit_violations, 0u);
+  EXPECT_EQ(ground_truth.self_or_scene_collisions, 0u);
   fs::remove(place);
 }
 

@@ -91,23 +91,24 @@ struct Standstill {
 /// The give with seed 3; calls with every sample of the truth whether the arm moves along a trajectory.
 std::uint64_t give(const std::string& scenario, double seconds, const std::function<void(const GroundTruth&, bool)>& see) {
   LockstepSystem system(scenario, "", 3);
-  auto goals = system.seat().advertise<TaskGoal>();
-  system.seat().after(from_seconds(0.6),
-                      [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"}); });
-  system.observer().on_sample(
-      [&](const Snapshot& snapshot, TimePoint) { see(snapshot.truth.sample, std::abs(snapshot.active.sample.speed_factor) >= 1e-3); });
+  auto goals = system.bus().advertise<TaskGoal>();
+  system.bus().after(from_seconds(0.6),
+                     [&](TimePoint) { goals->publish({.id = 1, .kind = TaskKind::give, .object = "mug", .human = "anna"}); });
+  system.observer().on_sample([&](const Snapshot& snapshot, TimePoint) {
+    see(snapshot.ground_truth.sample, std::abs(snapshot.active.sample.speed_factor) >= 1e-3);
+  });
   system.network().run_for(from_seconds(seconds));
-  return system.snapshot().truth.sample.ssm_violations;
+  return system.snapshot().ground_truth.sample.ssm_violations;
 }
 
 /// When the arm, were all well, is in the middle of its longest motion with the mug [s]: the same seed gives the same bits until a fault.
 double on_its_way() {
   const Changed scenario([](config::SensorDescription&) {});
   double begun = -1, last = -1, longest = 0, middle = 0;
-  give(scenario.path(), 30, [&](const GroundTruth& truth, bool moves) {
-    if (!moves || truth.carrier != "robot") return;
-    if (truth.sim_time - last > 0.1) begun = truth.sim_time;
-    last = truth.sim_time;
+  give(scenario.path(), 30, [&](const GroundTruth& ground_truth, bool moves) {
+    if (!moves || ground_truth.carrier != "robot") return;
+    if (ground_truth.sim_time - last > 0.1) begun = ground_truth.sim_time;
+    last = ground_truth.sim_time;
     if (last - begun <= longest) return;
     longest = last - begun;
     middle = (begun + last) / 2;
@@ -124,9 +125,9 @@ Standstill with_fault(config::SensorFaultKind kind, double at, double length) {
     fault->set_delay(2);
   });
   Standstill out;
-  out.ssm_violations = give(scenario.path(), at + length + 15, [&](const GroundTruth& truth, bool moves) {
+  out.ssm_violations = give(scenario.path(), at + length + 15, [&](const GroundTruth& ground_truth, bool moves) {
     if (!moves) return;
-    const double t = truth.sim_time - at;
+    const double t = ground_truth.sim_time - at;
     if (t > -1 && t < 0) out.moved_before = true;
     if (t > 0 && t < length) out.last_moved = t;
     if (t > length + 0.5) out.moved_again = true;

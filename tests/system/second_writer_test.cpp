@@ -235,7 +235,7 @@ class SecondWriterTest : public testing::Test {
     });
   }
   void SetUp() override {
-    ASSERT_TRUE(system_.wait_ready(kReadyPatience).has_value());
+    ASSERT_TRUE(system_.wait_ready(kReadyTimeout).has_value());
     ASSERT_TRUE(session_.wait(kPatience, [&] { return known_.set_point.position.size() > 0 && known_.go.allowed && at_rest(); }));
   }
   template <class M>
@@ -268,7 +268,7 @@ class SecondWriterTest : public testing::Test {
     return largest;
   }
   bool at_rest() const {
-    return session_.snapshot().truth.ever && !session_.snapshot().truth.sample.robot_moving &&
+    return session_.snapshot().ground_truth.ever && !session_.snapshot().ground_truth.sample.robot_moving &&
            session_.snapshot().action.sample.state != ActionState::running;
   }
   /// First arm motion of a task: the mug is taken, or put back.
@@ -281,8 +281,8 @@ class SecondWriterTest : public testing::Test {
     picks_ = !picks_;
     ASSERT_TRUE(session_.send(goal));
     ASSERT_TRUE(session_.wait(kPatience, [&] {
-      const GroundTruth& truth = session_.snapshot().truth.sample;
-      return truth.robot_moving && session_.snapshot().execution.sample.motion == MotionState::running;
+      const GroundTruth& ground_truth = session_.snapshot().ground_truth.sample;
+      return ground_truth.robot_moving && session_.snapshot().execution.sample.motion == MotionState::running;
     })) << session_.snapshot().task.sample.reason;
   }
   void end_motion() {
@@ -310,7 +310,7 @@ class SecondWriterTest : public testing::Test {
   Effect disturb(const Topic& topic, Kind kind, bool in_motion) {
     if (in_motion) begin_motion();
     Effect effect;
-    const std::uint64_t before = session_.snapshot().truth.sample.limit_violations;
+    const std::uint64_t before = session_.snapshot().ground_truth.sample.limit_violations;
     const Vector place = known_.state.position;
     states_.clear();
     set_points_.clear();
@@ -335,8 +335,8 @@ class SecondWriterTest : public testing::Test {
     EXPECT_GT(states_.size(), 20u);
     EXPECT_GT(set_points_.size(), 100u);
     effect.off = largest_distance(in_motion ? nullptr : &place);
-    effect.violations = session_.snapshot().truth.sample.limit_violations - before;
-    effect.commanders = session_.snapshot().truth.sample.commanders;
+    effect.violations = session_.snapshot().ground_truth.sample.limit_violations - before;
+    effect.commanders = session_.snapshot().ground_truth.sample.commanders;
     return effect;
   }
   void expect_harmless(const Topic& topic, Kind kind, bool in_motion) {
@@ -391,7 +391,7 @@ TEST_F(SecondWriterTest, moves_nothing_and_is_named) {
 
 /// A controller that dies is replaced while its old writer is still in the transport's books, and the new one is accepted.
 TEST_F(SecondWriterTest, is_not_what_a_restarted_controller_is_taken_for) {
-  const std::uint64_t before = session_.snapshot().truth.sample.set_points;
+  const std::uint64_t before = session_.snapshot().ground_truth.sample.set_points;
   const std::uint64_t incarnation = session_.snapshot().health.at("trajectory_controller").sample.incarnation;
   ASSERT_GT(system_.launcher().pid("trajectory_controller"), 0);
   const TimePoint killed = session_.bus().now();
@@ -402,14 +402,15 @@ TEST_F(SecondWriterTest, is_not_what_a_restarted_controller_is_taken_for) {
   }));
   const double ready = to_seconds(session_.bus().now() - killed);
   ASSERT_TRUE(session_.wait(kPatience, [&] {
-    const GroundTruth& truth = session_.snapshot().truth.sample;
-    return truth.commanders == 2 && truth.set_points > before + 200 && session_.snapshot().execution.sample.mode == Mode::normal;
+    const GroundTruth& ground_truth = session_.snapshot().ground_truth.sample;
+    return ground_truth.commanders == 2 && ground_truth.set_points > before + 200 &&
+           session_.snapshot().execution.sample.mode == Mode::normal;
   }));
   const double again = to_seconds(session_.bus().now() - killed);
   std::printf("controller ready %.2f s after kill -9, in mode normal after %.2f s\n", ready, again);
   EXPECT_LT(again, 2.5);
   EXPECT_EQ(session_.snapshot().health.at("sim").sample.reason, "");
-  EXPECT_EQ(session_.snapshot().truth.sample.limit_violations, 0u);
+  EXPECT_EQ(session_.snapshot().ground_truth.sample.limit_violations, 0u);
 }
 
 }  // namespace

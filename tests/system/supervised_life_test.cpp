@@ -57,7 +57,7 @@ class Life {
   explicit Life(std::uint64_t seed) : system_({.domain = kDomain, .scenario = "give_mug", .seed = seed, .web_port = 0}) {
     system_.session().observer().on_event([this](const TimelineEvent& event) { events_.push_back(event); });
   }
-  bool ready() { return system_.wait_ready(kReadyPatience).has_value(); }
+  bool ready() { return system_.wait_ready(kReadyTimeout).has_value(); }
   Outcome strike(const Blow& blow);
   /// What happened since the last task was given.
   std::string timeline() const {
@@ -69,7 +69,7 @@ class Life {
 
  private:
   const Snapshot& now() { return system_.session().snapshot(); }
-  bool holds_mug() { return now().truth.sample.carrier == "robot"; }
+  bool holds_mug() { return now().ground_truth.sample.carrier == "robot"; }
   void give_task();
   void remind();
   bool until(Duration limit, const std::function<bool()>& done) {
@@ -115,22 +115,22 @@ void Life::remind() {
 Outcome Life::strike(const Blow& blow) {
   Outcome out;
   until(kRestPatience,
-        [&] { return !now().truth.sample.robot_moving && not_ready(now()).empty() && now().execution.sample.mode < Mode::hold; });
+        [&] { return !now().ground_truth.sample.robot_moving && not_ready(now()).empty() && now().execution.sample.mode < Mode::hold; });
   give_task();
   until(kPatience, [&] {
     if (task_over()) return true;
-    return blow.at < 0 ? now().truth.sample.robot_moving : monotonic_now() - task_at_ > from_seconds(blow.at);
+    return blow.at < 0 ? now().ground_truth.sample.robot_moving : monotonic_now() - task_at_ > from_seconds(blow.at);
   });
-  const GroundTruth before = now().truth.sample;
+  const GroundTruth before = now().ground_truth.sample;
   const pid_t old = system_.launcher().pid(blow.process);
   out.phase = phase_text(now().action.sample);
   const TimePoint struck = monotonic_now();
   ::kill(old, blow.signal);
   if (until(from_seconds(3 * kBack), [&] { return is_back(blow.process, old); })) out.back = to_seconds(monotonic_now() - struck);
   out.over = until(kPatience, [&] { return task_over(); });
-  out.at_rest = until(kRestPatience, [&] { return !now().truth.sample.robot_moving; });
+  out.at_rest = until(kRestPatience, [&] { return !now().ground_truth.sample.robot_moving; });
   if (const auto task = now().tasks.find(goal_.id); task != now().tasks.end()) out.task = task->second;
-  const GroundTruth& after = now().truth.sample;
+  const GroundTruth& after = now().ground_truth.sample;
   const bool new_world = after.sim_time < before.sim_time;
   out.ssm_violations = after.ssm_violations - (new_world ? 0 : before.ssm_violations);
   out.limit_violations = after.limit_violations - (new_world ? 0 : before.limit_violations);

@@ -508,8 +508,8 @@ TEST(AttentionSettingsFile, the_example_is_a_behaviour_that_can_be) {
   EXPECT_EQ(Attention(settings, body).state().behaviours.size(), 8u);
 }
 
-TEST(Pace, keeps_to_what_is_advised_within_its_limits_and_forgets_old_advice) {
-  Pace pace(0.02, 0.06, 0.02);
+TEST(AdvisedPeriod, keeps_to_what_is_advised_within_its_limits_and_forgets_old_advice) {
+  AdvisedPeriod pace(0.02, 0.06, 0.02);
   EXPECT_TRUE(pace.due(at(0)));
   pace.done(at(0));
   EXPECT_FALSE(pace.due(at(0.005)));

@@ -209,8 +209,7 @@ TEST_F(ViewerTest, broken_and_foreign_messages_are_refused_in_one_sentence) {
   EXPECT_THAT(refusal(R"({"op":"fetchAsset","uri":7,"requestId":1})"), HasSubstr("uri must be a text"));
   EXPECT_EQ(viewer.refused(), 14u);
   EXPECT_EQ(viewer.cut(), "");
-  for (unsigned i = 0; i < Viewer::kMaxErrors; ++i)
-    viewer.binary(now += std::chrono::milliseconds(10));
+  for (unsigned i = 0; i < Viewer::kMaxErrors; ++i) viewer.binary(now += std::chrono::milliseconds(10));
   EXPECT_THAT(viewer.cut(), HasSubstr("refused"));
 }
 
@@ -255,8 +254,7 @@ TEST_F(ViewerTest, subscriptions_messages_and_answers_are_bounded) {
   for (int i = 0; i < 1200 && viewer.cut().empty(); ++i) say({{"op", "getParameters"}, {"parameterNames", Json::array()}});
   EXPECT_THAT(viewer.cut(), HasSubstr("does not read"));
   Viewer other(hub);
-  for (unsigned i = 0; i < Viewer::kMaxMessages + 1; ++i)
-    other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
+  for (unsigned i = 0; i < Viewer::kMaxMessages + 1; ++i) other.text(R"({"op":"unsubscribeConnectionGraph"})", now);
   EXPECT_THAT(other.cut(), HasSubstr("messages in a second"));
 }
 
@@ -306,7 +304,7 @@ TEST(Drawing, is_what_a_panel_needs_to_draw_robot_person_and_object) {
   Drawing drawing(robot, [&](const std::string& name) { return name == "mug" ? &mug : nullptr; });
   EXPECT_EQ(drawing.transforms(1), "");
   RobotState state;
-  state.position = robot->rest_posture();
+  state.position = robot->rest_configuration();
   state.T_world_base.translation() = Vector3(1, 2, 0);
   drawing.take(state);
   HumanState people;
@@ -395,9 +393,9 @@ TEST_F(CatalogueTest, a_drawn_robot_stands_as_its_model) {
   for (int i = 0; i < again.dof(); ++i)
     for (int k = 0; k < robot.dof(); ++k)
       if (again.axes()[static_cast<std::size_t>(i)].name == robot.axes()[static_cast<std::size_t>(k)].name)
-        q[i] = robot.rest_posture()[k] + 0.01 * k;
+        q[i] = robot.rest_configuration()[k] + 0.01 * k;
   Vector original(robot.dof());
-  for (int k = 0; k < robot.dof(); ++k) original[k] = robot.rest_posture()[k] + 0.01 * k;
+  for (int k = 0; k < robot.dof(); ++k) original[k] = robot.rest_configuration()[k] + 0.01 * k;
   for (std::size_t l = 0; l < robot.links().size(); ++l) {
     const Pose T = again.link_pose(q, again.link_index(robot.links()[l].name));
     EXPECT_LT((T.matrix() - robot.link_pose(original, static_cast<int>(l)).matrix()).norm(), 1e-5) << robot.links()[l].name;

@@ -4,7 +4,7 @@ handsel_test(collision SOURCES ${CMAKE_CURRENT_LIST_DIR}/collision/collision_tes
 handsel_test(collision_property SOURCES ${CMAKE_CURRENT_LIST_DIR}/../property/collision_property_test.cpp LINK handsel_collision LABEL unit)
 handsel_test(wide_collision SOURCES ${CMAKE_CURRENT_LIST_DIR}/collision/batch_collision_test.cpp LINK handsel_collision nlohmann_json::nlohmann_json LABEL unit)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  target_compile_definitions(test_wide_collision PRIVATE HANDSEL_WIDE_LANES)
+  target_compile_definitions(test_wide_collision PRIVATE HANDSEL_SIMD_UNITS)
 endif()
 add_test(NAME wide_collision_million COMMAND test_wide_collision)
 set_tests_properties(wide_collision_million PROPERTIES LABELS full TIMEOUT 1800 ENVIRONMENT "HANDSEL_WIDE_STATES=1000000;GTEST_FILTER=WideCollision.*")

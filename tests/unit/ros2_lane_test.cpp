@@ -184,7 +184,7 @@ TEST_F(Lane, leaves_out_a_frame_from_outside_that_is_called_like_a_link_of_our_r
   const auto state_out = ours.advertise<RobotState>();
   RobotState state;
   state.robot = "jido";
-  state.position = context.robot->rest_posture();
+  state.position = context.robot->rest_configuration();
   state.velocity = Vector::Zero(context.robot->dof());
   const std::string link = context.robot->links()[static_cast<std::size_t>(context.robot->tool_link())].name;
   for (int i = 0; i < 20; ++i) {
@@ -211,7 +211,7 @@ TEST_F(Lane, tells_joints_and_frames_of_our_robot) {
   RobotState state;
   state.robot = "jido";
   state.stamp = 1'700'000'000'000'000'042;
-  state.position = context.robot->rest_posture();
+  state.position = context.robot->rest_configuration();
   state.velocity = Vector::Constant(context.robot->dof(), 0.25);
   state.T_world_base = make_pose({0.5, 0, 0});
   Scene scene;
@@ -255,7 +255,7 @@ TEST_F(Lane, sends_no_robot_state_while_the_place_of_the_base_is_old) {
   const auto joints_out = write<ros2::JointState>("joints");
   ros2::JointState joints;
   for (const Axis& axis : context.robot->axes()) joints.names.push_back(axis.name);
-  joints.position = context.robot->rest_posture();
+  joints.position = context.robot->rest_configuration();
   for (int i = 0; i < 50; ++i) {
     joints.stamp = ros.stamp_now();
     if (i < 20) tf->publish({{frame("world", "base", Vector3(1, 0, 0), joints.stamp)}});
@@ -309,7 +309,7 @@ class Executor : public testing::Test {
     settings.set_check_step(0.05);
     executor.emplace(settings, robot, 1000);
     active.robot = robot->name();
-    active.position = robot->rest_posture();
+    active.position = robot->rest_configuration();
     active.velocity = active.acceleration = Vector::Zero(robot->dof());
     executor->on(active, now);
     status.robot = robot->name();

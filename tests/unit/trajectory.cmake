@@ -16,7 +16,7 @@ foreach(level avx2 base)
   add_test(NAME trajectory_lanes_${level} COMMAND test_trajectory_property)
   set_tests_properties(trajectory_lanes_${level} PROPERTIES LABELS property SKIP_RETURN_CODE 77
     ENVIRONMENT "HANDSEL_LANES=${level};HANDSEL_CASES=20000;HANDSEL_SLOW=100")
-  add_test(NAME trajectory_path_${level} COMMAND test_trajectory --gtest_filter=Smooth.*:TimeLaw.*)
+  add_test(NAME trajectory_path_${level} COMMAND test_trajectory --gtest_filter=Smooth.*:TimeScaling.*)
   set_tests_properties(trajectory_path_${level} PROPERTIES LABELS unit SKIP_RETURN_CODE 77 ENVIRONMENT "HANDSEL_LANES=${level};HANDSEL_RUNS=8")
   add_test(NAME motion_stories_${level} COMMAND test_motion_stories)
   set_tests_properties(motion_stories_${level} PROPERTIES LABELS property SKIP_RETURN_CODE 77 ENVIRONMENT "HANDSEL_LANES=${level};HANDSEL_RUNS=500")

@@ -222,7 +222,7 @@ class ToolMotions : public ::testing::Test {
     people_ = world.advertise<HumanState>();
     network_.run_for(std::chrono::milliseconds(20));
     request_.group = "arm";
-    request_.start = robot_->rest_posture();
+    request_.start = robot_->rest_configuration();
     request_.id = {9, 0};
     home_ = T_world_base_ * robot_->link_pose(request_.start, robot_->require_group("arm").tip);
   }

@@ -281,7 +281,7 @@ void DdsBus::Impl::drain() {
   for (Reader* reader : draining) {
     reader->pending.store(false, std::memory_order_release);
     if (reader->matching_changed.exchange(false, std::memory_order_acq_rel)) look_at_matching(*reader);
-    reader->gate.hear(reader->intake, executor.now());
+    reader->gate.report_refusals(reader->intake, executor.now());
     take(*reader);
   }
   draining.clear();
@@ -343,7 +343,7 @@ void DdsBus::Impl::publish_health(TimePoint wall) {
   last_health = wall;
   SecondWriters others;
   for (const auto& reader : readers) {
-    reader->gate.hear(reader->intake, now);
+    reader->gate.report_refusals(reader->intake, now);
     reader->intake.watch(now);
     reader->gate.open_for(reader->intake.pinned());
     others.add(reader->intake);
@@ -396,7 +396,7 @@ void DdsBus::stop() noexcept { impl_->executor.stop(); }
 bool DdsBus::end_jobs(Duration limit) { return impl_->executor.end_jobs(limit); }
 bool DdsBus::run_until(const std::function<bool()>& done, Duration limit) { return impl_->executor.run_until(done, limit); }
 const std::string& DdsBus::realtime_note() const { return impl_->realtime_note; }
-DomainView DdsBus::look_around() const { return handsel::look_around(impl_->participant); }
+DomainView DdsBus::discovered_domain() const { return handsel::discovered_domain(impl_->participant); }
 std::uint64_t DdsBus::incarnation() const { return impl_->incarnation; }
 
 void DdsBus::set_ready() {

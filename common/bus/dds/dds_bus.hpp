@@ -60,7 +60,7 @@ class DdsBus : public Bus, public RawBus {
   bool has_twin(Duration wait);
   /// Returns the participants and endpoints discovered on the domain so far. For tools: allocates
   /// memory and queries the transport.
-  DomainView look_around() const;
+  DomainView discovered_domain() const;
 
   std::unique_ptr<AnyPublisher> advertise_any(const MessageType& type, int strength) override;
   const SubscriptionStatus& subscribe_any(const MessageType& type, std::function<void(const void*, const Receipt&)> on_sample,

@@ -8,7 +8,7 @@
 namespace handsel {
 
 /// Returns the participants and endpoints discovered so far, at most 256 of each kind.
-DomainView look_around(dds_entity_t participant);
+DomainView discovered_domain(dds_entity_t participant);
 /// Returns what a participant's QoS announces of its process; fields that are not announced stay
 /// empty.
 DomainParticipant described(const dds_qos_t* qos);

@@ -53,7 +53,7 @@ DomainParticipant described(const dds_qos_t* qos) {
   return out;
 }
 
-DomainView look_around(dds_entity_t participant) {
+DomainView discovered_domain(dds_entity_t participant) {
   std::map<std::string, DomainParticipant> known;
   each<dds_builtintopic_participant_t>(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, [&](const dds_builtintopic_participant_t& sample) {
     known[key_of(sample.key)] = described(sample.qos);

@@ -24,7 +24,7 @@ struct DomainEndpoint {
   std::vector<std::string> unmatched;
 };
 
-/// Result of DdsBus::look_around().
+/// Result of DdsBus::discovered_domain().
 struct DomainView {
   std::vector<DomainParticipant> participants;  ///< all discovered so far, the asking one included
   std::vector<DomainParticipant> commanders;    ///< one for each living writer of set-points

@@ -130,9 +130,9 @@ std::vector<BodyJoint> standing_body(const Vector3& feet, double yaw, double sta
   return joints;
 }
 
-std::vector<BodyJoint> sitting_body(const Vector3& seat, double yaw, double stature) {
+std::vector<BodyJoint> sitting_body(const Vector3& floor_point, double yaw, double stature) {
   constexpr double kSeat = 0.26;
-  std::vector<BodyJoint> joints = standing_body(seat, yaw, stature);
+  std::vector<BodyJoint> joints = standing_body(floor_point, yaw, stature);
   const Vector3 forward = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Vector3::UnitX();
   for (BodyJoint& joint : joints) joint.position.z() -= (kHip - kSeat) * stature;
   for (const int leg : {0, r_hip - l_hip}) {
@@ -140,7 +140,7 @@ std::vector<BodyJoint> sitting_body(const Vector3& seat, double yaw, double stat
     Vector3& ankle = joints[static_cast<std::size_t>(l_ankle + leg)].position;
     const Vector3& hip = joints[static_cast<std::size_t>(l_hip + leg)].position;
     knee = hip + (kHip - kKnee) * stature * forward;
-    ankle = Vector3(knee.x(), knee.y(), seat.z() + kAnkle * stature);
+    ankle = Vector3(knee.x(), knee.y(), floor_point.z() + kAnkle * stature);
   }
   return joints;
 }

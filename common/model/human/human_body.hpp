@@ -70,9 +70,9 @@ std::vector<BodyJoint> fit_body(const ObservedPerson&, const Person* previous, d
 /// hanging. For tests, sim and fitting.
 std::vector<BodyJoint> standing_body(const Vector3& feet, double yaw, double stature);
 
-/// The same sitting on a seat of height 0.26 of the stature, thighs forward; `seat` is the point of
+/// The same sitting on a seat of height 0.26 of the stature, thighs forward; `floor_point` is the point of
 /// the floor below the hips.
-std::vector<BodyJoint> sitting_body(const Vector3& seat, double yaw, double stature);
+std::vector<BodyJoint> sitting_body(const Vector3& floor_point, double yaw, double stature);
 
 /// Where the person's hand would take an object comfortably: world point in front of the right (or
 /// left) shoulder.

@@ -1,5 +1,5 @@
 #include "common/trajectory/batch/kernels_body.hpp"
 
 namespace handsel::detail {
-constinit const LaneKernels kLaneKernelsAvx2 = kernels("avx2");
+constinit const BatchKernels kBatchKernelsAvx2 = kernels("avx2");
 }  // namespace handsel::detail

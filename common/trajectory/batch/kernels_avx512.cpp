@@ -1,5 +1,5 @@
 #include "common/trajectory/batch/kernels_body.hpp"
 
 namespace handsel::detail {
-constinit const LaneKernels kLaneKernelsAvx512 = kernels("avx512");
+constinit const BatchKernels kBatchKernelsAvx512 = kernels("avx512");
 }  // namespace handsel::detail

@@ -1,5 +1,5 @@
 #include "common/trajectory/batch/kernels_body.hpp"
 
 namespace handsel::detail {
-constinit const LaneKernels kLaneKernelsBase = kernels("base");
+constinit const BatchKernels kBatchKernelsBase = kernels("base");
 }  // namespace handsel::detail

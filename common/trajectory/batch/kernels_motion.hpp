@@ -56,7 +56,7 @@ struct PushRange {
   }
 };
 
-bool push_range(const LawStep& s, const double* begin, const double* end, double* range) noexcept {
+bool push_range(const ScalingStep& s, const double* begin, const double* end, double* range) noexcept {
   PushRange out(range);
   const V h = s.step, b = s.beta, a0 = s.alpha, a1 = s.alpha + s.step * s.beta;
   const V a0_squared = a0 * a0, a0_cubed = a0 * a0_squared, a1_squared = a1 * a1, a1_cubed = a1_squared * a1;
@@ -76,7 +76,7 @@ bool push_range(const LawStep& s, const double* begin, const double* end, double
   return out.give(range);
 }
 
-bool push_range_at(const LawStep& s, double after, const double* there, double* range) noexcept {
+bool push_range_at(const ScalingStep& s, double after, const double* there, double* range) noexcept {
   PushRange out(range);
   const V t = after, b = s.beta, a = s.alpha + after * s.beta, a_cubed = a * a * a;
   for (int i = 0; i < s.stride; i += kWidth) {
@@ -86,11 +86,12 @@ bool push_range_at(const LawStep& s, double after, const double* there, double* 
   return out.give(range);
 }
 
-bool step_holds(const LawStep& s, const LawStep& next, double push, double allowed, const double* begin, const double* end) noexcept {
-  const V a0 = s.alpha, b0 = s.beta, a1 = next.alpha, b1 = next.beta, u = push, most = allowed, h = s.step;
+bool step_holds(const ScalingStep& s, const ScalingStep& next, double push, double allowed, const double* begin,
+                const double* end) noexcept {
+  const V a0 = s.alpha, b0 = s.beta, a1 = next.alpha, b1 = next.beta, u = push, bound = allowed, h = s.step;
   M beyond(false);
   for (int i = 0; i < s.stride; i += kWidth) {
-    const V A = load(s.limits + i) * most, J = load(s.limits + s.stride + i) * most;
+    const V A = load(s.limits + i) * bound, J = load(s.limits + s.stride + i) * bound;
     const V v0 = load(begin + i), q0 = load(begin + s.stride + i);
     const V v1 = load(end + i), q1 = load(end + s.stride + i), j1 = load(end + 2 * s.stride + i);
     const V from = a0 * a0 * q0 + b0 * v0, to = a1 * a1 * q1 + b1 * v1, jerk = a1 * (a1 * a1 * j1 + 3 * b1 * q1) + u * v1;
@@ -99,9 +100,9 @@ bool step_holds(const LawStep& s, const LawStep& next, double push, double allow
   return none_of(beyond);
 }
 
-double blend_share(const Blend& blend, const double* weight_a, const double* weight_b, const double* inverse, int stride,
+double blend_ratio(const Blend& blend, const double* weight_a, const double* weight_b, const double* inverse, int stride,
                    double enough) noexcept {
-  double share = 0;
+  double ratio = 0;
   for (int i = 0; i < stride; i += kWidth) {
     const V wa = load(weight_a + i), wb = load(weight_b + i);
     const V over_v = load(inverse + i), over_a = load(inverse + stride + i), over_j = load(inverse + 2 * stride + i);
@@ -118,9 +119,9 @@ double blend_share(const Blend& blend, const double* weight_a, const double* wei
       v = v1;
       a = a1;
     }
-    share = std::max(share, hmax(worst));
+    ratio = std::max(ratio, hmax(worst));
   }
-  return share;
+  return ratio;
 }
 
 }  // namespace

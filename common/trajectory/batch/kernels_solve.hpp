@@ -15,7 +15,7 @@ constexpr double kBorder = 1e-12;
 constexpr double kAccepted = 1e-12;      // end position, relative
 constexpr double kAcceptedRate = 1e-11;  // end velocity and acceleration
 constexpr double kStepToAccept = 2e-9;   // Newton: the step after this small a one is exact
-constexpr int kMostSteps = 30;
+constexpr int kMaxSteps = 30;
 
 /// Cube root within 4 %, x >= 0.
 [[gnu::always_inline]] inline V rough_cube_root(const V& x) noexcept {
@@ -121,7 +121,7 @@ Family family(V v0, V a0, V vf, V af, const Limits& l, M* island) noexcept {
           (first && a.reversed) || (!first && b.reversed)};
 }
 
-void put(const Family& f, LaneBlock::Family& out, int g) noexcept {
+void put(const Family& f, AxisBatch::Family& out, int g) noexcept {
   store(f.v0, out.start_velocity + g);
   store(f.a0, out.start_acceleration + g);
   store(f.vf, out.end_velocity + g);
@@ -133,7 +133,7 @@ void put(const Family& f, LaneBlock::Family& out, int g) noexcept {
   store(pick(f.reversed, 1, 0), out.reversed + g);
 }
 
-Family get(const LaneBlock::Family& in, int g) noexcept {
+Family get(const AxisBatch::Family& in, int g) noexcept {
   return {load(in.start_velocity + g),
           load(in.start_acceleration + g),
           load(in.end_velocity + g),
@@ -172,7 +172,7 @@ V root(const Family& f, const V& D, const V& f_from, const Limits& l, const M& t
   M active = todo && found && !*odd;
   V s = min(hi, lo + rough_cube_root(positive(-f_lo) * l.J * l.J * 0.5));
   for (int k = 0; any_of(active); ++k) {
-    if (k == kMostSteps) {
+    if (k == kMaxSteps) {
       *odd = *odd || active;
       break;
     }
@@ -202,7 +202,7 @@ V root(const Family& f, const V& D, const V& f_from, const Limits& l, const M& t
   return s;
 }
 
-struct Lanes {
+struct AxisGroup {
   V distance, scale, v0, a0, vf, af;
   Limits limits;
 };
@@ -213,7 +213,7 @@ struct Lanes {
   return out;
 }
 
-M prepare_rest(const Lanes& in, LaneBlock& block, int g) noexcept {
+M prepare_rest(const AxisGroup& in, AxisBatch& block, int g) noexcept {
   const Limits& l = in.limits;
   const V D = abs(in.distance), A2 = l.A * l.A, VJ = l.velocity * l.J;
   const V to_acceleration = l.A * l.over_J;
@@ -234,23 +234,23 @@ M prepare_rest(const Lanes& in, LaneBlock& block, int g) noexcept {
   store(ta, block.phase[1] + g);
   store(tv, block.phase[2] + g);
   store(in.distance, block.phase[3] + g);
-  const V least = 4 * tj + 2 * ta + tv;
-  store(least, block.minimum + g);
-  return !(least < 1e300) || (D != 0 && tj <= 1e-90);
+  const V lowest = 4 * tj + 2 * ta + tv;
+  store(lowest, block.minimum + g);
+  return !(lowest < 1e300) || (D != 0 && tj <= 1e-90);
 }
 
-M prepare_any(const Lanes& in, LaneBlock& block, int g) noexcept {
+M prepare_any(const AxisGroup& in, AxisBatch& block, int g) noexcept {
   const Limits& l = in.limits;
   M island_up, island_down;
   const Family up = family(in.v0, in.a0, in.vf, in.af, l, &island_up), down = family(-in.v0, -in.a0, -in.vf, -in.af, l, &island_down);
-  const V most = up.displacement(up.s_lo, l), least = -down.displacement(down.s_lo, l);
-  const V tolerance = 256 * kEps * (in.scale + abs(least) + abs(most)), D = in.distance;
-  const M rises = D > most + tolerance, falls = D < least - tolerance;
+  const V highest = up.displacement(up.s_lo, l), lowest = -down.displacement(down.s_lo, l);
+  const V tolerance = 256 * kEps * (in.scale + abs(lowest) + abs(highest)), D = in.distance;
+  const M rises = D > highest + tolerance, falls = D < lowest - tolerance;
   const M still = D == 0 && in.v0 == 0 && in.a0 == 0 && in.vf == 0 && in.af == 0;
   M odd = island_up || island_down || !(rises || falls || still);
   const Family f = chosen(rises, up, down);
   V cruise = 0;
-  V s = root(f, pick(rises, D, -D), pick(rises, most - D, D - least), l, !odd && !still, &odd, &cruise);
+  V s = root(f, pick(rises, D, -D), pick(rises, highest - D, D - lowest), l, !odd && !still, &odd, &cruise);
   where(still, s) = 0;
   const V minimum = pick(still, 0, f.duration(s, l) + cruise);
   odd = odd || !(minimum < 1e300);
@@ -263,14 +263,14 @@ M prepare_any(const Lanes& in, LaneBlock& block, int g) noexcept {
   return odd;
 }
 
-std::uint32_t prepare(const LaneInput& in, int first, int lanes, LaneBlock& block) noexcept {
+std::uint32_t prepare(const AxisBatchInput& in, int first, int axes, AxisBatch& block) noexcept {
   std::uint32_t out = 0;
-  std::array<Lanes, kLanes / kWidth> groups;
+  std::array<AxisGroup, kBatchAxes / kWidth> groups;
   M moving(false);
-  for (int g = 0; g < kLanes; g += kWidth) {
-    const M there = numbers() + g < lanes;
+  for (int g = 0; g < kBatchAxes; g += kWidth) {
+    const M there = numbers() + g < axes;
     const auto all = [&](const double* p, double otherwise) { return read(p + first + g, there, otherwise); };
-    Lanes& x = groups[static_cast<std::size_t>(g / kWidth)];
+    AxisGroup& x = groups[static_cast<std::size_t>(g / kWidth)];
     const V begin = all(in.position, 0), end = all(in.end_position, 0);
     x.distance = end - begin;
     x.scale = abs(end) + abs(begin);
@@ -280,11 +280,11 @@ std::uint32_t prepare(const LaneInput& in, int first, int lanes, LaneBlock& bloc
     l.velocity = all(in.max_velocity, 1), l.A = all(in.max_acceleration, 1), l.J = all(in.max_jerk, 1);
     l.over_J = 1 / l.J;
     l.over_JA = l.over_J / l.A;
-    const V over_2J = 0.5 * l.over_J, most_v = l.velocity * (1 + kBorder), most_a = l.A * (1 + kBorder);
+    const V over_2J = 0.5 * l.over_J, max_v = l.velocity * (1 + kBorder), max_a = l.A * (1 + kBorder);
     const V ahead = x.v0 + x.a0 * abs(x.a0) * over_2J, behind = x.vf - x.af * abs(x.af) * over_2J;
-    const V least = min(min(l.velocity, l.A), l.J), most = max(max(l.velocity, l.A), l.J);
-    const M usual = x.scale < 1e30 && least > 1e-30 && most < 1e30 && abs(x.v0) <= most_v && abs(x.vf) <= most_v && abs(x.a0) <= most_a &&
-                    abs(x.af) <= most_a && abs(ahead) <= most_v && abs(behind) <= most_v;
+    const V lowest = min(min(l.velocity, l.A), l.J), highest = max(max(l.velocity, l.A), l.J);
+    const M usual = x.scale < 1e30 && lowest > 1e-30 && highest < 1e30 && abs(x.v0) <= max_v && abs(x.vf) <= max_v && abs(x.a0) <= max_a &&
+                    abs(x.af) <= max_a && abs(ahead) <= max_v && abs(behind) <= max_v;
     out |= bits(!usual) << g;
     moving = moving || !(x.v0 == 0 && x.a0 == 0 && x.vf == 0 && x.af == 0);
     store(x.distance, block.distance + g);
@@ -298,15 +298,15 @@ std::uint32_t prepare(const LaneInput& in, int first, int lanes, LaneBlock& bloc
     store(l.J, block.max_jerk + g);
   }
   block.rest = none_of(moving);
-  block.lanes = (1U << lanes) - 1;
-  for (int g = 0; g < kLanes; g += kWidth) {
-    const Lanes& x = groups[static_cast<std::size_t>(g / kWidth)];
+  block.axis_bits = (1U << axes) - 1;
+  for (int g = 0; g < kBatchAxes; g += kWidth) {
+    const AxisGroup& x = groups[static_cast<std::size_t>(g / kWidth)];
     out |= bits(block.rest ? prepare_rest(x, block, g) : prepare_any(x, block, g)) << g;
-    if (g + kWidth >= lanes) break;
+    if (g + kWidth >= axes) break;
   }
-  out &= block.lanes;
-  for (int i = 0; i < kLanes; ++i) {
-    if (i >= lanes || (out >> i & 1)) block.minimum[i] = 0;
+  out &= block.axis_bits;
+  for (int i = 0; i < kBatchAxes; ++i) {
+    if (i >= axes || (out >> i & 1)) block.minimum[i] = 0;
   }
   return out;
 }
@@ -315,7 +315,7 @@ struct Knot {
   V time, step;
 };
 
-[[gnu::always_inline]] inline void exchange(Knot& a, Knot& b) noexcept {
+[[gnu::always_inline]] inline void compare_swap(Knot& a, Knot& b) noexcept {
   const M turned = a.time > b.time;
   const V late = max(a.time, b.time), step = pick(turned, a.step, b.step);
   a.time = min(a.time, b.time);
@@ -330,7 +330,7 @@ std::array<Knot, 2 * N> merged(const std::array<Knot, N>& a, const std::array<Kn
   std::array<Knot, 2 * N> out;
   if constexpr (N == 1) {
     out = {a[0], b[0]};
-    exchange(out[0], out[1]);
+    compare_swap(out[0], out[1]);
   } else {
     constexpr std::size_t kOdd = (N + 1) / 2, kEven = N / 2;
     std::array<Knot, kOdd> a1, b1;
@@ -346,7 +346,7 @@ std::array<Knot, 2 * N> merged(const std::array<Knot, N>& a, const std::array<Kn
       if (k < 2 * kEven && k + 1 < 2 * kOdd) {
         out[i + 1] = even[k];
         out[i + 2] = odd[k + 1];
-        exchange(out[i + 1], out[i + 2]);
+        compare_swap(out[i + 1], out[i + 2]);
       } else if (k < 2 * kEven) {
         out[i + 1] = even[k];
       } else {
@@ -380,10 +380,10 @@ std::array<Knot, 6> knots(const Family& f, const V& s, const V& cruise, const V&
   return out;
 }
 
-M finish_rest(LaneBlock& block, const V& T, int g) noexcept {
-  const V least = load(block.minimum + g), D = load(block.distance + g), J = load(block.max_jerk + g);
+M finish_rest(AxisBatch& block, const V& T, int g) noexcept {
+  const V lowest = load(block.minimum + g), D = load(block.distance + g), J = load(block.max_jerk + g);
   const M still = D == 0;
-  const V stretch = pick(still, 1, T / least);
+  const V stretch = pick(still, 1, T / lowest);
   const V tj = load(block.phase[0] + g) * stretch, ta = load(block.phase[1] + g) * stretch,
           tv = pick(still, T, load(block.phase[2] + g) * stretch);
   const V jerk = pick(still, 0, D / (tj * (tj + ta) * (2 * tj + ta + tv)));
@@ -395,7 +395,7 @@ M finish_rest(LaneBlock& block, const V& T, int g) noexcept {
   return !(abs(jerk) <= J * (1 + kAccepted));
 }
 
-M finish_any(LaneBlock& block, const V& T, int g, M* blocked) noexcept {
+M finish_any(AxisBatch& block, const V& T, int g, M* blocked) noexcept {
   Limits l{load(block.max_velocity + g), load(block.max_acceleration + g), load(block.max_jerk + g), {}, {}};
   l.over_J = 1 / l.J;
   l.over_JA = l.over_J / l.A;
@@ -409,21 +409,22 @@ M finish_any(LaneBlock& block, const V& T, int g, M* blocked) noexcept {
   where(fastest && rises, cruise_up) = best_cruise;
   where(fastest && !rises, s_down) = best_s;
   where(fastest && !rises, cruise_down) = best_cruise;
-  const V most = up.displacement(s_up, l) + cruise_up * l.velocity, least = -(down.displacement(s_down, l) + cruise_down * l.velocity);
-  const V size = scale + abs(least) + abs(most), tolerance = 256 * kEps * size, width = most - least;
-  *blocked = !fastest && (D > most + tolerance || D < least - tolerance);
-  V share = pick(width > 0, clamped((D - least) / width, 0, 1), 0.5);
-  where(fastest && minimum > 0, share) = pick(rises, 1, 0);
-  std::array<Knot, 6> high = knots(up, s_up, cruise_up, T, share * l.J, l), low = knots(down, s_down, cruise_down, T, (share - 1) * l.J, l);
-  const M still = D == 0 && minimum == 0, only_low = still || share == 0, only_high = still || share == 1;
+  const V highest = up.displacement(s_up, l) + cruise_up * l.velocity, lowest = -(down.displacement(s_down, l) + cruise_down * l.velocity);
+  const V size = scale + abs(lowest) + abs(highest), tolerance = 256 * kEps * size, width = highest - lowest;
+  *blocked = !fastest && (D > highest + tolerance || D < lowest - tolerance);
+  V weight = pick(width > 0, clamped((D - lowest) / width, 0, 1), 0.5);
+  where(fastest && minimum > 0, weight) = pick(rises, 1, 0);
+  std::array<Knot, 6> high = knots(up, s_up, cruise_up, T, weight * l.J, l),
+                      low = knots(down, s_down, cruise_down, T, (weight - 1) * l.J, l);
+  const M still = D == 0 && minimum == 0, only_low = still || weight == 0, only_high = still || weight == 1;
   for (std::size_t k = 0; k < 6; ++k) {
     where(only_low, high[k].time) = T;
     where(only_high, low[k].time) = T;
   }
   const std::array<Knot, 12> all = merged(high, low);
   const V v0 = load(block.velocity + g), a0 = load(block.acceleration + g);
-  V x = 0, v = v0, a = a0, jerk = (2 * share - 1) * l.J, time = 0;
-  for (std::size_t k = 0; k < kLaneSegments; ++k) {
+  V x = 0, v = v0, a = a0, jerk = (2 * weight - 1) * l.J, time = 0;
+  for (std::size_t k = 0; k < kBatchSegments; ++k) {
     const V next = k < 12 ? all[k].time : T, t = next - time;
     store(t, block.duration[k] + g);
     store(jerk, block.jerk[k] + g);
@@ -437,16 +438,16 @@ M finish_any(LaneBlock& block, const V& T, int g, M* blocked) noexcept {
   return !(abs(x - D) <= kAccepted * size && abs(v - vf) <= kAcceptedRate * l.velocity && abs(a - af) <= kAcceptedRate * l.A);
 }
 
-std::uint32_t finish(LaneBlock& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept {
+std::uint32_t finish(AxisBatch& block, const double* durations, std::uint32_t leave, std::uint32_t* blocked) noexcept {
   std::uint32_t failed = 0, stands = 0;
-  block.segments = block.rest ? 7 : kLaneSegments;
-  for (int g = 0; g < kLanes && block.lanes >> g != 0; g += kWidth) {
+  block.segments = block.rest ? 7 : kBatchSegments;
+  for (int g = 0; g < kBatchAxes && block.axis_bits >> g != 0; g += kWidth) {
     const V T(durations + g, stdx::element_aligned);
     M stopped(false);
     failed |= bits(block.rest ? finish_rest(block, T, g) : finish_any(block, T, g, &stopped)) << g;
     stands |= bits(stopped) << g;
   }
-  const std::uint32_t wanted = block.lanes & ~leave;
+  const std::uint32_t wanted = block.axis_bits & ~leave;
   *blocked = stands & wanted;
   return failed & wanted;
 }

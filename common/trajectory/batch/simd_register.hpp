@@ -17,7 +17,7 @@ using V = stdx::native_simd<double>;
 using M = V::mask_type;
 using U = stdx::native_simd<std::uint64_t>;
 constexpr int kWidth = static_cast<int>(V::size());
-static_assert(kLanes % kWidth == 0);
+static_assert(kBatchAxes % kWidth == 0);
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 

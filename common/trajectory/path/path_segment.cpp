@@ -31,7 +31,7 @@ double reached_within(double from, double most, double distance, const AxisLimit
 
 }  // namespace
 
-Leg::Leg(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds)
+PathSegment::PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds)
     : from(a), step(b - a) {
   AxisLimits l{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
   for (Eigen::Index i = 0; i < step.size(); ++i) {
@@ -42,7 +42,7 @@ Leg::Leg(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimi
     l.jerk = std::min(l.jerk, limits.jerk[i] / d);
   }
   double least = 1;
-  for (const SpeedZone& zone : speeds) least = std::min(least, zone.share);
+  for (const SpeedZone& zone : speeds) least = std::min(least, zone.scale);
   AxisLimits lowest = l;
   lowest.velocity *= least;
   if (!zoned(speeds, l) || duration > rest_to_rest_time(1, lowest)) {
@@ -67,12 +67,12 @@ Leg::Leg(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimi
 
 /// In each zone the fastest motion between the velocities at its ends; there the acceleration is 0, and the velocity is as high as both
 /// sides allow and can be left again.
-bool Leg::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
+bool PathSegment::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
   std::vector<SpeedZone> left;
   double begin = 0;
   for (const SpeedZone& zone : speeds) {
     if (!(zone.end > begin)) continue;
-    if (!left.empty() && left.back().share == zone.share)
+    if (!left.empty() && left.back().scale == zone.scale)
       left.back().end = zone.end;
     else
       left.push_back(zone);
@@ -84,22 +84,22 @@ bool Leg::zoned(const SpeedZones& speeds, const AxisLimits& limits) {
   std::vector<double> length(n), velocity(n + 1, 0.0);
   for (std::size_t k = 0; k < n; ++k) {
     length[k] = left[k].end - (k > 0 ? left[k - 1].end : 0.0);
-    if (k > 0) velocity[k] = limits.velocity * std::min(left[k - 1].share, left[k].share);
+    if (k > 0) velocity[k] = limits.velocity * std::min(left[k - 1].scale, left[k].scale);
   }
   for (std::size_t k = 1; k < n; ++k) velocity[k] = reached_within(velocity[k - 1], velocity[k], kKept * length[k - 1], limits);
   for (std::size_t k = n - 1; k > 0; --k) velocity[k] = reached_within(velocity[k + 1], velocity[k], kKept * length[k], limits);
   AxisProfile profile;
   for (std::size_t k = 0; k < n; ++k) {
     AxisLimits here = limits;
-    here.velocity *= left[k].share;
+    here.velocity *= left[k].scale;
     if (solve_axis({0, velocity[k], 0}, {length[k], velocity[k + 1], 0}, here, profile) != AxisOutcome::ok) return false;
-    zones.push_back({duration, left[k].share});
+    zones.push_back({duration, left[k].scale});
     add(profile);
   }
   return true;
 }
 
-void Leg::add(const AxisProfile& profile) {
+void PathSegment::add(const AxisProfile& profile) {
   AxisState s;
   if (!knots.empty()) {
     const Knot& last = knots.back();
@@ -112,24 +112,24 @@ void Leg::add(const AxisProfile& profile) {
   }
 }
 
-AxisState Leg::path_state(double t) const noexcept {
+AxisState PathSegment::path_state(double t) const noexcept {
   std::size_t k = 0;
   while (k + 1 < knots.size() && t >= knots[k + 1].time) ++k;
   return advanced(knots[k].state, std::clamp(t - knots[k].time, 0.0, knots[k].segment.duration), knots[k].segment.jerk);
 }
 
-void Leg::part(double begin, double end, AxisProfile& out) const noexcept {
+void PathSegment::part(double begin, double end, AxisProfile& out) const noexcept {
   for (std::size_t k = 0; k < knots.size(); ++k) {
     const double ends = k + 1 < knots.size() ? knots[k + 1].time : duration;
     out.push(std::min(end, ends) - std::max(begin, knots[k].time), knots[k].segment.jerk);
   }
 }
 
-double Leg::share(double begin, double end) const noexcept {
+double PathSegment::scale(double begin, double end) const noexcept {
   double least = 1;
   for (std::size_t k = 0; k < zones.size(); ++k) {
     const double ends = k + 1 < zones.size() ? zones[k + 1].begin : duration;
-    if (zones[k].begin <= end && begin <= ends) least = std::min(least, zones[k].share);
+    if (zones[k].begin <= end && begin <= ends) least = std::min(least, zones[k].scale);
   }
   return least;
 }

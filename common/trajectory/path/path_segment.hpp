@@ -6,7 +6,7 @@
 
 namespace handsel::detail {
 
-struct Leg {
+struct PathSegment {
   struct Knot {
     AxisState state;  ///< of s, at the start of the segment
     double time{};    ///< of the same [s]
@@ -14,7 +14,7 @@ struct Leg {
   };
   struct Zone {
     double begin{};  ///< reached then [s]
-    double share{1};
+    double scale{1};
   };
   Eigen::VectorXd from, step;  ///< q(t) = from + step * s(t), s in [0, 1]
   std::vector<Knot> knots;     ///< of s, one a segment
@@ -23,7 +23,7 @@ struct Leg {
   double slowing{};            ///< of the phase before the end without constant velocity [s]
   double starting{};           ///< of the one after the start [s]
 
-  Leg(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds = {});
+  PathSegment(const Eigen::VectorXd& a, const Eigen::VectorXd& b, const KinematicLimits& limits, const SpeedZones& speeds = {});
   AxisState path_state(double t) const noexcept;
   AxisState state(const AxisState& s, Eigen::Index axis) const noexcept {
     return {from[axis] + step[axis] * s.position, step[axis] * s.velocity, step[axis] * s.acceleration};
@@ -32,7 +32,7 @@ struct Leg {
   /// `out` is full.
   void part(double begin, double end, AxisProfile& out) const noexcept;
   /// The lowest scale of the velocity limits between two times.
-  double share(double begin, double end) const noexcept;
+  double scale(double begin, double end) const noexcept;
 
  private:
   void add(const AxisProfile& profile);

@@ -9,18 +9,18 @@ namespace handsel {
 
 namespace {
 
-int stride_of(int axes) { return (axes + detail::kLanes - 1) / detail::kLanes * detail::kLanes; }
+int stride_of(int axes) { return (axes + detail::kBatchAxes - 1) / detail::kBatchAxes * detail::kBatchAxes; }
 
 }  // namespace
 
 SegmentTable::SegmentTable(const Trajectory& trajectory)
-    : axes_(trajectory.size()), stride_(stride_of(axes_)), kernels_(&detail::lane_kernels()) {
+    : axes_(trajectory.size()), stride_(stride_of(axes_)), kernels_(&detail::batch_kernels()) {
   const Trajectory alike = split_alike(trajectory);
   const std::size_t count = alike.axes.empty() ? 0 : alike.axes[0].segments.size();
   knots_.assign(1, 0.0);
   for (std::size_t k = 0; k < count; ++k) knots_.push_back(knots_.back() + alike.axes[0].segments[k].duration);
   if (count == 0) knots_.push_back(0.0);
-  data_.assign(std::max<std::size_t>(count, 1) * 4 * static_cast<std::size_t>(stride_) / detail::kLanes, detail::Lane8{});
+  data_.assign(std::max<std::size_t>(count, 1) * 4 * static_cast<std::size_t>(stride_) / detail::kBatchAxes, detail::BatchRow{});
   for (int i = 0; i < axes_; ++i) {
     AxisState s = alike.axes[i].start;
     for (std::size_t k = 0; k < std::max<std::size_t>(count, 1); ++k) {
@@ -38,18 +38,18 @@ SegmentTable::SegmentTable(const Trajectory& trajectory)
 
 void SegmentTable::reserve(int axes, int segments) {
   knots_.reserve(static_cast<std::size_t>(segments) + 1);
-  data_.reserve(static_cast<std::size_t>(segments) * 4 * static_cast<std::size_t>(stride_of(axes)) / detail::kLanes);
+  data_.reserve(static_cast<std::size_t>(segments) * 4 * static_cast<std::size_t>(stride_of(axes)) / detail::kBatchAxes);
 }
 
 int SegmentTable::room() const noexcept {
   if (axes_ == 0 || knots_.capacity() == 0) return 0;
-  return static_cast<int>(std::min(knots_.capacity() - 1, data_.capacity() * detail::kLanes / (4 * static_cast<std::size_t>(stride_))));
+  return static_cast<int>(std::min(knots_.capacity() - 1, data_.capacity() * detail::kBatchAxes / (4 * static_cast<std::size_t>(stride_))));
 }
 
 void SegmentTable::clear(int axes) noexcept {
   axes_ = axes;
   stride_ = stride_of(axes);
-  kernels_ = &detail::lane_kernels();
+  kernels_ = &detail::batch_kernels();
   knots_.clear();
   knots_.push_back(0.0);
   data_.clear();
@@ -57,8 +57,8 @@ void SegmentTable::clear(int axes) noexcept {
 
 void SegmentTable::add(double duration, const double* x, const double* v, const double* a, const double* j) noexcept {
   knots_.push_back(knots_.back() + duration);
-  data_.resize(data_.size() + 4 * static_cast<std::size_t>(stride_) / detail::kLanes, detail::Lane8{});
-  double* row = data_.data()->value + data_.size() * detail::kLanes - 4 * static_cast<std::size_t>(stride_);
+  data_.resize(data_.size() + 4 * static_cast<std::size_t>(stride_) / detail::kBatchAxes, detail::BatchRow{});
+  double* row = data_.data()->value + data_.size() * detail::kBatchAxes - 4 * static_cast<std::size_t>(stride_);
   for (const double* part : {x, v, a, j}) {
     std::copy(part, part + axes_, row);
     row += stride_;

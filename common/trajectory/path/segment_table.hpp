@@ -43,15 +43,15 @@ class SegmentTable {
   }
   /// Returns the jerks of segment k, one an axis [rad/s^3]. Not checked.
   const double* jerks(int k) const noexcept { return row(k) + 3 * static_cast<std::size_t>(stride_); }
-  /// Returns axes() rounded up to a multiple of detail::kLanes.
+  /// Returns axes() rounded up to a multiple of detail::kBatchAxes.
   int stride() const noexcept { return stride_; }
 
  private:
   const double* row(int k) const noexcept { return data_.data()->value + static_cast<std::size_t>(k) * 4 * stride_; }
-  int axes_{}, stride_{};            // axes, and the next multiple of kLanes
-  std::vector<double> knots_;        // segments + 1
-  std::vector<detail::Lane8> data_;  // a segment: x of all axes, v, a, j
-  const detail::LaneKernels* kernels_{};
+  int axes_{}, stride_{};               // axes, and the next multiple of kBatchAxes
+  std::vector<double> knots_;           // segments + 1
+  std::vector<detail::BatchRow> data_;  // a segment: x of all axes, v, a, j
+  const detail::BatchKernels* kernels_{};
 };
 
 }  // namespace handsel

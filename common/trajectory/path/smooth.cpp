@@ -12,8 +12,8 @@ namespace handsel {
 
 namespace {
 
-using detail::Corner;
-using detail::Leg;
+using detail::PathSegment;
+using detail::WaypointBlend;
 
 constexpr double kLeastSaving = 1e-4;  // [s]
 constexpr double kFarthest = 1e9;
@@ -21,7 +21,7 @@ constexpr double kRounding = 1e-9;
 constexpr std::array<double, 4> kReaches{1.0, 0.7, 0.45, 0.25};
 
 struct Candidate {
-  CornerMethod method{CornerMethod::stop};
+  BlendMethod method{BlendMethod::stop};
   double before{}, after{}, duration{}, excess{};
   double saved() const { return before + after - duration; }
 };
@@ -34,8 +34,8 @@ std::string percent(double x) {
 }
 
 /// Every transition worth trying at a corner, best first; `why` says what stood against the others.
-std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, const SmoothSettings& settings, bool only_best,
-                                  std::string& why) {
+std::vector<Candidate> candidates(WaypointBlend& corner, const PathSegment& a, const PathSegment& b, const SmoothSettings& settings,
+                                  bool only_best, std::string& why) {
   std::vector<Candidate> found;
   double best = kLeastSaving, first_excess = 0;
   const auto keep = [&](const Candidate& c) {
@@ -52,7 +52,7 @@ std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, co
     const double shared = 0.5 * (bad + good);
     (corner.overlap_excess(shared, kRounding) <= kRounding ? good : bad) = shared;
   }
-  if (good > kLeastSaving) keep({CornerMethod::overlap, good, good, good, 0});
+  if (good > kLeastSaving) keep({BlendMethod::overlap, good, good, good, 0});
   if (!only_best) best = kLeastSaving;
   const double reach_a = std::min(settings.tau.value_or(a.slowing), a.duration / 2);
   const double reach_b = std::min(settings.tau.value_or(b.starting), b.duration / 2);
@@ -63,12 +63,12 @@ std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, co
     corner.place(before, after);
     const auto fits = [&](double T) { return corner.three_excess(T, settings.allowed_excess) <= settings.allowed_excess; };
     if (best > kLeastSaving && !fits(stop - best)) continue;
-    const double least = corner.least_duration();
+    const double least = corner.min_duration();
     if (least <= 0 || stop - least <= best) continue;
     const double excess = corner.three_excess(least, kFarthest);
     if (reach == kReaches.front()) first_excess = excess;
     if (excess <= settings.allowed_excess && settings.three_segments) {
-      keep({CornerMethod::three_segment, before, after, least, std::max(0.0, excess)});
+      keep({BlendMethod::three_segment, before, after, least, std::max(0.0, excess)});
       continue;
     }
     if (!settings.stretching) continue;
@@ -83,7 +83,7 @@ std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, co
       (fits(T) ? fitting : short_of) = T;
     }
     if (stop - fitting <= kLeastSaving) continue;
-    keep({CornerMethod::stretched, before, after, fitting, std::max(0.0, corner.three_excess(fitting, kFarthest))});
+    keep({BlendMethod::stretched, before, after, fitting, std::max(0.0, corner.three_excess(fitting, kFarthest))});
   }
   std::stable_sort(found.begin(), found.end(), [](const Candidate& x, const Candidate& y) { return x.saved() > y.saved(); });
   if (found.empty()) {
@@ -95,8 +95,8 @@ std::vector<Candidate> candidates(Corner& corner, const Leg& a, const Leg& b, co
 }
 
 /// Looks at a candidate once more, so that the corner holds its segments.
-void settle(Corner& corner, const Candidate& c) {
-  if (c.method == CornerMethod::overlap) {
+void settle(WaypointBlend& corner, const Candidate& c) {
+  if (c.method == BlendMethod::overlap) {
     corner.overlap_excess(c.before, kFarthest);
   } else {
     corner.place(c.before, c.after);
@@ -104,22 +104,22 @@ void settle(Corner& corner, const Candidate& c) {
   }
 }
 
-void add_leg(const Leg& leg, double begin, double end, Trajectory& out) {
-  for (std::size_t k = 0; k < leg.knots.size(); ++k) {
-    const double ends = k + 1 < leg.knots.size() ? leg.knots[k + 1].time : leg.duration;
-    const double lasts = std::min(end, ends) - std::max(begin, leg.knots[k].time);
+void add_path_segment(const PathSegment& path_segment, double begin, double end, Trajectory& out) {
+  for (std::size_t k = 0; k < path_segment.knots.size(); ++k) {
+    const double ends = k + 1 < path_segment.knots.size() ? path_segment.knots[k + 1].time : path_segment.duration;
+    const double lasts = std::min(end, ends) - std::max(begin, path_segment.knots[k].time);
     if (!(lasts > 0)) continue;
     for (std::size_t i = 0; i < out.axes.size(); ++i)
-      out.axes[i].segments.push_back({lasts, leg.step[static_cast<Eigen::Index>(i)] * leg.knots[k].segment.jerk});
+      out.axes[i].segments.push_back({lasts, path_segment.step[static_cast<Eigen::Index>(i)] * path_segment.knots[k].segment.jerk});
   }
 }
 
 std::string why_bad_speeds(const std::vector<SpeedZones>& speeds, std::size_t nodes) {
   if (!speeds.empty() && speeds.size() + 1 != nodes)
     return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " + std::to_string(nodes - 1);
-  for (const SpeedZones& leg : speeds)
-    for (const SpeedZone& zone : leg)
-      if (!(zone.share > 0 && zone.share <= 1 && std::isfinite(zone.end))) return "a share of the velocity limits must be in (0, 1]";
+  for (const SpeedZones& path_segment : speeds)
+    for (const SpeedZone& zone : path_segment)
+      if (!(zone.scale > 0 && zone.scale <= 1 && std::isfinite(zone.end))) return "a share of the velocity limits must be in (0, 1]";
   return {};
 }
 
@@ -139,15 +139,15 @@ std::string why_bad_nodes(const std::vector<Eigen::VectorXd>& nodes, const Smoot
 
 }  // namespace
 
-const char* name(CornerMethod method) {
+const char* name(BlendMethod method) {
   switch (method) {
-    case CornerMethod::three_segment:
+    case BlendMethod::three_segment:
       return "three_segment";
-    case CornerMethod::stretched:
+    case BlendMethod::stretched:
       return "stretched";
-    case CornerMethod::overlap:
+    case BlendMethod::overlap:
       return "overlap";
-    case CornerMethod::stop:
+    case BlendMethod::stop:
       return "stop";
   }
   return "";
@@ -158,50 +158,50 @@ Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& t
   Trajectory out;
   for (const double x : from) out.axes.push_back({{x, 0, 0}, {}});
   if (from != to) {
-    const Leg leg(from, to, limits, speeds);
-    add_leg(leg, 0, leg.duration, out);
+    const PathSegment path_segment(from, to, limits, speeds);
+    add_path_segment(path_segment, 0, path_segment.duration, out);
   }
   return out;
 }
 
 SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits, const SmoothSettings& settings,
-                    const CornerIsFree& is_free, const std::vector<SpeedZones>& speeds) {
+                    const BlendIsFree& is_free, const std::vector<SpeedZones>& speeds) {
   SmoothResult out;
   if (!(out.reason = why_bad_nodes(nodes, settings)).empty()) return out;
   if (!(out.reason = why_bad_speeds(speeds, nodes.size())).empty()) return out;
   if (!(out.reason = why_bad_limits(limits, static_cast<int>(nodes[0].size()))).empty()) return out;
-  std::vector<Leg> legs;
+  std::vector<PathSegment> path_segments;
   std::vector<int> node_of;
-  legs.reserve(nodes.size());
-  out.legs.assign(nodes.size() - 1, 0.0);
+  path_segments.reserve(nodes.size());
+  out.segment_durations.assign(nodes.size() - 1, 0.0);
   const Eigen::VectorXd* last = &nodes[0];
   for (std::size_t k = 1; k < nodes.size(); ++k) {
     if ((nodes[k] - *last).lpNorm<Eigen::Infinity>() < 1e-12) continue;
-    legs.emplace_back(*last, nodes[k], limits, speeds.empty() ? SpeedZones{} : speeds[k - 1]);
+    path_segments.emplace_back(*last, nodes[k], limits, speeds.empty() ? SpeedZones{} : speeds[k - 1]);
     node_of.push_back(static_cast<int>(k));
     last = &nodes[k];
-    out.duration_ptp += out.legs[k - 1] = legs.back().duration;
-    if (!(legs.back().duration > 0) || !std::isfinite(legs.back().duration)) {
+    out.duration_ptp += out.segment_durations[k - 1] = path_segments.back().duration;
+    if (!(path_segments.back().duration > 0) || !std::isfinite(path_segments.back().duration)) {
       out.reason = "the way to node " + std::to_string(k) + " cannot be computed with such limits";
       return out;
     }
   }
   for (const double x : nodes[0]) {
     out.trajectory.axes.push_back({{x, 0, 0}, {}});
-    out.trajectory.axes.back().segments.reserve(10 * legs.size());
+    out.trajectory.axes.back().segments.reserve(10 * path_segments.size());
   }
-  const detail::CornerLanes lanes(legs, limits);
+  const detail::SegmentBatch batch(path_segments, limits);
   double begin = 0;
-  for (std::size_t k = 0; k < legs.size(); ++k) {
-    if (k + 1 == legs.size()) {
-      add_leg(legs[k], begin, legs[k].duration, out.trajectory);
+  for (std::size_t k = 0; k < path_segments.size(); ++k) {
+    if (k + 1 == path_segments.size()) {
+      add_path_segment(path_segments[k], begin, path_segments[k].duration, out.trajectory);
       break;
     }
-    CornerReport report;
+    BlendReport report;
     report.node = node_of[k];
-    Corner corner(legs, k, lanes, limits);
+    WaypointBlend corner(path_segments, k, batch, limits);
     Candidate taken;
-    for (const Candidate& c : candidates(corner, legs[k], legs[k + 1], settings, !is_free, report.reason)) {
+    for (const Candidate& c : candidates(corner, path_segments[k], path_segments[k + 1], settings, !is_free, report.reason)) {
       settle(corner, c);
       if (is_free && !is_free(corner.piece())) {
         report.reason = std::string(name(c.method)) + " collides";
@@ -215,8 +215,8 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
       break;
     }
     out.corners.push_back(std::move(report));
-    add_leg(legs[k], begin, legs[k].duration - taken.before, out.trajectory);
-    if (taken.method != CornerMethod::stop) corner.add_to(out.trajectory);
+    add_path_segment(path_segments[k], begin, path_segments[k].duration - taken.before, out.trajectory);
+    if (taken.method != BlendMethod::stop) corner.add_to(out.trajectory);
     begin = taken.after;
   }
   return out;

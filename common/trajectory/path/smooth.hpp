@@ -15,7 +15,7 @@ namespace handsel {
 struct SpeedZone {
   /// Part of the distance from node to node; grows from zone to zone, the last is 1.
   double end{1};
-  double share{1};  ///< scale of the velocity limits, (0, 1]
+  double scale{1};  ///< scale of the velocity limits, (0, 1]
 };
 using SpeedZones = std::vector<SpeedZone>;  ///< of a path segment; none: the limits as they are
 
@@ -26,7 +26,7 @@ using SpeedZones = std::vector<SpeedZone>;  ///< of a path segment; none: the li
 Trajectory straight_motion(const Eigen::VectorXd& from, const Eigen::VectorXd& to, const KinematicLimits& limits,
                            const SpeedZones& speeds = {});
 
-enum class CornerMethod {
+enum class BlendMethod {
   /// Minimum-time transition, three segments an axis, at most the allowed excess (the chapter's
   /// rule).
   three_segment,
@@ -37,14 +37,14 @@ enum class CornerMethod {
   stop,  ///< the stop at the node is kept
 };
 /// Returns the enumerator as text: "three_segment".
-const char* name(CornerMethod);
+const char* name(BlendMethod);
 
-struct CornerReport {
-  int node{};                               ///< index into the nodes given
-  CornerMethod method{CornerMethod::stop};  ///< transition taken
-  double excess{};                          ///< beyond the limits, 0.1 = 10 %; never negative
-  double saved{};                           ///< against the stop [s]
-  std::string reason;                       ///< why the stop is kept; empty otherwise
+struct BlendReport {
+  int node{};                             ///< index into the nodes given
+  BlendMethod method{BlendMethod::stop};  ///< transition taken
+  double excess{};                        ///< beyond the limits, 0.1 = 10 %; never negative
+  double saved{};                         ///< against the stop [s]
+  std::string reason;                     ///< why the stop is kept; empty otherwise
 };
 
 struct SmoothSettings {
@@ -57,25 +57,25 @@ struct SmoothSettings {
 };
 
 struct SmoothResult {
-  Trajectory trajectory;              ///< from the first node to the last, at rest at both
-  std::string reason;                 ///< why there is none; empty when there is
-  double duration_ptp{};              ///< with a stop at each node [s]
-  std::vector<CornerReport> corners;  ///< of each inner node, in order; of equal neighbours one
+  Trajectory trajectory;             ///< from the first node to the last, at rest at both
+  std::string reason;                ///< why there is none; empty when there is
+  double duration_ptp{};             ///< with a stop at each node [s]
+  std::vector<BlendReport> corners;  ///< of each inner node, in order; of equal neighbours one
   /// Duration of the motion to each node but the first, with a stop there [s]; 0 for equal
   /// neighbours.
-  std::vector<double> legs;
+  std::vector<double> segment_durations;
   /// Returns whether there is a trajectory.
   bool ok() const { return reason.empty(); }
 };
 
 /// Says whether the robot may follow this piece of trajectory (all axes of the nodes).
-using CornerIsFree = std::function<bool(const Trajectory& corner)>;
+using BlendIsFree = std::function<bool(const Trajectory& corner)>;
 
 /// Of the transitions possible at a node the one that saves most time and is free. Equal neighbours
 /// in `nodes` are taken as one. `speeds`: zones of the path segment to each node but the first, or
 /// empty; a transition keeps the lowest scale of all the zones it reaches into (own method: no zone
 /// is exceeded).
 SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLimits& limits, const SmoothSettings& settings = {},
-                    const CornerIsFree& is_free = {}, const std::vector<SpeedZones>& speeds = {});
+                    const BlendIsFree& is_free = {}, const std::vector<SpeedZones>& speeds = {});
 
 }  // namespace handsel

@@ -18,13 +18,13 @@ void carry(const Blend& blend, AxisState s, Blend::Motion& m) noexcept {
 }
 }  // namespace
 
-CornerLanes::CornerLanes(const std::vector<Leg>& legs, const KinematicLimits& limits)
-    : legs_(legs.size()),
-      stride_((static_cast<std::size_t>(limits.velocity.size()) + kLanes - 1) / kLanes * kLanes),
-      values_((legs.size() + 3) * stride_ / kLanes) {
+SegmentBatch::SegmentBatch(const std::vector<PathSegment>& path_segments, const KinematicLimits& limits)
+    : path_segments_(path_segments.size()),
+      stride_((static_cast<std::size_t>(limits.velocity.size()) + kBatchAxes - 1) / kBatchAxes * kBatchAxes),
+      values_((path_segments.size() + 3) * stride_ / kBatchAxes) {
   double* at = values_.data()->value;
-  for (const Leg& leg : legs) {
-    std::copy(leg.step.begin(), leg.step.end(), at);
+  for (const PathSegment& path_segment : path_segments) {
+    std::copy(path_segment.step.begin(), path_segment.step.end(), at);
     at += stride_;
   }
   for (const Eigen::VectorXd* all : {&limits.velocity, &limits.acceleration, &limits.jerk}) {
@@ -33,42 +33,43 @@ CornerLanes::CornerLanes(const std::vector<Leg>& legs, const KinematicLimits& li
   }
 }
 
-Corner::Corner(const std::vector<Leg>& legs, std::size_t first, const CornerLanes& lanes, const KinematicLimits& limits)
-    : a_(legs[first]),
-      b_(legs[first + 1]),
-      step_a_(lanes.step(first)),
-      step_b_(lanes.step(first + 1)),
-      inverse_(lanes.inverse_limits()),
+WaypointBlend::WaypointBlend(const std::vector<PathSegment>& path_segments, std::size_t first, const SegmentBatch& batch,
+                             const KinematicLimits& limits)
+    : a_(path_segments[first]),
+      b_(path_segments[first + 1]),
+      step_a_(batch.step(first)),
+      step_b_(batch.step(first + 1)),
+      inverse_(batch.inverse_limits()),
       limits_(limits),
       axes_(static_cast<int>(a_.from.size())),
-      stride_(lanes.stride()) {
+      stride_(batch.stride()) {
   if (a_.zones.empty() && b_.zones.empty()) return;
-  scaled_.resize(static_cast<std::size_t>(3 * stride_ / kLanes));
+  scaled_.resize(static_cast<std::size_t>(3 * stride_ / kBatchAxes));
   std::copy(inverse_, inverse_ + 3 * stride_, scaled_.data()->value);
 }
 
-void Corner::keep_share(double before, double after) noexcept {
+void WaypointBlend::keep_scale(double before, double after) noexcept {
   if (a_.zones.empty() && b_.zones.empty()) return;
-  const double share = std::min(a_.share(a_.duration - before, a_.duration), b_.share(0, after));
-  if (share == share_) return;
-  share_ = share;
+  const double scale = std::min(a_.scale(a_.duration - before, a_.duration), b_.scale(0, after));
+  if (scale == scale_) return;
+  scale_ = scale;
   double* to = scaled_.data()->value;
-  for (int i = 0; i < stride_; ++i) to[i] = inverse_[i] / share;
+  for (int i = 0; i < stride_; ++i) to[i] = inverse_[i] / scale;
 }
 
-void Corner::place(double before, double after) noexcept {
-  keep_share(before, after);
+void WaypointBlend::place(double before, double after) noexcept {
+  keep_scale(before, after);
   left_ = a_.path_state(a_.duration - before);
   joined_ = b_.path_state(after);
 }
 
-double Corner::least_duration() noexcept {
-  LaneArray zero{}, v, a, xf, vf, af, V{};
-  LaneBlock block;
+double WaypointBlend::min_duration() noexcept {
+  BatchArray zero{}, v, a, xf, vf, af, V{};
+  AxisBatch block;
   double least = 0;
-  for (int first = 0; first < axes_; first += kLanes) {
-    const int here = std::min(kLanes, axes_ - first);
-    for (int i = 0; i < kLanes; ++i) {
+  for (int first = 0; first < axes_; first += kBatchAxes) {
+    const int here = std::min(kBatchAxes, axes_ - first);
+    for (int i = 0; i < kBatchAxes; ++i) {
       const double wa = step_a_[first + i], wb = step_b_[first + i];
       v[i] = wa * left_.velocity;
       a[i] = wa * left_.acceleration;
@@ -77,8 +78,8 @@ double Corner::least_duration() noexcept {
       af[i] = wb * joined_.acceleration;
     }
     const double *A = limits_.acceleration.data() + first, *J = limits_.jerk.data() + first;
-    for (int i = 0; i < here; ++i) V[i] = share_ * limits_.velocity[first + i];
-    const std::uint32_t odd = lane_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
+    for (int i = 0; i < here; ++i) V[i] = scale_ * limits_.velocity[first + i];
+    const std::uint32_t odd = batch_kernels().prepare({zero, v, a, xf, vf, af, V, A, J}, 0, here, block);
     least = std::max(least, *std::max_element(block.minimum, block.minimum + here));
     for (std::uint32_t left = odd; left != 0; left &= left - 1) {
       const int i = std::countr_zero(left);
@@ -90,7 +91,7 @@ double Corner::least_duration() noexcept {
   return least;
 }
 
-double Corner::three_excess(double duration, double enough) noexcept {
+double WaypointBlend::three_excess(double duration, double enough) noexcept {
   const auto a = three_segment(left_, {1, 0, 0}, duration), b = three_segment({0, 0, 0}, joined_, duration);
   blend_.count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -104,12 +105,12 @@ double Corner::three_excess(double duration, double enough) noexcept {
   return excess(enough);
 }
 
-double Corner::overlap_excess(double shared, double enough) noexcept {
+double WaypointBlend::overlap_excess(double shared, double enough) noexcept {
   AxisProfile p, q;
   a_.part(a_.duration - shared, a_.duration, p);
   b_.part(0, shared, q);
   if (p.count + q.count > Blend::kSegments) return enough + 1;
-  keep_share(shared, shared);
+  keep_scale(shared, shared);
   blend_.count = 0;
   double left_p = p.segments[0].duration, left_q = q.segments[0].duration;
   for (int i = 0, k = 0; i < p.count && k < q.count;) {
@@ -128,11 +129,11 @@ double Corner::overlap_excess(double shared, double enough) noexcept {
   return excess(enough);
 }
 
-double Corner::excess(double enough) const noexcept {
-  return lane_kernels().blend_share(blend_, step_a_, step_b_, scaled_.empty() ? inverse_ : scaled_.data()->value, stride_, 1 + enough) - 1;
+double WaypointBlend::excess(double enough) const noexcept {
+  return batch_kernels().blend_ratio(blend_, step_a_, step_b_, scaled_.empty() ? inverse_ : scaled_.data()->value, stride_, 1 + enough) - 1;
 }
 
-void Corner::add_to(Trajectory& out) const {
+void WaypointBlend::add_to(Trajectory& out) const {
   for (int i = 0; i < axes_; ++i) {
     for (int k = 0; k < blend_.count; ++k) {
       out.axes[static_cast<std::size_t>(i)].segments.push_back(
@@ -141,7 +142,7 @@ void Corner::add_to(Trajectory& out) const {
   }
 }
 
-Trajectory Corner::piece() const {
+Trajectory WaypointBlend::piece() const {
   Trajectory out;
   for (int i = 0; i < axes_; ++i) out.axes.push_back({a_.state(from_, i), {}});
   add_to(out);

@@ -97,7 +97,7 @@ std::string Choice::why_none(const GraspList& list) const {
   return why;
 }
 
-GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
+GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> kit, ObjectLibrary library,
                            const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
     : robot_(std::move(robot)), mobile_(std::move(mobile)), kit_(std::move(kit)), library_(std::move(library)), settings_(settings) {
   arm_ = &robot_->require_group("arm");

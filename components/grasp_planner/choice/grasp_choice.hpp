@@ -104,7 +104,7 @@ class GraspChooser {
  public:
   /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not
   /// those of the hand description. `mobile`: the robot on its platform (on_platform), or nullptr.
-  GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandKit> kit, ObjectLibrary library,
+  GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> kit, ObjectLibrary library,
                const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile = nullptr);
 
   /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may
@@ -125,7 +125,7 @@ class GraspChooser {
                      const std::function<bool()>& cancelled, std::vector<Found>& found) const;
 
   std::shared_ptr<const RobotModel> robot_, mobile_;
-  std::shared_ptr<const HandKit> kit_;
+  std::shared_ptr<const HandGeometry> kit_;
   ObjectLibrary library_;
   ChoiceSettings settings_;
   const Group* arm_{};

@@ -13,25 +13,25 @@ std::vector<FingerChain> make_chains(const HandModel& hand) {
 
 }  // namespace
 
-HandKit::HandKit(const HandModel& hand_model) : hand(hand_model), chains(make_chains(hand)), shape(hand, chains) {}
+HandGeometry::HandGeometry(const HandModel& hand_model) : hand(hand_model), chains(make_chains(hand)), shape(hand, chains) {}
 
-FingerWorkspaces make_workspaces(const HandKit& kit, const WorkspaceSettings& settings) {
+FingerWorkspaces make_workspaces(const HandGeometry& kit, const WorkspaceSettings& settings) {
   FingerWorkspaces workspaces;
   for (const FingerChain& c : kit.chains) workspaces.emplace_back(kit.hand, c, settings);
   return workspaces;
 }
 
-void HandKit::forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const {
+void HandGeometry::forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const {
   T_hand_step.resize(chains.size());
   for (std::size_t f = 0; f < chains.size(); ++f) chains[f].forward(q, T_hand_step[f]);
 }
 
-bool HandKit::shared(int axis) const {
+bool HandGeometry::shared(int axis) const {
   return std::count_if(hand.fingers().begin(), hand.fingers().end(),
                        [axis](const Finger& f) { return std::find(f.axes.begin(), f.axes.end(), axis) != f.axes.end(); }) > 1;
 }
 
-double HandKit::tip_radius() const {
+double HandGeometry::tip_radius() const {
   double radius = 0;
   for (const FingerChain& c : chains) radius = std::max(radius, c.tip_radius());
   return radius;

@@ -10,8 +10,8 @@
 
 namespace handsel::grasp_planner {
 
-struct HandKit {
-  explicit HandKit(const HandModel& hand_model);
+struct HandGeometry {
+  explicit HandGeometry(const HandModel& hand_model);
 
   /// Computes the poses of the moving joints of every finger for the configuration q of the hand.
   void forward(const Vector& q, std::vector<std::vector<Pose>>& T_hand_step) const;
@@ -28,6 +28,6 @@ struct HandKit {
 /// One a finger, in their order.
 using FingerWorkspaces = std::vector<FingerWorkspace>;
 /// Samples the workspace of each finger of the hand.
-FingerWorkspaces make_workspaces(const HandKit& kit, const WorkspaceSettings& settings = {});
+FingerWorkspaces make_workspaces(const HandGeometry& kit, const WorkspaceSettings& settings = {});
 
 }  // namespace handsel::grasp_planner

@@ -28,7 +28,8 @@ bool plausible(const FingerWorkspace::Seed& seed, const Vector3& normal) {
 
 }  // namespace
 
-FrameSearch::FrameSearch(const HandKit& kit, const FingerWorkspaces& workspaces, const Graspable& object, const GraspListSettings& settings)
+FrameSearch::FrameSearch(const HandGeometry& kit, const FingerWorkspaces& workspaces, const Graspable& object,
+                         const GraspListSettings& settings)
     : kit_(kit), workspaces_(workspaces), object_(object), settings_(settings), seen_(object.points().size(), 0) {}
 
 void FrameSearch::candidates(int finger, const Pose& T_object_hand, std::vector<std::uint32_t>& points) {

@@ -19,7 +19,7 @@ struct FingerContact {
 
 class FrameSearch {
  public:
-  FrameSearch(const HandKit& kit, const FingerWorkspaces& workspaces, const Graspable& object, const GraspListSettings& settings);
+  FrameSearch(const HandGeometry& kit, const FingerWorkspaces& workspaces, const Graspable& object, const GraspListSettings& settings);
 
   /// Points of the object a finger's workspace covers with the hand at this pose: those well inside
   /// first.
@@ -38,7 +38,7 @@ class FrameSearch {
   bool holds(int finger, const Pose& T_object_hand, const SurfacePoint& place, GraspList& counters, FingerContact& out);
   bool judge(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out);
 
-  const HandKit& kit_;
+  const HandGeometry& kit_;
   const FingerWorkspaces& workspaces_;
   const Graspable& object_;
   const GraspListSettings& settings_;

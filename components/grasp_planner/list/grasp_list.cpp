@@ -98,7 +98,7 @@ std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSett
 }
 
 struct GraspLister::Impl {
-  Impl(std::shared_ptr<const HandKit> k, std::shared_ptr<const FingerWorkspaces> w, std::shared_ptr<const Graspable> o,
+  Impl(std::shared_ptr<const HandGeometry> k, std::shared_ptr<const FingerWorkspaces> w, std::shared_ptr<const Graspable> o,
        const GraspListSettings& s)
       : kit(std::move(k)), workspaces(std::move(w)), object(std::move(o)), settings(s), search(*kit, *workspaces, *object, settings) {
     positions = uniform_positions(object->box(), position_count(object->box(), settings));
@@ -358,7 +358,7 @@ struct GraspLister::Impl {
     }
   }
 
-  std::shared_ptr<const HandKit> kit;
+  std::shared_ptr<const HandGeometry> kit;
   std::shared_ptr<const FingerWorkspaces> workspaces;
   std::shared_ptr<const Graspable> object;
   GraspListSettings settings;
@@ -375,7 +375,7 @@ struct GraspLister::Impl {
   GraspList out;
 };
 
-GraspLister::GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspLister::GraspLister(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
                          std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun)
     : impl_(std::make_unique<Impl>(std::move(kit), std::move(workspaces), std::move(object), settings)) {
   if (begun.frames > 0) impl_->out = std::move(begun);
@@ -402,7 +402,7 @@ bool GraspLister::advance(std::uint64_t count) {
 
 GraspList GraspLister::list() const { return merged({impl_->out}); }
 
-std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings) {
+std::uint64_t frame_count(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings) {
   if (kit.hand.pinches()) return PinchSearch(kit, object, settings).frames();
   return uniform_positions(object.box(), position_count(object.box(), settings)).size() * std::uint64_t{settings.orientations};
 }
@@ -423,7 +423,7 @@ GraspList merged(std::vector<GraspList> parts) {
   return out;
 }
 
-GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspList list_grasps(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
                       std::shared_ptr<const Graspable> object, const GraspListSettings& settings, const std::function<bool()>& cancelled,
                       GraspList begun) {
   GraspLister lister(std::move(kit), std::move(workspaces), std::move(object), settings, std::move(begun));

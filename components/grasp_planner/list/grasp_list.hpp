@@ -91,7 +91,7 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
 std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings);
 
 /// Returns how many frames these settings give for a hand on an object.
-std::uint64_t frame_count(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
+std::uint64_t frame_count(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings);
 
 /// Returns lists of different frames of the same hand and object as one.
 GraspList merged(std::vector<GraspList> parts);
@@ -100,7 +100,7 @@ class GraspLister {
  public:
   /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is
   /// continued. Empty: from the first frame.
-  GraspLister(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+  GraspLister(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
               std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun = {});
   ~GraspLister();
   GraspLister(GraspLister&&) noexcept;
@@ -122,7 +122,7 @@ class GraspLister {
 };
 
 /// All frames at once; `cancelled` is asked now and then.
-GraspList list_grasps(std::shared_ptr<const HandKit> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspList list_grasps(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
                       std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
                       const std::function<bool()>& cancelled = {}, GraspList begun = {});
 

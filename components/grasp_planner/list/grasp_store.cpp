@@ -178,7 +178,7 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
                          s.open_clearance,
                          s.free_distance,
                          s.grip.max_normal,
-                         s.grip.friction_share,
+                         s.grip.friction_fraction,
                          s.grip.acceleration,
                          static_cast<double>(s.grip.edges)}) {
     h.add(v);

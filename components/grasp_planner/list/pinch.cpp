@@ -20,7 +20,7 @@ constexpr double kGolden = 0.6180339887498949;
 
 }  // namespace
 
-PinchMotion::PinchMotion(const HandKit& kit) : kit_(kit) {
+PinchMotion::PinchMotion(const HandGeometry& kit) : kit_(kit) {
   const Vector &lower = kit.hand.lower_contact(), &upper = kit.hand.upper_contact();
   const Vector middle = 0.5 * (lower + upper);
   open_ = closed_ = middle;
@@ -56,7 +56,7 @@ std::optional<Vector> PinchMotion::at_gap(double wanted) const {
   return posture(0.5 * (open + closed));
 }
 
-PinchSearch::PinchSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings)
+PinchSearch::PinchSearch(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings)
     : kit_(kit), object_(object), settings_(settings), motion_(kit) {
   const std::uint64_t all = object.points().size();
   places_ = std::clamp<std::uint64_t>(std::uint64_t{position_count(object.box(), settings)} * settings.orientations / kTurns, 1, all);

@@ -13,7 +13,7 @@ namespace handsel::grasp_planner {
 /// narrowest (1).
 class PinchMotion {
  public:
-  explicit PinchMotion(const HandKit& kit);
+  explicit PinchMotion(const HandGeometry& kit);
 
   /// Returns the configuration of all hand axes. `closed`: 0 at the widest opening, 1 at the
   /// narrowest.
@@ -29,14 +29,14 @@ class PinchMotion {
   Pose T_hand_pad(std::size_t finger, const std::vector<Pose>& T_hand_step) const;
 
  private:
-  const HandKit& kit_;
+  const HandGeometry& kit_;
   Vector open_, closed_;
   double widest_{};
 };
 
 class PinchSearch {
  public:
-  PinchSearch(const HandKit& kit, const Graspable& object, const GraspListSettings& settings);
+  PinchSearch(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings);
 
   /// Returns the number of frames: places of the surface times turns of the hand about the
   /// surface's normal; as many as the settings' positions and orientations, or fewer.
@@ -61,7 +61,7 @@ class PinchSearch {
                      GraspList& counters) const;
   void squeeze(Found& found, std::size_t most_on_a_pad) const;
 
-  const HandKit& kit_;
+  const HandGeometry& kit_;
   const Graspable& object_;
   const GraspListSettings& settings_;
   PinchMotion motion_;

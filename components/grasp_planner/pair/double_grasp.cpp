@@ -183,7 +183,7 @@ double posture_score(const RobotModel& robot, const Group& arm, const Vector& ar
   double sum = 0;
   for (std::size_t i = 0; i < arm.axes.size(); ++i) {
     const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[i])];
-    sum += std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot.rest_posture()[arm.axes[i]]) / (axis.upper - axis.lower);
+    sum += std::abs(arm_q[static_cast<Eigen::Index>(i)] - robot.rest_configuration()[arm.axes[i]]) / (axis.upper - axis.lower);
   }
   return 1 - sum / static_cast<double>(arm.axes.size());
 }

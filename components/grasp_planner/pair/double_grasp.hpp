@@ -11,8 +11,8 @@ namespace handsel::grasp_planner {
 
 /// One hand's side of a double grasp.
 struct HandSide {
-  const HandKit* kit{};     ///< geometry of the hand
-  const GraspList* list{};  ///< grasps of the hand on the object
+  const HandGeometry* kit{};  ///< geometry of the hand
+  const GraspList* list{};    ///< grasps of the hand on the object
   /// How naturally the arm reaches each grasp, one a grasp of the list, the higher the better
   /// (posture_scores()); below 0: not at all, such grasps are left out. Empty: not asked.
   std::vector<double> posture{};

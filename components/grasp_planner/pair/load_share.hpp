@@ -12,8 +12,8 @@ namespace handsel::grasp_planner {
 
 /// A hand and its grasp of the load.
 struct BearingHand {
-  const HandKit* kit{};  ///< geometry of the hand
-  const Grasp* grasp{};  ///< its grasp of the load
+  const HandGeometry* kit{};  ///< geometry of the hand
+  const Grasp* grasp{};       ///< its grasp of the load
 };
 
 /// What one of them has to do.

@@ -4,7 +4,7 @@
 
 namespace handsel::grasp_planner {
 
-GraspBook::GraspBook(std::shared_ptr<const HandKit> kit, const GraspListSettings& settings, GraspStore store)
+GraspBook::GraspBook(std::shared_ptr<const HandGeometry> kit, const GraspListSettings& settings, GraspStore store)
     : kit_(std::move(kit)), settings_(settings), store_(std::move(store)) {}
 
 std::shared_ptr<const GraspPage> GraspBook::page(const ObjectModel& object, const std::function<bool()>& cancelled) {
@@ -25,7 +25,7 @@ std::shared_ptr<const GraspPage> GraspBook::page(const ObjectModel& object, cons
   return page;
 }
 
-TransferBook::TransferBook(std::shared_ptr<const HandKit> robot, std::shared_ptr<const HandKit> taker,
+TransferBook::TransferBook(std::shared_ptr<const HandGeometry> robot, std::shared_ptr<const HandGeometry> taker,
                            const GraspListSettings& taker_settings, GraspStore store)
     : robot_(std::move(robot)), taker_(taker), book_(std::move(taker), taker_settings, std::move(store)) {}
 

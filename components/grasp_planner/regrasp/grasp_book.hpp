@@ -20,14 +20,14 @@ struct GraspPage {
 
 class GraspBook {
  public:
-  GraspBook(std::shared_ptr<const HandKit> kit, const GraspListSettings& settings, GraspStore store);
+  GraspBook(std::shared_ptr<const HandGeometry> kit, const GraspListSettings& settings, GraspStore store);
 
   /// nullptr when cancelled. Throws ConfigError when the object cannot be grasped by any hand (its
   /// mesh).
   std::shared_ptr<const GraspPage> page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
 
  private:
-  std::shared_ptr<const HandKit> kit_;
+  std::shared_ptr<const HandGeometry> kit_;
   GraspListSettings settings_;
   GraspStore store_;
   std::shared_ptr<const FingerWorkspaces> workspaces_;
@@ -38,8 +38,8 @@ class GraspBook {
 /// for. For one thread at a time.
 class TransferBook {
  public:
-  TransferBook(std::shared_ptr<const HandKit> robot, std::shared_ptr<const HandKit> taker, const GraspListSettings& taker_settings,
-               GraspStore store);
+  TransferBook(std::shared_ptr<const HandGeometry> robot, std::shared_ptr<const HandGeometry> taker,
+               const GraspListSettings& taker_settings, GraspStore store);
 
   /// `page`: of the robot's hand. nullptr when cancelled.
   std::shared_ptr<const TransferTable> table(const ObjectModel& object, const GraspPage& page, const std::function<bool()>& cancelled = {});
@@ -49,7 +49,7 @@ class TransferBook {
   std::shared_ptr<const GraspPage> taker_page(const ObjectModel& object, const std::function<bool()>& cancelled = {});
 
  private:
-  std::shared_ptr<const HandKit> robot_, taker_;
+  std::shared_ptr<const HandGeometry> robot_, taker_;
   GraspBook book_;
   std::map<std::string, std::shared_ptr<const TransferTable>> tables_;
 };

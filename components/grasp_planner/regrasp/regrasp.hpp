@@ -19,9 +19,9 @@ namespace handsel::grasp_planner {
 
 /// An arm with the grasps of its hand on the object.
 struct RegraspArm {
-  Manipulator arm;          ///< groups of arm and hand in the robot model
-  const HandKit* kit{};     ///< geometry of the hand of this arm; must outlive this struct
-  const GraspList* list{};  ///< grasps of that hand on the object; must outlive this struct
+  Manipulator arm;            ///< groups of arm and hand in the robot model
+  const HandGeometry* kit{};  ///< geometry of the hand of this arm; must outlive this struct
+  const GraspList* list{};    ///< grasps of that hand on the object; must outlive this struct
 };
 
 /// One hand holds the object, or it stands somewhere.
@@ -82,8 +82,8 @@ class RegraspPlanner {
  public:
   /// `arms`: one or two. The scene's boxes are obstacles; its objects are too, but the one with the
   /// id `object_id`.
-  RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object,
-                 ObjectLibrary library, const Scene& scene, const std::string& object_id);
+  RegraspPlanner(const RobotModel& robot, std::vector<RegraspArm> arms, const Graspable& object, ObjectLibrary library, const Scene& scene,
+                 const std::string& object_id);
   ~RegraspPlanner();
 
   /// Replaces the settings, which are the defaults before, and forgets what was found.

@@ -137,7 +137,7 @@ MotionSpec reach_along(const Parts& parts, const std::string& object, const Gras
 Vector opening(const Parts& parts) {
   const auto& grasp = parts.held.grasp();
   return grasp ? grasp->pregrasp_joints
-               : RobotModel::part(parts.arm.robot().rest_posture(), parts.arm.fingers());
+               : RobotModel::part(parts.arm.robot().rest_configuration(), parts.arm.fingers());
 }
 
 bool is_held_by_robot(const Parts& parts, const std::string& object) {

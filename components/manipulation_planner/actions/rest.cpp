@@ -14,7 +14,7 @@ constexpr double kAtRest =
 
 Routine<Outcome> rest(Parts& parts) {
   const Group& arm = parts.arm.group();
-  const Vector at_rest = RobotModel::part(parts.arm.robot().rest_posture(), arm);
+  const Vector at_rest = RobotModel::part(parts.arm.robot().rest_configuration(), arm);
   MotionSpec motion;
   motion.phase = ActionPhase::to_rest;
   motion.speed = parts.held.is_holding() ? parts.settings.carry_speed() : 1.0;
@@ -31,8 +31,8 @@ Routine<Outcome> rest_others(Parts& parts) {
   const std::string used = parts.arm.group().name;
   for (const Manipulator& other : parts.arm.manipulators()) {
     if (other.arm == nullptr || other.name == used) continue;
-    const Vector off =
-        RobotModel::part(parts.now.set_point() - parts.arm.robot().rest_posture(), *other.arm);
+    const Vector off = RobotModel::part(
+        parts.now.set_point() - parts.arm.robot().rest_configuration(), *other.arm);
     if (off.cwiseAbs().maxCoeff() < kAtRest) continue;
     const std::optional<Grasp> grasp = parts.held.grasp();
     Outcome done = co_await use_arm(parts, other.name);

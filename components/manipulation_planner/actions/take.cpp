@@ -140,7 +140,7 @@ Routine<Outcome> retreat_from_offer(Parts& parts, const Offer& offer) {
   if (held == nullptr || (is_clear && is_far(held->T_world_object.translation())))
     co_return Outcome{};
   MotionSpec next;
-  next.goals = {RobotModel::part(parts.arm.robot().rest_posture(), parts.arm.group())};
+  next.goals = {RobotModel::part(parts.arm.robot().rest_configuration(), parts.arm.group())};
   next.allowed = {offer.object};
   Outcome drawn = co_await retreat_from(parts, offer.giver, next);
   if (!drawn.good) parts.refuse("drawing back", drawn.reason);

@@ -46,7 +46,7 @@ std::vector<Vector> OfferArea::clear_configurations(const Person& person) const 
     Vector joints;
     double clearance, from_rest;
   };
-  const Vector q_rest = arm_.robot().rest_posture();
+  const Vector q_rest = arm_.robot().rest_configuration();
   const Pose T_rest = now_.T_world_base() * arm_.robot().link_pose(q_rest, arm_.palm());
   const Vector3 p_torso =
       person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;

@@ -65,7 +65,7 @@ class OnlineReplanner {
   PlanningSnapshot snapshot(const MotionSpec& motion, const SwitchPoint& point) const;
 
   Parts& parts_;
-  Pace period_;
+  AdvisedPeriod period_;
   double cost_gain_{1};
   std::shared_ptr<HumanCost> cost_;
   ReplanCounts counts_;

@@ -38,8 +38,8 @@ std::vector<Pose> free_places(const PlacingScene& in, const std::string& object,
   const ArmReach reach = settings.reach ? *settings.reach : arm_reach(robot);
   if (model == nullptr || reach.shoulder < 0) return {};
   const double radius = footprint(model, {});
-  const Vector& q =
-      scene.robot_position.size() == robot.dof() ? scene.robot_position : robot.rest_posture();
+  const Vector& q = scene.robot_position.size() == robot.dof() ? scene.robot_position
+                                                               : robot.rest_configuration();
   const Vector3 p_shoulder =
       (scene.T_world_base * robot.link_pose(q, reach.shoulder)).translation();
   const double top = surface.size.z() / 2;

@@ -89,7 +89,7 @@ std::string ArmMotion::switch_to(const TrajectoryCommand& command, const MotionS
   const double reach = before_end ? settings_.switch_reach : settings_.start_tolerance;
   std::string reason = runner_.switch_at(leave, command.trajectory, reach);
   if (!reason.empty()) return reason;
-  const PathPiece piece = piece_of(command, runner_.left_at(), runner_.offset());
+  const PathPiece piece = piece_of(command, runner_.switched_at(), runner_.offset());
   queue_.switch_to(piece, leave, runner_.time() - before);
   queue_.find(runner_.time());
   return {};

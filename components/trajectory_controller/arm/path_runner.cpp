@@ -64,7 +64,7 @@ std::string PathRunner::why_out_of_bounds() const {
   const SegmentTable& path = law_.path();
   MotionState3 at = rest_state(Eigen::VectorXd::Zero(axes()));
   const double joins = offset() + law_.joined_at();
-  for (int k = path.find(law_.left_at(), 0), cursor = k; k < path.segments() && path.knot(k) < joins; ++k) {
+  for (int k = path.find(law_.switched_at(), 0), cursor = k; k < path.segments() && path.knot(k) < joins; ++k) {
     path.evaluate(path.knot(k), cursor = k, at);
     for (Eigen::Index i = 0; i < axes(); ++i) {
       if (!(limits_.lower[i] < limits_.upper[i])) continue;

@@ -51,7 +51,7 @@ class PathRunner {
   /// Value of time() at the beginning of the trajectory that was given last [s].
   double offset() const noexcept { return law_.time() - law_.own_time(); }
   /// Switch point from the trajectory before, as a value of time() [s].
-  double left_at() const noexcept { return law_.left_at(); }
+  double switched_at() const noexcept { return law_.switched_at(); }
   /// Speed factor in force, alpha, in [-1, 1]; negative: back along the path.
   double factor() const noexcept { return law_.alpha(); }
   /// Duration of the whole path at full speed [s]; 0 before the first start.
@@ -70,7 +70,7 @@ class PathRunner {
 
   double dt_;
   PathLimits limits_;
-  TimeLaw law_;
+  TimeScaling law_;
   mutable Trajectory path_;  // as law_ has it, unless stale
   mutable bool stale_{};
   double shift_{};

@@ -32,7 +32,7 @@ void ObservedPeople::end_exemption() noexcept {
 }
 
 void ObservedPeople::refresh() {
-  Exception exemption;
+  SeparationExemption exemption;
   exemption.person = partner_;
   prepare(people_, exemption, unknown_after_, capsules_);
 }

@@ -6,7 +6,7 @@
 
 namespace handsel::trajectory_controller {
 
-void prepare(const HumanState& people, const Exception& exception, double unknown_after, PersonCapsules& out) {
+void prepare(const HumanState& people, const SeparationExemption& exception, double unknown_after, PersonCapsules& out) {
   out.capsules.clear();
   out.covered = people.covered;
   ++out.revision;

@@ -14,13 +14,13 @@ constexpr double kStep = 60.0;                                            // cha
 
 }  // namespace
 
-template <class Most>
-std::string FakeArm::why_not(const Vector& wanted, const Most& most) const {
+template <class Limit>
+std::string FakeArm::why_not(const Vector& wanted, const Limit& limit) const {
   const Vector velocity = (wanted - position_) / period();
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const std::string& name = model_.axes()[static_cast<std::size_t>(axes_[i])].name;
-    if (std::abs(velocity[k]) > most(i, velocity[k])) return "velocity of " + name;
+    if (std::abs(velocity[k]) > limit(i, velocity[k])) return "velocity of " + name;
     if (std::abs(velocity[k] - velocity_[k]) > kStep * period()) return "jump of the velocity of " + name;
   }
   return {};
@@ -58,7 +58,7 @@ void FakeCyclicArm::cycle() {
     }
   }
   if (session_ != Session::commanding_active) return stand();
-  if (!told) return go_on();
+  if (!told) return coast();
   const std::string why = why_not(wanted_, [&](std::size_t i, double) { return kSlack * model_.guard_limits().velocity[axes_[i]]; });
   if (!why.empty()) return end(why);
   follow(wanted_);
@@ -124,7 +124,7 @@ CyclicState FakeCyclicArm::now() const {
 void FakeReflexArm::reflex(const std::string& why) {
   error_ = why;
   in_reflex_ = true;
-  told_ = false;
+  was_commanded_ = false;
   stand();
 }
 
@@ -132,25 +132,25 @@ void FakeReflexArm::cycle() {
   ++cycle_count_;
   move_gripper();
   if (events.emergency_stop || events.user_stop || events.brake || events.power_off) {
-    told_ = false;
+    was_commanded_ = false;
     stand();
     return;
   }
   if (in_reflex_) return;
   if (std::abs(events.push) > kPush) return reflex("push on " + model_.axes()[static_cast<std::size_t>(axes_[0])].name);
-  if (!told_) {
+  if (!was_commanded_) {
     untold_ = speed() > 0.0 ? untold_ + 1 : 0;
     if (untold_ >= kUntold) return reflex("no command for " + std::to_string(kUntold) + " cycles");
-    return go_on();
+    return coast();
   }
   untold_ = 0;
-  told_ = false;
+  was_commanded_ = false;
   const std::string why = why_not(wanted_, [&](std::size_t i, double v) {
     const auto k = static_cast<Eigen::Index>(i);
     const Axis& axis = model_.axes()[static_cast<std::size_t>(axes_[i])];
-    const double most = kSlack * model_.guard_limits().velocity[axes_[i]];
-    return v > 0 ? velocity_toward_end(position_[k], axis.upper, most, deceleration_)
-                 : velocity_toward_end(-position_[k], -axis.lower, most, deceleration_);
+    const double limit = kSlack * model_.guard_limits().velocity[axes_[i]];
+    return v > 0 ? velocity_toward_end(position_[k], axis.upper, limit, deceleration_)
+                 : velocity_toward_end(-position_[k], -axis.lower, limit, deceleration_);
   });
   if (!why.empty()) {
     violate(why);
@@ -168,12 +168,12 @@ void FakeReflexArm::move_gripper() {
 void FakeReflexArm::move_to(const Vector& position) {
   if (position.size() != position_.size()) return violate("a command of another number of axes");
   wanted_ = position;
-  told_ = true;
+  was_commanded_ = true;
 }
 
 void FakeReflexArm::recover() {
   if (std::abs(events.push) > kPush || !in_reflex_) return;
-  in_reflex_ = told_ = false;
+  in_reflex_ = was_commanded_ = false;
   ++account.sessions;
   stand();
 }

@@ -51,21 +51,21 @@ class FakeArm {
 
  protected:
   FakeArm(const RobotModel& model, const std::vector<int>& axes) : model_(model), axes_(axes) {
-    position_ = gather(model.rest_posture(), axes);
+    position_ = gather(model.rest_configuration(), axes);
     velocity_ = Vector::Zero(position_.size());
   }
   void violate(const std::string& what) {
     ++account.violations;
     account.last_violation = what;
   }
-  /// Faster than `most`(axis index, velocity) allows, or a jump of the velocity: the sentence;
+  /// Faster than `limit`(axis index, velocity) allows, or a jump of the velocity: the sentence;
   /// empty: it can be followed.
-  template <class Most>
-  std::string why_not(const Vector& wanted, const Most& most) const;
+  template <class Limit>
+  std::string why_not(const Vector& wanted, const Limit& limit) const;
   /// To `wanted` within this cycle.
   void follow(const Vector& wanted);
   /// Moves on with the velocity of the cycle before: no command came.
-  void go_on() { position_ += period() * velocity_; }
+  void coast() { position_ += period() * velocity_; }
   void stand() { velocity_.setZero(); }
 
   const RobotModel& model_;
@@ -131,7 +131,7 @@ class FakeReflexArm : public FakeArm, public ReflexLink {
 
   double deceleration_;
   Vector wanted_;
-  bool told_{}, in_reflex_{};
+  bool was_commanded_{}, in_reflex_{};
   int untold_{};
   std::string error_;
   double width_{0.08}, gripper_target_{0.08}, gripper_speed_{0.1}, force_{}, gripping_{};

@@ -42,7 +42,7 @@ RobotModel load_robot(const Options& options) {
 
 CartesianRequest request_of(const json& line, const RobotModel& robot) {
   CartesianRequest request;
-  request.start = posture_in(robot, line.value("start", json::object()), "start");
+  request.start = configuration_in(robot, line.value("start", json::object()), "start");
   const json& nodes = field(line, "nodes");
   if (!nodes.is_array()) throw LineError("\"nodes\" must be a list");
   for (const json& given : nodes) {
@@ -98,8 +98,8 @@ void draw(const std::string& file, int size, const RobotModel& robot, const json
       if (k > 0) canvas.stick(nodes[k - 1].T_root_tool.translation(), nodes[k].T_root_tool.translation(), 0.002, kPath);
     }
     for (std::size_t i = 1; i < smooth.size(); ++i) canvas.stick(smooth[i - 1], smooth[i], 0.003, kSmooth);
-    for (const CornerReport& corner : motion.corners)
-      if (corner.method == CornerMethod::stop)
+    for (const BlendReport& corner : motion.corners)
+      if (corner.method == BlendMethod::stop)
         canvas.ball(nodes[static_cast<std::size_t>(corner.node)].T_root_tool.translation(), 0.011, kStop);
   });
   std::ofstream out(file, std::ios::binary);
@@ -127,7 +127,7 @@ int run(const Options& options) {
     all = all && motion.solved;
     json corners = json::array();
     double saved = 0;
-    for (const CornerReport& corner : motion.corners) {
+    for (const BlendReport& corner : motion.corners) {
       corners.push_back({{"node", corner.node},
                          {"method", name(corner.method)},
                          {"excess", corner.excess},

@@ -167,7 +167,7 @@ std::vector<Trial> plan_trials(const EvalOptions& options, const std::vector<Con
         trial.options.condition = condition.name;
         trial.options.participant = options.participant;
         trial.options.order = trials.size() + 1;
-        trial.options.law = condition.law.empty() ? "as set" : condition.law;
+        trial.options.clock_law = condition.law.empty() ? "as set" : condition.law;
         if (options.replay) {
           trial.options.hash_outputs = true;
           trial.options.record = options.record;

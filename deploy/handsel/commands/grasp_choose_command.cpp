@@ -75,7 +75,7 @@ int choose(const ChooseOptions& o) {
   HumanState people;
   GraspRequest request;
   request.object = "object";
-  request.start = stage.robot->rest_posture();
+  request.start = stage.robot->rest_configuration();
   request.max_grasps = o.number;
   request.least_visible = o.least_visible;
   request.move_platform = o.move_platform;
@@ -88,7 +88,7 @@ int choose(const ChooseOptions& o) {
     request.T_world_goal = stage.standing(o.goal[0], o.goal[1], o.goal.size() > 2 ? o.goal[2] * kDegree : 0.0);
   }
   auto mobile = o.move_platform ? on_platform(*stage.robot, stage.file) : std::nullopt;
-  const GraspChooser chooser(stage.robot, robot.kit, stage.library(), {},
+  const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), {},
                              mobile ? std::make_shared<const RobotModel>(std::move(*mobile)) : nullptr);
   const auto begin = std::chrono::steady_clock::now();
   const Choice choice = chooser.choose(request, robot.list, *robot.object, scene, people);

@@ -116,7 +116,7 @@ int list(const ListOptions& o) {
       std::printf("%8llu %8.3f %8.4f %10.3f %7.3f %7.3f %9.3f %6.2f\n", static_cast<unsigned long long>(g.grasp.id), g.grasp.quality,
                   g.grasp.epsilon, g.scores.stability, g.scores.centre, g.scores.force, g.scores.curvature, g.room);
     } else {
-      std::cout << line_of(g, listed.kit->hand).dump() << '\n';
+      std::cout << line_of(g, listed.hand_geometry->hand).dump() << '\n';
     }
   }
   return listed.list.grasps.empty() ? 1 : 0;

@@ -43,7 +43,7 @@ int pairs(const PairOptions& o) {
   settings.p_object_middle = a.object->box().center();
   settings.passed = o.passed ? a.object.get() : nullptr;
   const auto start = Clock::now();
-  const DoubleList found = list_double_grasps({a.kit.get(), &a.list, {}}, {b.kit.get(), &b.list, {}}, settings);
+  const DoubleList found = list_double_grasps({a.hand_geometry.get(), &a.list, {}}, {b.hand_geometry.get(), &b.list, {}}, settings);
   const double seconds = since(start);
   const bool table = !json_wanted(o.as_json);
   if (table) std::printf("%8s %8s %8s %12s %8s\n", "first", "second", "quality", "opposed[deg]", "score");
@@ -64,7 +64,9 @@ int pairs(const PairOptions& o) {
       throw ConfigError("--number " + std::to_string(o.number) + ": there are " + std::to_string(found.grasps.size()) + " double grasps");
     }
     const DoubleGrasp& d = found.grasps[o.number - 1];
-    write(double_grasp_picture(*a.object, *a.kit, a.list.grasps[d.first].grasp, *b.kit, b.list.grasps[d.second].grasp, o.size), o.png);
+    write(double_grasp_picture(*a.object, *a.hand_geometry, a.list.grasps[d.first].grasp, *b.hand_geometry, b.list.grasps[d.second].grasp,
+                               o.size),
+          o.png);
   }
   return found.grasps.empty() ? 1 : 0;
 }
@@ -86,7 +88,8 @@ int transfer(const TransferOptions& o) {
   TransferSettings settings;
   settings.most_tilt = o.tilt * kDegree;
   auto start = Clock::now();
-  const TransferTable table({robot.kit.get(), &robot.list, {}}, {human.kit.get(), &human.list, {}}, *robot.object, settings);
+  const TransferTable table({robot.hand_geometry.get(), &robot.list, {}}, {human.hand_geometry.get(), &human.list, {}}, *robot.object,
+                            settings);
   std::fprintf(stderr, "pairs of robot and person: %llu in %.3f s\n", whole(table.doubles().pairs), since(start));
   print_refusals(table.doubles().refusals());
 
@@ -98,11 +101,11 @@ int transfer(const TransferOptions& o) {
   GraspRequest request;
   request.object = "object";
   request.for_human = "person";
-  request.start = stage.robot->rest_posture();
+  request.start = stage.robot->rest_configuration();
   request.max_grasps = o.number;
   ChoiceSettings weights;
   weights.rank_transfer = 3;  // the person before all
-  const GraspChooser chooser(stage.robot, robot.kit, stage.library(), weights);
+  const GraspChooser chooser(stage.robot, robot.hand_geometry, stage.library(), weights);
   start = Clock::now();
   const Choice choice = chooser.choose(request, robot.list, *robot.object, scene, people, {}, &table);
   std::fprintf(stderr, "chosen in %.1f ms\n", 1e3 * since(start));
@@ -141,9 +144,7 @@ int transfer(const TransferOptions& o) {
     if (!any && !o.png.empty()) {
       const Manipulator& m = stage.arms.front().arm;
       const Vector q = RobotModel::with(RobotModel::with(request.start, *m.arm, t.arm_joints), *m.fingers, g.hand_joints);
-      write(transfer_picture({*stage.robot, q}, scene, {person, *human.kit, h}, *robot.object, t,
-                             o.size),
-            o.png);
+      write(transfer_picture({*stage.robot, q}, scene, {person, *human.hand_geometry, h}, *robot.object, t, o.size), o.png);
     }
     any = true;
   }

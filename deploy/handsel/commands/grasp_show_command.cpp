@@ -38,10 +38,10 @@ std::vector<Vector3> sides(const ShowOptions& o, const Vector3& from) {
   return out;
 }
 
-Eigen::AlignedBox3d with_hand(Eigen::AlignedBox3d box, const HandKit& kit, const Grasp& grasp) {
+Eigen::AlignedBox3d with_hand(Eigen::AlignedBox3d box, const HandGeometry& hand_geometry, const Grasp& grasp) {
   std::vector<std::vector<Pose>> T;
-  kit.forward(grasp.hand_joints, T);
-  for (const HandShape::Round& r : kit.shape.rounds(T)) {
+  hand_geometry.forward(grasp.hand_joints, T);
+  for (const HandShape::Round& r : hand_geometry.shape.rounds(T)) {
     for (const Vector3& p : {r.a, r.b}) {
       const Vector3 q = grasp.T_object_hand * p;
       box.extend(Vector3(q.array() - r.radius));
@@ -67,19 +67,19 @@ const ListedGrasp* chosen(const ShowOptions& o, const GraspList& list) {
 }
 
 Picture of_grasp(const ShowOptions& o, const Listed& listed, const Grasp& g) {
-  const Eigen::AlignedBox3d box = with_hand(listed.object->box(), *listed.kit, g);
+  const Eigen::AlignedBox3d box = with_hand(listed.object->box(), *listed.hand_geometry, g);
   const std::vector<Vector3> eyes = sides(o, g.T_object_hand.translation() - box.center());
   return from_sides(box, eyes, o.size, [&](Canvas& canvas, std::size_t) {
     const bool ellipsoids = o.figure == "ellipsoids";
-    draw_hand(canvas, *listed.kit, g.hand_joints, g.T_object_hand, kHand, o.figure == "grasp" ? 1 : 0.35);
+    draw_hand(canvas, *listed.hand_geometry, g.hand_joints, g.T_object_hand, kHand, o.figure == "grasp" ? 1 : 0.35);
     if (o.figure == "candidates") {
       draw_object(canvas, *listed.object);
-      draw_candidates(canvas, *listed.kit, *listed.workspaces, *listed.object, g.T_object_hand);
+      draw_candidates(canvas, *listed.hand_geometry, *listed.workspaces, *listed.object, g.T_object_hand);
       return;
     }
     draw_object(canvas, *listed.object, ellipsoids ? 0.5 : 0.75);
     if (ellipsoids) {
-      draw_force_ellipsoids(canvas, *listed.kit, g);
+      draw_force_ellipsoids(canvas, *listed.hand_geometry, g);
     } else {
       draw_contacts(canvas, g);
     }
@@ -88,24 +88,24 @@ Picture of_grasp(const ShowOptions& o, const Listed& listed, const Grasp& g) {
 
 Picture of_object(const ShowOptions& o, const Listed& listed) {
   return from_sides(listed.object->box(), sides(o, Vector3::UnitX()), o.size, [&](Canvas& canvas, std::size_t side) {
-    if (o.figure == "curvature") return draw_curvature(canvas, *listed.object, listed.kit->tip_radius());
+    if (o.figure == "curvature") return draw_curvature(canvas, *listed.object, listed.hand_geometry->tip_radius());
     if (side == 0) draw_object(canvas, *listed.object);
     draw_points(canvas, *listed.object, side == 0 ? -1 : o.depth);
   });
 }
 
-Picture of_workspace(const ShowOptions& o, const HandKit& kit, const FingerWorkspaces& workspaces) {
+Picture of_workspace(const ShowOptions& o, const HandGeometry& hand_geometry, const FingerWorkspaces& workspaces) {
   if (o.finger < 0 || o.finger >= static_cast<int>(workspaces.size()))
-    throw ConfigError("--finger " + std::to_string(o.finger) + ": hand " + kit.hand.name() + " has fingers 0 to " +
+    throw ConfigError("--finger " + std::to_string(o.finger) + ": hand " + hand_geometry.hand.name() + " has fingers 0 to " +
                       std::to_string(workspaces.size() - 1));
   Grasp open;
-  open.hand_joints = kit.hand.pregrasp();
+  open.hand_joints = hand_geometry.hand.pregrasp();
   const FingerWorkspace& workspace = workspaces[static_cast<std::size_t>(o.finger)];
   Eigen::AlignedBox3d box = workspace.box();
-  box = with_hand(box, kit, open);
+  box = with_hand(box, hand_geometry, open);
   const Vector3 eye = sides(o, Vector3::UnitX()).front();
   return from_sides(box, {eye, eye}, o.size, [&](Canvas& canvas, std::size_t side) {
-    draw_hand(canvas, kit, open.hand_joints, Pose::Identity(), kHand);
+    draw_hand(canvas, hand_geometry, open.hand_joints, Pose::Identity(), kHand);
     draw_workspace(canvas, workspace, finger_colour(static_cast<std::size_t>(o.finger)), side == 1);
   });
 }
@@ -115,8 +115,8 @@ int show(const ShowOptions& o) {
   Listed listed;
   Picture picture(1, 1, {});
   if (o.figure == "workspace") {
-    listed.kit = kit_of(o.hand);
-    picture = of_workspace(o, *listed.kit, make_workspaces(*listed.kit));
+    listed.hand_geometry = hand_geometry_of(o.hand);
+    picture = of_workspace(o, *listed.hand_geometry, make_workspaces(*listed.hand_geometry));
   } else if (!about_grasp) {
     listed = prepared(o.hand, o);
     picture = of_object(o, listed);
@@ -131,7 +131,7 @@ int show(const ShowOptions& o) {
                  g->grasp.quality, g->grasp.epsilon, g->grasp.contacts.size());
     picture = of_grasp(o, listed, g->grasp);
   }
-  if (about_grasp) say_colours(listed.kit->hand);
+  if (about_grasp) say_colours(listed.hand_geometry->hand);
   std::ofstream file(o.png, std::ios::binary);
   if (!(file << picture.png()).flush()) throw ConfigError(o.png + ": cannot be written");
   return 0;

@@ -44,7 +44,7 @@ const char* kind_name(JointKind kind) {
 void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
   const auto capsules = robot_capsules(robot);
   std::vector<Pose> T;
-  robot.forward(robot.rest_posture(), T);
+  robot.forward(robot.rest_configuration(), T);
   std::vector<std::pair<int, int>> seen;
   Vector3 p, q;
   for (std::size_t i = 0; i < capsules.size(); ++i)
@@ -178,7 +178,7 @@ json describe(const RobotModel& robot) {
                     {"lower", axis.lower},
                     {"upper", axis.upper},
                     {"effort", axis.max_effort},
-                    {"rest", robot.rest_posture()[i]},
+                    {"rest", robot.rest_configuration()[i]},
                     {"limits", limits_of(robot, i)}});
   }
   for (const auto& group : robot.groups())

@@ -69,7 +69,7 @@ class Batch {
     problem.stock = options_.stock;
     problem.seed = options_.seed;
     problem.budget = options_.checks > 0 ? options_.checks : UINT64_MAX / 2;
-    problem.start = posture_in(robot_, field(item, "start"), "start");
+    problem.start = configuration_in(robot_, field(item, "start"), "start");
     const HumanState people = people_in(item);
     HumanCost cost(robot_, weights_in(item));
     cost.set_people(people);

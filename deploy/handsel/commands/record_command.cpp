@@ -33,7 +33,7 @@ int record(const RecordOptions& options) {
   catch_interrupts();
   DdsBus bus({.component = "recorder", .domain = static_cast<std::uint32_t>(options.domain), .health = false});
   Recorder recorder(bus, options.file, {{"domain", std::to_string(options.domain)}, {"version", version_text()}});
-  bus.every(Recorder::kLook, [&](TimePoint) { recorder.look(); });
+  bus.every(Recorder::kPollPeriod, [&](TimePoint) { recorder.poll(); });
   std::fprintf(stderr, "recording DDS domain %d into %s; Ctrl-C ends it\n", options.domain, options.file.c_str());
   bus.run_until([] { return interrupted(); }, options.seconds > 0 ? from_seconds(options.seconds) : Duration(std::chrono::hours(24 * 365)));
   recorder.close();
@@ -46,7 +46,7 @@ int record(const RecordOptions& options) {
 void require_silence(DdsBus& bus, const std::vector<std::string>& topics) {
   bus.run_until([] { return interrupted(); }, std::chrono::milliseconds(1500));  // until everybody is discovered
   const std::set<std::string> fed(topics.begin(), topics.end());
-  for (const DomainEndpoint& end : bus.look_around().endpoints) {
+  for (const DomainEndpoint& end : bus.discovered_domain().endpoints) {
     const TopicRow* row = end.writes ? find_topic(end.topic) : nullptr;
     if (!row || (row->profile != Profile::sensor && !has_one_writer(*row)) || !fed.contains(row->topic)) continue;
     throw ConfigError((end.owner.component.empty() ? "process " + std::to_string(end.owner.pid) : end.owner.component) + " writes " +

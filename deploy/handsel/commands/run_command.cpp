@@ -102,7 +102,7 @@ int run(RunOptions& options) {
   Session& session = system.session();
   Marks mark(session.bus(), options);
   Performer performer(session.bus(), session.observer(), scenario, options.timeout, [&] { return not_ready(session.snapshot()).empty(); });
-  const auto ready = system.wait_ready(kReadyPatience);
+  const auto ready = system.wait_ready(kReadyTimeout);
   if (!ready) return 1;
   std::fprintf(stderr, "ready after %.1f s\n", to_seconds(*ready));
   announce_page(system, options.headless);
@@ -110,7 +110,7 @@ int run(RunOptions& options) {
   ReportInputs inputs{.scenario = shown, .robot = robot_of(options.system), .seed = options.system.seed};
   inputs.ready = to_seconds(*ready);
   inputs.before = counters(session.snapshot());
-  inputs.truth_before = session.snapshot().truth.sample;
+  inputs.ground_truth_before = session.snapshot().ground_truth.sample;
   session.observer().on_event([&](const TimelineEvent& event) {
     std::fprintf(stderr, "%7.2f s  %s\n", performer.started() ? to_seconds(event.at - performer.begin()) : 0.0, event.text.c_str());
   });

@@ -104,8 +104,8 @@ int perform(const TaskOptions& options) {
     }
     return status() && is_over(status()->state);
   };
-  if (!session.wait(kAnswerPatience, [&] { return status() != nullptr; }) && !interrupted()) {
-    throw MissingError("the supervisor did not answer the task within " + std::to_string(static_cast<int>(to_seconds(kAnswerPatience))) +
+  if (!session.wait(kAnswerTimeout, [&] { return status() != nullptr; }) && !interrupted()) {
+    throw MissingError("the supervisor did not answer the task within " + std::to_string(static_cast<int>(to_seconds(kAnswerTimeout))) +
                        " s");
   }
   if (!session.wait(std::chrono::hours(24), over) && interrupted()) {

@@ -25,7 +25,7 @@ struct Options {
 TrajectoryRequest request_of(const json& line, const RobotModel& robot, const Group& group) {
   TrajectoryRequest request;
   request.group = group.name;
-  request.start = posture_in(robot, line.value("start", json::object()), "start");
+  request.start = configuration_in(robot, line.value("start", json::object()), "start");
   const json& nodes = field(line, "nodes");
   if (!nodes.is_array()) throw LineError("\"nodes\" must be a list");
   for (const json& node : nodes) {
@@ -77,7 +77,7 @@ int run(const Options& options) {
     for (const Refusal& corner : result.reply.corners) corners.push_back({{"what", corner.what}, {"reason", corner.reason}});
     for (const SpeedZones& leg : result.speeds) {
       speeds.push_back(json::array());
-      for (const SpeedZone& zone : leg) speeds.back().push_back({zone.end, zone.share});
+      for (const SpeedZone& zone : leg) speeds.back().push_back({zone.end, zone.scale});
     }
     std::vector<std::string> names;
     for (const int axis : group.axes) names.push_back(robot.axes()[static_cast<std::size_t>(axis)].name);

@@ -24,7 +24,7 @@ void add_up_command(CLI::App& app, int& exit_code) {
     std::fprintf(stderr, "starting %zu processes on DDS domain %d, scenario %s; logs in %s\n", system.launcher().processes().size(),
                  options->domain, options->scenario.c_str(), system.log_directory().c_str());
     // A part of a system has nobody to blame for what runs elsewhere: it waits.
-    const auto took = system.wait_ready(options->whole() ? kReadyPatience : Duration(std::chrono::hours(24 * 365)));
+    const auto took = system.wait_ready(options->whole() ? kReadyTimeout : Duration(std::chrono::hours(24 * 365)));
     if (took) {
       std::fprintf(stderr, "ready after %.1f s\n", to_seconds(*took));
       announce_page(system, *headless);

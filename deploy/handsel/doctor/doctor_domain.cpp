@@ -154,7 +154,7 @@ class Look {
     out["sources"] = sources_;
     out["bases"] = Json::object();
     for (const auto& [robot, T] : bases_) out["bases"][robot] = std::vector<double>(T.data(), T.data() + 16);
-    const DomainView view = session_.bus().look_around();
+    const DomainView view = session_.bus().discovered_domain();
     out["commanders"] = Json::array();
     char host[256] = {};
     gethostname(host, sizeof host - 1);

@@ -188,7 +188,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
   counts = true;
   bus.run_until([] { return interrupted(); }, kLook);
 
-  const DomainView view = bus.look_around();
+  const DomainView view = bus.discovered_domain();
   std::vector<Finding> out;
   std::vector<Finding> silent;
   bool reader = false;

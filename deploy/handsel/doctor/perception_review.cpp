@@ -123,50 +123,52 @@ double SampleTimes::rate() const {
 
 double SampleTimes::median_age() const { return share(ages_, 0.5); }
 
-std::vector<Finding> SampleTimes::findings(const std::string& who, const std::string& what) const {
+std::vector<Finding> SampleTimes::findings(const std::string& publisher, const std::string& what) const {
   std::vector<Finding> out;
   std::vector<double> gaps;
   for (std::size_t i = 1; i < arrivals_.size(); ++i) gaps.push_back(arrivals_[i] - arrivals_[i - 1]);
   const double hz = rate();
   if (hz < kSlowest) {
-    out.push_back(bad("rate", format("%s publishes %s %.1f times a second", who.c_str(), what.c_str(), hz),
+    out.push_back(bad("rate", format("%s publishes %s %.1f times a second", publisher.c_str(), what.c_str(), hz),
                       "15 to 120 times a second are right: the robot stops when it hears nothing for 0.2 s"));
   } else if (hz > kFastest) {
-    out.push_back(bad("rate", format("%s publishes %s %.0f times a second", who.c_str(), what.c_str(), hz),
+    out.push_back(bad("rate", format("%s publishes %s %.0f times a second", publisher.c_str(), what.c_str(), hz),
                       "15 to 120 times a second are right: publish each measurement once, as it comes"));
   } else if (std::count_if(gaps.begin(), gaps.end(), [](double gap) { return gap > kSilence; }) >= 2) {
-    out.push_back(bad("rate", format("%s publishes %s irregularly: up to %.2f s pass without", who.c_str(), what.c_str(), share(gaps, 1)),
+    out.push_back(bad("rate",
+                      format("%s publishes %s irregularly: up to %.2f s pass without", publisher.c_str(), what.c_str(), share(gaps, 1)),
                       "publish at an even rate, also while nobody is there; the robot stops after 0.2 s of silence"));
   }
   if (unstamped_ > 0) {
-    out.push_back(bad("stamp", format("%zu of %zu samples of %s have no stamp", unstamped_, count(), who.c_str()),
+    out.push_back(bad("stamp", format("%zu of %zu samples of %s have no stamp", unstamped_, count(), publisher.c_str()),
                       "set stamp to the time of the measurement, in ns of the system clock (dds_time())"));
   }
   if (ages_.empty()) return out;
   const double age = median_age(), spread = share(ages_, 0.95) - age;
   if (last_ < 100'000'000'000'000'000) {
     out.push_back(bad("stamp",
-                      format("%s stamps with %lld, which looks like ", who.c_str(), static_cast<long long>(last_)) +
+                      format("%s stamps with %lld, which looks like ", publisher.c_str(), static_cast<long long>(last_)) +
                           unit_of_stamp(last_, system_arrival_),
                       "stamp in nanoseconds since 1970 of the system clock (dds_time(), CLOCK_REALTIME)"));
   } else if (age < -kFuture || age > kOffset) {
-    out.push_back(bad("clock offset",
-                      format("%s stamps %s %.3f s %s", who.c_str(), what.c_str(), std::abs(age), age > 0 ? "in the past" : "in the future"),
-                      "stamp with the time of measurement by the system clock, and run chrony or PTP on the host that does"));
+    out.push_back(
+        bad("clock offset",
+            format("%s stamps %s %.3f s %s", publisher.c_str(), what.c_str(), std::abs(age), age > 0 ? "in the past" : "in the future"),
+            "stamp with the time of measurement by the system clock, and run chrony or PTP on the host that does"));
   } else if (age > kOld) {
-    out.push_back(bad("age", format("%s of %s are %.2f s old when they come", what.c_str(), who.c_str(), age),
+    out.push_back(bad("age", format("%s of %s are %.2f s old when they come", what.c_str(), publisher.c_str(), age),
                       "shorten the way from exposure to publication below 0.2 s: the robot keeps the room a person may have gone through"));
   } else if (spread > kJitter) {
-    out.push_back(bad("jitter", format("the age of %s from %s varies by %.0f ms", what.c_str(), who.c_str(), 1e3 * spread),
+    out.push_back(bad("jitter", format("the age of %s from %s varies by %.0f ms", what.c_str(), publisher.c_str(), 1e3 * spread),
                       "stamp with the time of exposure, not of sending, and publish at an even pace; below 50 ms are right"));
   }
   if (backwards_ > 0 && out.empty()) {
-    out.push_back(bad("stamp", format("stamps of %s go back in time, %zu times", who.c_str(), backwards_),
+    out.push_back(bad("stamp", format("stamps of %s go back in time, %zu times", publisher.c_str(), backwards_),
                       "give each source a name of its own, and publish its measurements in their order"));
   }
   if (count() >= kEnough && 5 * repeated_ > count()) {
     out.push_back(bad("repeated",
-                      format("%zu of %zu samples of %s are the one before once more, stamp and all", repeated_, count(), who.c_str()),
+                      format("%zu of %zu samples of %s are the one before once more, stamp and all", repeated_, count(), publisher.c_str()),
                       "publish a measurement once; what is repeated is no news to the robot"));
   }
   return out;
@@ -177,14 +179,14 @@ void PerceptionReview::on(const HumanObservation& seen, TimePoint arrival, Stamp
   Bodies& bodies = people_[seen.source];
   const bool fresh = bodies.times.add(seen.stamp, arrival, system_arrival);
   bodies.coverage = seen.coverage;
-  bodies.most = std::max(bodies.most, seen.people.size());
+  bodies.max_at_once = std::max(bodies.max_at_once, seen.people.size());
   const bool tells = std::any_of(seen.people.begin(), seen.people.end(), [](const ObservedPerson& p) { return !p.joints.empty(); });
   bodies.frozen += tells && fresh && same(seen.people, bodies.last);
-  for (const ObservedPerson& person : seen.people) look(bodies, person);
+  for (const ObservedPerson& person : seen.people) add_person(bodies, person);
   bodies.last = seen.people;
 }
 
-void PerceptionReview::look(Bodies& bodies, const ObservedPerson& person) const {
+void PerceptionReview::add_person(Bodies& bodies, const ObservedPerson& person) const {
   ++bodies.bodies;
   bodies.ids.insert(person.body);
   for (const ObservedJoint& joint : person.joints) {
@@ -219,7 +221,7 @@ void PerceptionReview::on(const ObjectObservation& seen, TimePoint arrival, Stam
   ++received_[TopicOf<ObjectObservation>::row.topic];
   Things& things = things_[seen.source];
   things.times.add(seen.stamp, arrival, system_arrival);
-  things.most = std::max(things.most, seen.objects.size());
+  things.max_at_once = std::max(things.max_at_once, seen.objects.size());
   for (const ObservedObject& object : seen.objects) {
     ++things.things;
     things.ids.insert(object.id);
@@ -249,13 +251,13 @@ std::vector<Finding> PerceptionReview::findings() const {
             gaze ? "gaze_direction must be a unit vector, and finite; without a gaze leave has_gaze false"
                  : "idl/perception.idl says what each field may hold; leave a joint out rather than send NaN"));
   }
-  for (const auto& [source, bodies] : people_) judge(source, bodies, out);
-  judge_coverage(out);
-  for (const auto& [source, things] : things_) judge(source, things, out);
+  for (const auto& [source, bodies] : people_) check_source(source, bodies, out);
+  check_coverage(out);
+  for (const auto& [source, things] : things_) check_source(source, things, out);
   return out;
 }
 
-void PerceptionReview::judge(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const {
+void PerceptionReview::check_source(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const {
   const std::size_t before = out.size();
   for (Finding& finding : bodies.times.findings(source, "people")) out.push_back(std::move(finding));
   if (!bodies.unknown_joints.empty()) {
@@ -272,12 +274,12 @@ void PerceptionReview::judge(const std::string& source, const Bodies& bodies, st
   if (bodies.joints > 0 && bodies.unsure == bodies.joints)
     out.push_back(
         bad("confidence", "every joint of " + source + " has a confidence below 0.05, none is counted", "confidence is 0 to 1, 1 is sure"));
-  if (bodies.known_joints > 0) judge_frame(source, bodies, out);
-  if (bodies.bodies >= kEnough && bodies.ids.size() > std::max(3 * bodies.most, bodies.bodies / 5)) {
-    out.push_back(
-        bad("ids",
-            format("%s gives %zu ids to %zu people in %zu samples", source.c_str(), bodies.ids.size(), bodies.most, bodies.times.count()),
-            "keep a body's id as long as it is tracked"));
+  if (bodies.known_joints > 0) check_frame(source, bodies, out);
+  if (bodies.bodies >= kEnough && bodies.ids.size() > std::max(3 * bodies.max_at_once, bodies.bodies / 5)) {
+    out.push_back(bad("ids",
+                      format("%s gives %zu ids to %zu people in %zu samples", source.c_str(), bodies.ids.size(), bodies.max_at_once,
+                             bodies.times.count()),
+                      "keep a body's id as long as it is tracked"));
   }
   if (bodies.bodies >= kEnough && 2 * bodies.frozen > bodies.times.count()) {
     out.push_back(
@@ -295,12 +297,12 @@ void PerceptionReview::judge(const std::string& source, const Bodies& bodies, st
                    "let somebody stand before the robot: size, frame and names can be judged then"});
   else if (!bodies.statures.empty())
     out.push_back({"people", Verdict::good,
-                   format("%s sees %zu, about %.2f m tall, %.1f m from the robot's base", source.c_str(), bodies.most,
+                   format("%s sees %zu, about %.2f m tall, %.1f m from the robot's base", source.c_str(), bodies.max_at_once,
                           share(bodies.statures, 0.5), bodies.nearest),
                    ""});
 }
 
-void PerceptionReview::judge_frame(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const {
+void PerceptionReview::check_frame(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const {
   const char* const remedy =
       "publish positions in frame \"world\": metres, z up, the floor at z = 0, the robot's base where its description says";
   if (!bodies.statures.empty()) {
@@ -350,7 +352,7 @@ void PerceptionReview::judge_frame(const std::string& source, const Bodies& bodi
   }
 }
 
-void PerceptionReview::judge_coverage(std::vector<Finding>& out) const {
+void PerceptionReview::check_coverage(std::vector<Finding>& out) const {
   if (people_.empty()) return;
   std::vector<Coverage> looked_at;
   std::string all;
@@ -373,7 +375,7 @@ void PerceptionReview::judge_coverage(std::vector<Finding>& out) const {
                  r.low.x(), r.high.x(), r.low.y(), r.high.y(), r.low.z(), r.high.z())));
 }
 
-void PerceptionReview::judge(const std::string& source, const Things& things, std::vector<Finding>& out) const {
+void PerceptionReview::check_source(const std::string& source, const Things& things, std::vector<Finding>& out) const {
   const std::size_t before = out.size();
   for (Finding& finding : things.times.findings(source, "objects")) out.push_back(std::move(finding));
   if (!things.unknown_models.empty()) {
@@ -383,8 +385,8 @@ void PerceptionReview::judge(const std::string& source, const Things& things, st
   if (things.things > 0 && things.lowest < -0.1)
     out.push_back(bad("frame", format("%s sees an object %.2f m under the floor", source.c_str(), -things.lowest),
                       "publish poses in frame \"world\": metres, z up, the floor at z = 0"));
-  if (things.things >= kEnough && things.ids.size() > std::max(3 * things.most, things.things / 5))
-    out.push_back(bad("ids", format("%s gives %zu ids to %zu objects", source.c_str(), things.ids.size(), things.most),
+  if (things.things >= kEnough && things.ids.size() > std::max(3 * things.max_at_once, things.things / 5))
+    out.push_back(bad("ids", format("%s gives %zu ids to %zu objects", source.c_str(), things.ids.size(), things.max_at_once),
                       "an object keeps its id: tasks name it by that"));
   if (out.size() > before) return;
   out.push_back({"inputs", Verdict::good,

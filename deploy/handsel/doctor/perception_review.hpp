@@ -28,8 +28,8 @@ class SampleTimes {
   std::size_t count() const { return arrivals_.size(); }  ///< of samples, repeated ones included
   double rate() const;                                    ///< [Hz]; 0 with less than two
   double median_age() const;                              ///< [s] between stamp and arrival
-  /// Rate, regularity, ages and clocks; `who` publishes `what`. Empty: all is well.
-  std::vector<Finding> findings(const std::string& who, const std::string& what) const;
+  /// Rate, regularity, ages and clocks; `publisher` publishes `what`. Empty: all is well.
+  std::vector<Finding> findings(const std::string& publisher, const std::string& what) const;
 
  private:
   std::vector<double> arrivals_;  // monotonic [s]
@@ -58,7 +58,7 @@ class PerceptionReview {
   struct Bodies {
     SampleTimes times;
     Coverage coverage;
-    std::size_t bodies{0}, most{0};  // seen in all, and at once
+    std::size_t bodies{0}, max_at_once{0};  // seen in all, and at once
     std::set<std::string> ids, unknown_joints;
     // unsure: confidence so low that they are not counted
     std::size_t known_joints{0}, joints{0}, unsure{0};
@@ -72,18 +72,18 @@ class PerceptionReview {
   struct Things {
     SampleTimes times;
     std::set<std::string> ids, unknown_models;
-    std::size_t things{0}, most{0};
+    std::size_t things{0}, max_at_once{0};
     double lowest{1e300};
   };
   struct Malformed {
     std::size_t count{0}, whole{0};
     std::string last;
   };
-  void look(Bodies& bodies, const ObservedPerson& person) const;
-  void judge(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const;
-  void judge_frame(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const;
-  void judge(const std::string& source, const Things& things, std::vector<Finding>& out) const;
-  void judge_coverage(std::vector<Finding>& out) const;
+  void add_person(Bodies& bodies, const ObservedPerson& person) const;
+  void check_source(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const;
+  void check_frame(const std::string& source, const Bodies& bodies, std::vector<Finding>& out) const;
+  void check_source(const std::string& source, const Things& things, std::vector<Finding>& out) const;
+  void check_coverage(std::vector<Finding>& out) const;
 
   PerceptionGround ground_;
   std::map<std::string, Bodies> people_;

@@ -57,18 +57,18 @@ PersonMotion motion(const std::vector<BodyJoint>& before, const std::vector<Body
 
 }  // namespace
 
-Criteria::Criteria(Bus& seat, LocalNetwork& network) : network_(network) {
+Criteria::Criteria(Bus& bus, LocalNetwork& network) : network_(network) {
   network.meter({std::begin(kChain), std::end(kChain)});
-  seat.subscribe<GroundTruth>([this](const GroundTruth& truth, const Receipt& r) { on(truth, r.arrival); });
-  seat.subscribe<ExecutionStatus>([this](const ExecutionStatus& status, const Receipt& r) { on(status, r.arrival); });
-  seat.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt& r) {
+  bus.subscribe<GroundTruth>([this](const GroundTruth& ground_truth, const Receipt& r) { on(ground_truth, r.arrival); });
+  bus.subscribe<ExecutionStatus>([this](const ExecutionStatus& status, const Receipt& r) { on(status, r.arrival); });
+  bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt& r) {
     running_ = active.trajectory != 0;
     speed_factor_ = running_ ? active.speed_factor : 0.0;
-    std::erase_if(looks_, [&](const Look& look) { return r.arrival - look.at > kBefore; });
-    looks_.push_back({r.arrival, speed_factor_});
+    std::erase_if(speed_samples_, [&](const SpeedSample& look) { return r.arrival - look.at > kBefore; });
+    speed_samples_.push_back({r.arrival, speed_factor_});
     settle(r.arrival);
   });
-  seat.subscribe<AttentionAdvice>([this](const AttentionAdvice& a, const Receipt&) {
+  bus.subscribe<AttentionAdvice>([this](const AttentionAdvice& a, const Receipt&) {
     const std::array<double, 5> periods{a.people_period, a.objects_period, a.forecast_period, a.cost_map_period, a.replan_period};
     for (std::size_t i = 0; i < periods.size(); ++i) rates_[i] += periods[i] > 0 ? 1.0 / periods[i] : 0.0;
     ++advices_;
@@ -90,43 +90,44 @@ void Criteria::on(const ExecutionStatus& status, TimePoint) {
   status_ = status;
 }
 
-void Criteria::on(const GroundTruth& truth, TimePoint now) {
+void Criteria::on(const GroundTruth& ground_truth, TimePoint now) {
   if (last_) {
-    const double step = std::clamp(truth.sim_time - last_->sim_time, 0.0, kTruthStep);
-    const PersonMotion person = motion(last_->person, truth.person, status_.nearest_on_robot, step);
+    const double step = std::clamp(ground_truth.sim_time - last_->sim_time, 0.0, kTruthStep);
+    const PersonMotion person = motion(last_->person, ground_truth.person, status_.nearest_on_robot, step);
     const bool moves = person.fastest > kStill;
-    if (!truth.robot_moving) robot_idle_ += step;
+    if (!ground_truth.robot_moving) robot_idle_ += step;
     if (!moves) person_idle_ += step;
-    if (moves && truth.robot_moving) concurrent_ += step;
-    if (!moves && !truth.robot_moving) both_idle_ += step;
+    if (moves && ground_truth.robot_moving) concurrent_ += step;
+    if (!moves && !ground_truth.robot_moving) both_idle_ += step;
     if (limited_) limited_for_ += step;
-    if (truth.robot_moving && status_.separation < status_.separation_limit) below_for_ += step;
-    const double nearer = last_->separation - truth.separation;
+    if (ground_truth.robot_moving && status_.separation < status_.separation_limit) below_for_ += step;
+    const double nearer = last_->separation - ground_truth.separation;
     if (step > 0 && last_->separation < kClose && nearer < kJump) closing_speed_ = std::max(closing_speed_, nearer / step);
-    const bool entered = truth.separation < kNear && last_->separation >= kNear;
-    if (entered && !waiting_ && running_ && truth.robot_moving && person.toward > kToward) {
+    const bool entered = ground_truth.separation < kNear && last_->separation >= kNear;
+    if (entered && !waiting_ && running_ && ground_truth.robot_moving && person.toward > kToward) {
       double most = (status_.causes & kForPeople) != 0 ? 1.0 : speed_factor_;  // that it would have with nobody there
-      for (const Look& look : looks_) most = std::max(most, look.speed_factor);
+      for (const SpeedSample& look : speed_samples_) most = std::max(most, look.speed_factor);
       if (most > 0.1) waiting_ = Reaction{now, most};
       settle(now);
     }
   }
-  watch_exchange(truth);
-  last_ = truth;
+  watch_handover(ground_truth);
+  last_ = ground_truth;
 }
 
-void Criteria::watch_exchange(const GroundTruth& truth) {
-  const Vector3 p = truth.T_world_object.translation();
+void Criteria::watch_handover(const GroundTruth& ground_truth) {
+  const Vector3 p = ground_truth.T_world_object.translation();
   const std::string before = last_ ? last_->carrier : "";
-  if (truth.carrier == "robot") {
+  if (ground_truth.carrier == "robot") {
     if (before == "robot" && carried_from_)
       carried_ += (p - last_->T_world_object.translation()).norm();
     else if (before != "both")
       carried_from_ = p, carried_ = 0;
   }
-  if (truth.carrier != "both" || (before != "robot" && before != "human") || truth.person.size() != kBodyJoints.size()) return;
+  if (ground_truth.carrier != "both" || (before != "robot" && before != "human") || ground_truth.person.size() != kBodyJoints.size())
+    return;
   Person person;
-  person.joints = truth.person;
+  person.joints = ground_truth.person;
   discomfort_ = arm_comfort_cost(person, p);
   legibility_.reset();
   if (before == "robot" && carried_from_ && carried_ > kCarried) legibility_ = std::min(1.0, (p - *carried_from_).norm() / carried_);

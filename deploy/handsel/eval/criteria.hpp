@@ -18,7 +18,7 @@ namespace handsel {
 /// nothing in the system receives a result.
 class Criteria {
  public:
-  Criteria(Bus& seat, LocalNetwork& network);
+  Criteria(Bus& bus, LocalNetwork& network);
   Criteria(const Criteria&) = delete;
   Criteria& operator=(const Criteria&) = delete;
 
@@ -47,9 +47,9 @@ class Criteria {
   nlohmann::json fields() const;
 
  private:
-  void on(const GroundTruth& truth, TimePoint now);
+  void on(const GroundTruth& ground_truth, TimePoint now);
   void on(const ExecutionStatus& status, TimePoint now);
-  struct Look {
+  struct SpeedSample {
     TimePoint at{};
     double speed_factor{};
   };
@@ -58,11 +58,11 @@ class Criteria {
     double before{};  // speed factor
   };
   void settle(TimePoint now);
-  void watch_exchange(const GroundTruth& truth);
+  void watch_handover(const GroundTruth& ground_truth);
 
   LocalNetwork& network_;
   double speed_factor_{};
-  std::vector<Look> looks_;  // the last half second
+  std::vector<SpeedSample> speed_samples_;  // the last half second
   std::optional<Reaction> waiting_;
   std::vector<double> reactions_;
   std::optional<GroundTruth> last_;

@@ -25,7 +25,7 @@ void LockstepSystem::add(const std::string& component, const NodeContext& contex
   nodes_.push_back(std::make_shared<Node>(network_.add(component), context));
 }
 
-LockstepSystem::LockstepSystem(const NodeContext& context) : network_(context.seed), seat_(network_.add("handsel")), observer_(seat_) {
+LockstepSystem::LockstepSystem(const NodeContext& context) : network_(context.seed), bus_(network_.add("handsel")), observer_(bus_) {
   add<sim::Node>("sim", context);
   add<spark::Node>("spark", context);
   add<costmap::Node>("costmap", context);

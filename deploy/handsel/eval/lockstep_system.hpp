@@ -20,7 +20,7 @@ class LockstepSystem {
 
   /// Returns the network of all components; run it to advance the virtual time.
   LocalNetwork& network() { return network_; }
-  Bus& seat() { return seat_; }               ///< of the component "handsel"
+  Bus& bus() { return bus_; }                 ///< of the component "handsel"
   Observer& observer() { return observer_; }  ///< of the whole system, from construction on
   /// Newest samples, as the observer has them.
   const Snapshot& snapshot() const { return observer_.snapshot(); }
@@ -31,7 +31,7 @@ class LockstepSystem {
   void add(const std::string& component, const NodeContext& context);
 
   LocalNetwork network_;
-  Bus& seat_;
+  Bus& bus_;
   Observer observer_;
   std::vector<std::shared_ptr<void>> nodes_;
 };

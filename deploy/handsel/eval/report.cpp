@@ -55,7 +55,7 @@ std::map<std::string, Counters> counters(const Snapshot& snapshot) {
 
 nlohmann::json make_report(const ReportInputs& inputs, const Performer& performer, const Observer& observer) {
   const Snapshot& seen = observer.snapshot();
-  const GroundTruth& truth = seen.truth.sample;
+  const GroundTruth& ground_truth = seen.ground_truth.sample;
   const ExecutionStatus& execution = seen.execution.sample;
   Json tasks = Json::array(), gathered = Json::array(), misses = Json::object(), rejected = Json::object(), timeline = Json::array();
   std::string failure;
@@ -74,8 +74,8 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
   for (const TimelineEvent& event : observer.timeline()) {
     timeline.push_back({{"t_s", to_seconds(event.at - performer.begin())}, {"event", event.text}});
   }
-  const double sim_time = truth.sim_time - inputs.truth_before.sim_time;
-  const double set_points = static_cast<double>(truth.set_points - inputs.truth_before.set_points);
+  const double sim_time = ground_truth.sim_time - inputs.ground_truth_before.sim_time;
+  const double set_points = static_cast<double>(ground_truth.set_points - inputs.ground_truth_before.set_points);
   return {{"success", performer.succeeded()},
           {"failure", failure},
           {"scenario", inputs.scenario},
@@ -86,36 +86,37 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
           {"duration_s", performer.duration()},
           {"tasks", std::move(tasks)},
           {"oracle",
-           {{"carrier", truth.carrier},
-            {"held_s", truth.held_time},
-            {"constraint_s", truth.constraint_time},
-            {"contact_share", truth.held_time > 0 ? Json(1 - truth.constraint_time / truth.held_time) : Json(nullptr)},
-            {"max_lifted_m", truth.max_lifted},
-            {"human_contact_before_release_s", truth.human_contact_before_release},
-            {"human_alone_s", truth.human_alone},
-            {"dropped", truth.dropped},
-            {"handover_done", truth.handover_done},
-            {"limit_violations", truth.limit_violations},
-            {"collisions", truth.self_or_scene_collisions},
-            {"contact_force_n", truth.contact_force},
-            {"peak_closing_speed_m_s", truth.peak_closing_speed},
-            {"commanders", truth.commanders},
-            {"hash", truth.hash}}},
-          {"least_separation_m", seen.truth.ever ? finite(truth.least_separation) : Json(nullptr)},
-          {"ssm_violations", truth.ssm_violations},
-          {"limit_share", {{"v", truth.limit_share_velocity}, {"a", truth.limit_share_acceleration}, {"j", truth.limit_share_jerk}}},
+           {{"carrier", ground_truth.carrier},
+            {"held_s", ground_truth.held_time},
+            {"constraint_s", ground_truth.constraint_time},
+            {"contact_share", ground_truth.held_time > 0 ? Json(1 - ground_truth.constraint_time / ground_truth.held_time) : Json(nullptr)},
+            {"max_lifted_m", ground_truth.max_lifted},
+            {"human_contact_before_release_s", ground_truth.human_contact_before_release},
+            {"human_alone_s", ground_truth.human_alone},
+            {"dropped", ground_truth.dropped},
+            {"handover_done", ground_truth.handover_done},
+            {"limit_violations", ground_truth.limit_violations},
+            {"collisions", ground_truth.self_or_scene_collisions},
+            {"contact_force_n", ground_truth.contact_force},
+            {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
+            {"commanders", ground_truth.commanders},
+            {"hash", ground_truth.hash}}},
+          {"least_separation_m", seen.ground_truth.ever ? finite(ground_truth.least_separation) : Json(nullptr)},
+          {"ssm_violations", ground_truth.ssm_violations},
+          {"limit_share",
+           {{"v", ground_truth.limit_share_velocity}, {"a", ground_truth.limit_share_acceleration}, {"j", ground_truth.limit_share_jerk}}},
           {"limit_share_sent",
            {{"v", execution.limit_share_velocity}, {"a", execution.limit_share_acceleration}, {"j", execution.limit_share_jerk}}},
           {"deadline_misses", std::move(misses)},
           {"rejected", std::move(rejected)},
           {"refusals", std::move(gathered)},
-          {"set_point_gap_max_s", truth.setpoint_gap_max},
-          {"set_points", truth.set_points},
+          {"set_point_gap_max_s", ground_truth.setpoint_gap_max},
+          {"set_points", ground_truth.set_points},
           {"set_point_rate_hz", sim_time > 0 ? Json(set_points / sim_time) : Json(nullptr)},
           {"cycles", execution.cycles},
           {"late_cycles", execution.late_cycles},
           {"late_share", execution.cycles ? static_cast<double>(execution.late_cycles) / static_cast<double>(execution.cycles) : 0.0},
-          {"real_time_factor", truth.real_time_factor},
+          {"real_time_factor", ground_truth.real_time_factor},
           {"restarts", inputs.restarts},
           {"timeline", std::move(timeline)}};
 }

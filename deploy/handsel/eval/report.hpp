@@ -22,7 +22,7 @@ struct ReportInputs {
   std::uint64_t seed{};                    ///< of the simulation, copied into the report
   double ready{};                          ///< from start to ready [s]
   std::map<std::string, Counters> before;  ///< as the performance began
-  GroundTruth truth_before;                ///< newest as the performance began
+  GroundTruth ground_truth_before;         ///< newest as the performance began
   std::map<std::string, int> restarts;     ///< by process, those above 0
 };
 

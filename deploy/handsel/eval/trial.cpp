@@ -24,10 +24,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kReadyPatience = 10.0;  // [s]
+constexpr double kReadyTimeout = 10.0;  // [s]
 
-std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
-  if (truth.dropped) return "dropped";
+std::string failure_kind(const Performer& performer, const GroundTruth& ground_truth) {
+  if (ground_truth.dropped) return "dropped";
   if (performer.succeeded()) return "";
   if (performer.outcomes().empty()) return "not_ready";
   const TaskOutcome& last = performer.outcomes().back();
@@ -37,7 +37,7 @@ std::string failure_kind(const Performer& performer, const GroundTruth& truth) {
 }
 
 Json base_line(const NodeContext& context, const TrialOptions& options) {
-  Json line{{"scenario", options.scenario}, {"seed", context.seed}, {"attention", options.attention}, {"law", options.law}};
+  Json line{{"scenario", options.scenario}, {"seed", context.seed}, {"attention", options.attention}, {"law", options.clock_law}};
   line["condition"] = options.condition.empty() ? options.attention : options.condition;
   if (!options.participant.empty()) line["participant"] = options.participant;
   if (options.order > 0) line["order"] = options.order;
@@ -100,7 +100,7 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
   config::Scenario scenario;
   load_text_proto(context.scenario, scenario);
   LockstepSystem system(context);
-  const Criteria criteria(system.seat(), system.network());
+  const Criteria criteria(system.bus(), system.network());
   if (options.hash_outputs) system.network().hash_outputs();
   std::unique_ptr<LocalRecording> recording;
   if (!options.record.empty()) {
@@ -115,19 +115,19 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
     is_ready = is_ready || not_ready(system.snapshot(), false).empty();
     return is_ready;
   };
-  Performer performer(system.seat(), system.observer(), scenario, options.timeout, ready);
+  Performer performer(system.bus(), system.observer(), scenario, options.timeout, ready);
   system.observer().on_event([&](const TimelineEvent& event) {
     if (options.on_event) options.on_event(to_seconds(event.at.time_since_epoch()), event.text);
   });
   const TimePoint start = system.now();
-  system.network().run_until([&] { return performer.started(); }, start + from_seconds(kReadyPatience));
+  system.network().run_until([&] { return performer.started(); }, start + from_seconds(kReadyTimeout));
   if (performer.started()) system.network().run_until([&] { return performer.finished(); }, start + std::chrono::hours(1));
   system.observer().on_event({});
   if (!performer.finished()) performer.abort("not ready");
 
   const ReportInputs inputs{.scenario = options.scenario, .robot = context.robot->name(), .seed = context.seed};
   const Json report = make_report(inputs, performer, system.observer());
-  const GroundTruth& truth = system.snapshot().truth.sample;
+  const GroundTruth& ground_truth = system.snapshot().ground_truth.sample;
   std::uint64_t activations = 0, fastest = 0;
   Json activations_of = Json::object();
   for (const BehaviourState& behaviour : system.snapshot().attention.sample.behaviours) {
@@ -136,29 +136,29 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
     fastest += behaviour.activations_at_fastest;
   }
   char hash[32];
-  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(truth.hash));
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(ground_truth.hash));
   Json line = base_line(context, options);
-  line.update(
-      {{"success", report["success"].get<bool>() && !truth.dropped},
-       {"failure", failure_kind(performer, truth)},
-       {"reason", truth.dropped && report["success"].get<bool>() ? Json(truth.object + " was dropped afterwards") : report["failure"]},
-       {"duration_s", report["duration_s"]},
-       {"least_separation_m", report["least_separation_m"]},
-       {"ssm_violations", report["ssm_violations"]},
-       {"limit_share", report["limit_share"]},
-       {"limit_violations", truth.limit_violations},
-       {"collisions", truth.self_or_scene_collisions},
-       {"contact_force_n", truth.contact_force},
-       {"peak_closing_speed_m_s", truth.peak_closing_speed},
-       {"drops", truth.dropped ? 1 : 0},
-       {"lifted_m", truth.max_lifted},
-       {"contact_share", report["oracle"]["contact_share"]},
-       {"activations", activations},
-       {"activations_of", activations_of},
-       {"activations_at_pmin", fastest},
-       {"tasks", report["tasks"]},
-       {"events", system.network().events()},
-       {"hash", hash}});
+  line.update({{"success", report["success"].get<bool>() && !ground_truth.dropped},
+               {"failure", failure_kind(performer, ground_truth)},
+               {"reason", ground_truth.dropped && report["success"].get<bool>() ? Json(ground_truth.object + " was dropped afterwards")
+                                                                                : report["failure"]},
+               {"duration_s", report["duration_s"]},
+               {"least_separation_m", report["least_separation_m"]},
+               {"ssm_violations", report["ssm_violations"]},
+               {"limit_share", report["limit_share"]},
+               {"limit_violations", ground_truth.limit_violations},
+               {"collisions", ground_truth.self_or_scene_collisions},
+               {"contact_force_n", ground_truth.contact_force},
+               {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
+               {"drops", ground_truth.dropped ? 1 : 0},
+               {"lifted_m", ground_truth.max_lifted},
+               {"contact_share", report["oracle"]["contact_share"]},
+               {"activations", activations},
+               {"activations_of", activations_of},
+               {"activations_at_pmin", fastest},
+               {"tasks", report["tasks"]},
+               {"events", system.network().events()},
+               {"hash", hash}});
   line.update(criteria.fields());
   if (recording) recording->close();
   if (options.hash_outputs) {

@@ -22,11 +22,11 @@ void report_mesh(const Graspable& object) {
 /// Frames are dealt out to the cores.
 GraspList on_all_cores(const Listed& with, const GraspListSettings& settings) {
   const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
-  const std::uint64_t frames = frame_count(*with.kit, *with.object, settings);
+  const std::uint64_t frames = frame_count(*with.hand_geometry, *with.object, settings);
   std::atomic<std::uint64_t> next{0};
   std::vector<GraspList> parts(threads);
   const auto work = [&](std::size_t of) {
-    GraspLister lister(with.kit, with.workspaces, with.object, settings);
+    GraspLister lister(with.hand_geometry, with.workspaces, with.object, settings);
     for (std::uint64_t first; (first = next.fetch_add(64)) < frames;) {
       lister.test(first, 64);
       if (of == 0 && progress_wanted())
@@ -64,14 +64,14 @@ ObjectModel object_of(const ListOptions& o) {
   return object;
 }
 
-std::shared_ptr<const HandKit> kit_of(const std::string& hand) {
-  return std::make_shared<const HandKit>(HandModel::load(hand_description(hand)));
+std::shared_ptr<const HandGeometry> hand_geometry_of(const std::string& hand) {
+  return std::make_shared<const HandGeometry>(HandModel::load(hand_description(hand)));
 }
 
 Listed prepared(const std::string& hand, const ListOptions& o, bool quiet) {
   Listed out;
-  out.kit = kit_of(hand);
-  out.object = std::make_shared<const Graspable>(object_of(o), out.kit->tip_radius(), GraspListSettings{}.step_share, o.seed);
+  out.hand_geometry = hand_geometry_of(hand);
+  out.object = std::make_shared<const Graspable>(object_of(o), out.hand_geometry->tip_radius(), GraspListSettings{}.step_share, o.seed);
   if (!quiet) report_mesh(*out.object);
   return out;
 }
@@ -83,7 +83,7 @@ Listed list_with(const std::string& hand, const ListOptions& o, bool quiet) {
   settings.orientations = o.orientations;
   settings.friction = o.friction;
   settings.seed = o.seed;
-  out.workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*out.kit));
+  out.workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*out.hand_geometry));
   const auto start = std::chrono::steady_clock::now();
   out.list = on_all_cores(out, settings);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -25,14 +25,14 @@ void add_list_options(CLI::App& command, ListOptions& options);
 ObjectModel object_of(const ListOptions& options);
 
 struct Listed {
-  std::shared_ptr<const grasp_planner::HandKit> kit;                  ///< model of the hand
+  std::shared_ptr<const grasp_planner::HandGeometry> hand_geometry;   ///< model of the hand
   std::shared_ptr<const grasp_planner::FingerWorkspaces> workspaces;  ///< null from prepared()
   std::shared_ptr<const grasp_planner::Graspable> object;             ///< with its contact points
   grasp_planner::GraspList list;                                      ///< empty from prepared(); best grasp first
   double seconds{};                                                   ///< that the list took
 };
 /// Loads a hand by the name or file of its description.
-std::shared_ptr<const grasp_planner::HandKit> kit_of(const std::string& hand);
+std::shared_ptr<const grasp_planner::HandGeometry> hand_geometry_of(const std::string& hand);
 /// Hand and object without workspaces and list.
 Listed prepared(const std::string& hand, const ListOptions& options, bool quiet = false);
 /// Makes the list of a hand (name or file) on the options' object; findings, counts and time go to

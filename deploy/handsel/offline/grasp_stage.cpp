@@ -30,12 +30,12 @@ Stage::Stage(const StageOptions& o) : file(robot_description(o.robot)), robot(st
   object = object_of(o);
   for (const Manipulator& m : manipulators(file, *robot)) {
     lists.push_back(list_with(m.hand, o));
-    arms.push_back({m, lists.back().kit.get(), nullptr});
+    arms.push_back({m, lists.back().hand_geometry.get(), nullptr});
   }
   if (arms.empty()) throw ConfigError("robot " + robot->name() + " has no arm with a hand");
   for (std::size_t i = 0; i < arms.size(); ++i) arms[i].list = &lists[i].list;
   scene.robot_known = true;
-  scene.robot_position = robot->rest_posture();
+  scene.robot_position = robot->rest_configuration();
   scene.boxes.push_back({"table", make_pose({o.table[0], o.table[1], 0.5 * o.table[4]}), {o.table[2], o.table[3], o.table[4]}, true});
   top = o.table[4];
 }

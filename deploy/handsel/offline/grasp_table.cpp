@@ -16,11 +16,12 @@ double fitting_scale(const Vector3& extents, double opening) {
   return e[1] >= 0.15 * opening && e[1] <= 0.75 * opening ? 1.0 : 0.5 * opening / e[1];
 }
 
-double opening_of(const HandKit& kit) {
-  if (kit.hand.pinches()) return PinchMotion(kit).widest();
+double opening_of(const HandGeometry& hand_geometry) {
+  if (hand_geometry.hand.pinches()) return PinchMotion(hand_geometry).widest();
   double widest = 0;
-  const Vector3 thumb = kit.chains[0].tip(kit.hand.pregrasp());
-  for (std::size_t f = 1; f < kit.chains.size(); ++f) widest = std::max(widest, (kit.chains[f].tip(kit.hand.pregrasp()) - thumb).norm());
+  const Vector3 thumb = hand_geometry.chains[0].tip(hand_geometry.hand.pregrasp());
+  for (std::size_t f = 1; f < hand_geometry.chains.size(); ++f)
+    widest = std::max(widest, (hand_geometry.chains[f].tip(hand_geometry.hand.pregrasp()) - thumb).norm());
   return widest;
 }
 
@@ -40,7 +41,7 @@ TableRow table_row(const std::string& hand, const ListOptions& options, bool fit
       }
       Eigen::AlignedBox3d box;
       for (const Vector3& v : object.mesh.vertices) box.extend(v);
-      o.scale *= fitting_scale(box.sizes(), opening_of(*kit_of(hand)));
+      o.scale *= fitting_scale(box.sizes(), opening_of(*hand_geometry_of(hand)));
     }
     row.scale = o.scale / options.scale;
     const Listed listed = list_with(hand, o, true);

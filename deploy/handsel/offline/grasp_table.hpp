@@ -26,7 +26,7 @@ struct TableRow {
 double fitting_scale(const Vector3& extents, double opening);
 /// Returns the distance between thumb and the farthest other fingertip, ready to enclose; of two
 /// pads their widest gap [m].
-double opening_of(const grasp_planner::HandKit& kit);
+double opening_of(const grasp_planner::HandGeometry& hand_geometry);
 
 /// `options.object` is the object; with `fit` it is scaled for the hand.
 TableRow table_row(const std::string& hand, const ListOptions& options, bool fit);

@@ -14,8 +14,8 @@ int axis_of(const RobotModel& robot, const std::string& name) {
   throw LineError("the robot has no axis \"" + name + "\"");
 }
 
-Vector posture_in(const RobotModel& robot, const json& joints, const char* what) {
-  Vector q = robot.rest_posture().size() == robot.dof() ? robot.rest_posture() : Vector::Zero(robot.dof());
+Vector configuration_in(const RobotModel& robot, const json& joints, const char* what) {
+  Vector q = robot.rest_configuration().size() == robot.dof() ? robot.rest_configuration() : Vector::Zero(robot.dof());
   if (!joints.is_object())
     throw LineError(std::string("\"") + what + "\" must be an object of joint names and positions, as {\"shoulder\": 0.5}");
   const auto fixed = [&](const std::string& name) {

@@ -12,7 +12,7 @@ namespace handsel::command {
 int axis_of(const RobotModel& robot, const std::string& name);
 /// Returns the rest configuration with the values of {"joint": rad, ...}; fixed joints are ignored.
 /// `what`: the field that holds them.
-Vector posture_in(const RobotModel& robot, const nlohmann::json& joints, const char* what);
+Vector configuration_in(const RobotModel& robot, const nlohmann::json& joints, const char* what);
 /// The field "obstacles": [{"id", "type": "box|cylinder|sphere", "dims", "pos", "quat_xyzw"}], root
 /// frame [m]; none without it.
 std::vector<Obstacle> obstacles_in(const nlohmann::json& line);

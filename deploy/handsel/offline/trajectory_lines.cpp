@@ -95,7 +95,7 @@ json smooth_line(const json& line) {
   if (!result.ok()) throw LineError(result.reason);
   require_finite(result.trajectory);
   json corners = json::array();
-  for (const CornerReport& c : result.corners) {
+  for (const BlendReport& c : result.corners) {
     json corner{{"node", c.node}, {"method", name(c.method)}, {"excess", c.excess}, {"saved_s", c.saved}};
     if (!c.reason.empty()) corner["reason"] = c.reason;
     corners.push_back(corner);

@@ -48,16 +48,17 @@ void draw_object(Canvas& canvas, const Graspable& object, double opacity) {
   canvas.shape(std::make_shared<const TriangleMesh>(object.mesh()), Pose::Identity(), kObject, opacity);
 }
 
-void draw_hand(Canvas& canvas, const HandKit& kit, const Vector& q, const Pose& T_object_hand, Colour colour, double opacity) {
+void draw_hand(Canvas& canvas, const HandGeometry& hand_geometry, const Vector& q, const Pose& T_object_hand, Colour colour,
+               double opacity) {
   std::vector<Pose> T_hand_link;
-  const RobotModel& model = kit.hand.model();
+  const RobotModel& model = hand_geometry.hand.model();
   model.forward(q, T_hand_link);
   for (std::size_t l = 0; l < model.links().size(); ++l) {
     for (const PlacedShape& s : model.links()[l].collision)
       canvas.shape(s.shape, T_object_hand * T_hand_link[l] * s.T_parent_shape, colour, opacity);
   }
-  for (std::size_t f = 0; f < kit.hand.fingers().size(); ++f) {
-    const Finger& finger = kit.hand.fingers()[f];
+  for (std::size_t f = 0; f < hand_geometry.hand.fingers().size(); ++f) {
+    const Finger& finger = hand_geometry.hand.fingers()[f];
     if (finger.pad) continue;
     const auto tip = static_cast<std::size_t>(model.link_index(finger.tip_link));
     canvas.ball((T_object_hand * T_hand_link[tip]).translation(), 1.02 * finger.tip_radius, finger_colour(f), opacity);
@@ -71,11 +72,11 @@ void draw_contacts(Canvas& canvas, const Grasp& grasp) {
   }
 }
 
-void draw_force_ellipsoids(Canvas& canvas, const HandKit& kit, const Grasp& grasp) {
+void draw_force_ellipsoids(Canvas& canvas, const HandGeometry& hand_geometry, const Grasp& grasp) {
   std::vector<std::vector<Pose>> T_hand_step;
-  kit.forward(grasp.hand_joints, T_hand_step);
+  hand_geometry.forward(grasp.hand_joints, T_hand_step);
   for (const Contact& c : grasp.contacts) {
-    const Eigen::Matrix3Xd J = kit.chains[c.finger].jacobian(T_hand_step[c.finger]);
+    const Eigen::Matrix3Xd J = hand_geometry.chains[c.finger].jacobian(T_hand_step[c.finger]);
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(Eigen::Matrix3d(J * J.transpose()));
     // Of the forces that unit efforts give: semi-axes 1 / sqrt(eigenvalue); a direction without movement is cut at eight times the least.
     const Vector3 force = eigen.eigenvalues().cwiseMax(eigen.eigenvalues()[2] / 64).cwiseSqrt().cwiseInverse();
@@ -130,13 +131,13 @@ void draw_workspace(Canvas& canvas, const FingerWorkspace& workspace, Colour col
   }
 }
 
-void draw_candidates(Canvas& canvas, const HandKit& kit, const FingerWorkspaces& workspaces, const Graspable& object,
+void draw_candidates(Canvas& canvas, const HandGeometry& hand_geometry, const FingerWorkspaces& workspaces, const Graspable& object,
                      const Pose& T_object_hand) {
   const GraspListSettings settings;
-  FrameSearch search(kit, workspaces, object, settings);
+  FrameSearch search(hand_geometry, workspaces, object, settings);
   const double size = object.box().sizes().maxCoeff() / 90;
   std::vector<std::uint32_t> points;
-  for (std::size_t f = 0; f < kit.chains.size(); ++f) {
+  for (std::size_t f = 0; f < hand_geometry.chains.size(); ++f) {
     search.candidates(static_cast<int>(f), T_object_hand, points);
     // A point that several fingers cover wears their colours side by side.
     for (const std::uint32_t i : points) {

@@ -38,7 +38,7 @@ void draw_robot(Canvas& canvas, const RobotModel& robot, const Vector& q, const 
   }
 }
 
-void draw_taker(Canvas& canvas, const Person& person, const TransferPose& transfer, const HandKit& hand, const Grasp& grasp) {
+void draw_taker(Canvas& canvas, const Person& person, const TransferPose& transfer, const HandGeometry& hand, const Grasp& grasp) {
   for (const BodyCapsule& c : body_capsules(person)) {
     if (c.part == BodyPart::upper_arm_right || c.part == BodyPart::forearm_right || c.part == BodyPart::hand_right) continue;
     canvas.stick(c.a, c.b, c.radius, c.part == BodyPart::head ? kSkin : kBody);
@@ -52,7 +52,7 @@ void draw_taker(Canvas& canvas, const Person& person, const TransferPose& transf
   draw_hand(canvas, hand, grasp.hand_joints, T_world_wrist, kSkin);
 }
 
-Picture double_grasp_picture(const Graspable& object, const HandKit& a, const Grasp& first, const HandKit& b, const Grasp& second,
+Picture double_grasp_picture(const Graspable& object, const HandGeometry& a, const Grasp& first, const HandGeometry& b, const Grasp& second,
                              int size) {
   const Eigen::AlignedBox3d box = around(object.box().center(), 0.22);
   return from_sides(box, {Vector3(1, -1.6, 0.9), Vector3(1.6, 1, 0.5), Vector3(-0.3, -0.2, 2)}, size, [&](Canvas& canvas, std::size_t) {
@@ -64,14 +64,11 @@ Picture double_grasp_picture(const Graspable& object, const HandKit& a, const Gr
   });
 }
 
-Picture transfer_picture(const DrawnRobot& robot, const Scene& scene, const DrawnReceiver& receiver,
-                         const Graspable& object, const TransferPose& transfer, int size) {
+Picture transfer_picture(const DrawnRobot& robot, const Scene& scene, const DrawnReceiver& receiver, const Graspable& object,
+                         const TransferPose& transfer, int size) {
   const Vector3 middle = transfer.T_world_object * object.box().center();
-  const Vector3 chest =
-      receiver.person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
-  const Vector3 toward_robot = (scene.T_world_base.translation() - chest)
-                                   .cwiseProduct(Vector3(1, 1, 0))
-                                   .normalized(),
+  const Vector3 chest = receiver.person.joints[static_cast<std::size_t>(body_joint_index("torso"))].position;
+  const Vector3 toward_robot = (scene.T_world_base.translation() - chest).cwiseProduct(Vector3(1, 1, 0)).normalized(),
                 aside = toward_robot.cross(Vector3::UnitZ());
   const auto draw = [&](Canvas& canvas, std::size_t) {
     draw_furniture(canvas, scene);

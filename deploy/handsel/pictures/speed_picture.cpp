@@ -18,7 +18,8 @@ std::string text(const char* format, Values... values) {
 
 std::string line_of(const SpeedCurve& curve, const std::vector<double>& values, double top, const char* style) {
   std::string out = "<polyline points=\"";
-  for (std::size_t i = 0; i < values.size(); ++i) out += text("%.1f,%.1f ", kLeft + curve.way[i] * kWide, top + (1 - values[i]) * kHigh);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    out += text("%.1f,%.1f ", kLeft + curve.progress[i] * kWide, top + (1 - values[i]) * kHigh);
   return out + "\" fill=\"none\" " + style + "/>\n";
 }
 
@@ -36,12 +37,12 @@ SpeedCurve speed_curve(const Trajectory& trajectory, const std::vector<int>& axe
     last = state.position;
     q(axes) = state.position;
     const auto look = people.at(q);
-    curve.way.push_back(gone);
+    curve.progress.push_back(gone);
     curve.cost.push_back(look.cost);
     curve.allowed.push_back(look.share);
     curve.speed.push_back((state.velocity.cwiseAbs().array() / limits.array()).maxCoeff());
   }
-  for (double& way : curve.way) way /= gone > 0 ? gone : 1;
+  for (double& way : curve.progress) way /= gone > 0 ? gone : 1;
   return curve;
 }
 

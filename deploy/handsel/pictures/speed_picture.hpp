@@ -11,11 +11,11 @@ namespace handsel {
 
 /// Along a trajectory, at regular times.
 struct SpeedCurve {
-  std::string title;            ///< above the panel
-  std::vector<double> way;      ///< fraction of the path covered, 0 to 1, by joint-space length
-  std::vector<double> cost;     ///< human-aware cost of the configuration, [0, 1]
-  std::vector<double> allowed;  ///< fraction of the velocity limits allowed there
-  std::vector<double> speed;    ///< largest ratio of an axis's speed to its velocity limit
+  std::string title;             ///< above the panel
+  std::vector<double> progress;  ///< fraction of the path covered, 0 to 1, by joint-space length
+  std::vector<double> cost;      ///< human-aware cost of the configuration, [0, 1]
+  std::vector<double> allowed;   ///< fraction of the velocity limits allowed there
+  std::vector<double> speed;     ///< largest ratio of an axis's speed to its velocity limit
 };
 
 /// `limits`: of velocity, of the trajectory's axes; `axes`: their robot axes; `rest`: all axes.

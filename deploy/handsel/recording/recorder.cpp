@@ -26,7 +26,7 @@ Recorder::Recorder(RawBus& bus, const std::filesystem::path& file, const mcap::M
   for (std::size_t i = 0; i < topics().size(); ++i) readers_.push_back(bus.read_raw(message_type(i), RawDepth::many));
 }
 
-void Recorder::look() {
+void Recorder::poll() {
   RawSample sample;
   for (std::size_t i = 0; i < readers_.size(); ++i) {
     while (readers_[i]->take(sample)) {
@@ -43,7 +43,7 @@ void Recorder::look() {
 }
 
 void Recorder::close() {
-  look();
+  poll();
   file_.close();
 }
 
@@ -68,8 +68,8 @@ struct Recording::State {
 Recording::Recording(DdsBus& bus, const std::filesystem::path& file, const mcap::Metadata& metadata) {
   if (file.empty()) return;
   state_ = std::make_shared<State>(bus, file, metadata);
-  bus.every(Recorder::kLook, [weak = std::weak_ptr(state_)](TimePoint) {
-    if (const auto state = weak.lock()) state->guarded(&Recorder::look);
+  bus.every(Recorder::kPollPeriod, [weak = std::weak_ptr(state_)](TimePoint) {
+    if (const auto state = weak.lock()) state->guarded(&Recorder::poll);
   });
 }
 

@@ -25,15 +25,15 @@ class Recorder {
   /// transport refuses.
   Recorder(RawBus& bus, const std::filesystem::path& file, const mcap::Metadata& metadata);
 
-  /// Takes the samples that came, at least every kLook, or fast topics lose samples. Throws
+  /// Takes the samples that came, at least every kPollPeriod, or fast topics lose samples. Throws
   /// ConfigError when the disk refuses.
-  void look();
+  void poll();
   /// Takes the last samples and ends the file. Throws ConfigError when the disk refuses.
   void close();
   const mcap::Writer& file() const { return file_; }  ///< for its counts
 
   /// Longest time between two calls of look().
-  static constexpr Duration kLook = std::chrono::milliseconds(20);
+  static constexpr Duration kPollPeriod = std::chrono::milliseconds(20);
 
  private:
   mcap::Writer file_;

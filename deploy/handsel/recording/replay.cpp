@@ -58,16 +58,16 @@ Replay::Replay(Bus& bus, const Settings& settings) : reader_(settings.file), fro
     if (channel.encoding != "cdr" || channel.schema != idl_schema(**row))
       throw ConfigError(settings.file.string() + ": " + channel.topic + " was recorded with another IDL than this version's");
     const MessageType& type = *find_message_type((*row)->type);
-    lanes_[id] = {&type, bus.advertise_any(type, 0), type.new_wire(), type.new_message()};
+    channels_[id] = {&type, bus.advertise_any(type, 0), type.new_wire(), type.new_message()};
     counts_[channel.topic] = {};
   }
-  if (lanes_.empty()) throw ConfigError(settings.file.string() + " has none of the topics to replay");
+  if (channels_.empty()) throw ConfigError(settings.file.string() + " has none of the topics to replay");
 }
 
 bool Replay::advance() {
   while (reader_.next(sample_)) {
     if (begin_ < 0) begin_ = sample_.time;
-    if (lanes_.contains(sample_.channel) && due() >= 0) return true;
+    if (channels_.contains(sample_.channel) && due() >= 0) return true;
   }
   return false;
 }
@@ -75,16 +75,16 @@ bool Replay::advance() {
 double Replay::due() const { return 1e-9 * static_cast<double>(sample_.time - begin_) - from_; }
 
 void Replay::send(Stamp began) {
-  const Lane& lane = lanes_.at(sample_.channel);
-  Count& count = counts_[lane.type->row().topic];
+  const Channel& channel = channels_.at(sample_.channel);
+  Count& count = counts_[channel.type->row().topic];
   std::string why = "its bytes are no such sample";
-  bool sent = codec_.decode(*lane.type, sample_.data, lane.wire.get());
+  bool sent = codec_.decode(*channel.type, sample_.data, channel.wire.get());
   if (sent) {
     // A measurement stays as old at its sending as it was.
-    const Stamp stamp = lane.type->stamp(lane.wire.get());
+    const Stamp stamp = channel.type->stamp(channel.wire.get());
     const Stamp age = stamp >= 0 && stamp < sample_.time ? sample_.time - stamp : 0;
-    lane.type->set_stamp(lane.wire.get(), began + static_cast<Stamp>(1e9 * due()) - age);
-    sent = lane.type->from_wire(lane.wire.get(), lane.message.get(), why) && lane.out->publish(lane.message.get());
+    channel.type->set_stamp(channel.wire.get(), began + static_cast<Stamp>(1e9 * due()) - age);
+    sent = channel.type->from_wire(channel.wire.get(), channel.message.get(), why) && channel.out->publish(channel.message.get());
   }
   ++(sent ? count.sent : count.refused);
   if (!sent && count.refusal.empty()) count.refusal = why.empty() ? "the transport has no room" : why;

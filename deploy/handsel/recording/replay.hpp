@@ -52,14 +52,14 @@ class Replay {
   bool cut() const { return reader_.cut(); }
 
  private:
-  struct Lane {
+  struct Channel {
     const MessageType* type{};
     std::unique_ptr<AnyPublisher> out;
     std::shared_ptr<void> wire, message;
   };
   mcap::Reader reader_;
   CdrCodec codec_;
-  std::map<std::uint16_t, Lane> lanes_;  ///< by channel of the file
+  std::map<std::uint16_t, Channel> channels_;  ///< by channel of the file
   std::map<std::string, Count> counts_;
   mcap::Message sample_;
   double from_;

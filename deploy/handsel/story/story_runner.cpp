@@ -127,7 +127,7 @@ void StoryRunner::start(const StoryStep& step) {
   seed_ = options.seed;
   system_ = std::make_unique<System>(options);
   sim_ = system_->session().bus().advertise<SimControl>();
-  system_->session().observer().on_sample([this](const Snapshot& snapshot, TimePoint at) { look(snapshot, at); });
+  system_->session().observer().on_sample([this](const Snapshot& snapshot, TimePoint at) { on_snapshot(snapshot, at); });
 }
 
 void StoryRunner::send_task(const StoryStep& step) {
@@ -174,7 +174,7 @@ void StoryRunner::send_control(const StoryStep& step) {
     const auto own = tasks.find(goal.id);
     return own != tasks.end() && is_over(own->second.state);
   };
-  if (!system_->wait(kAnswerPatience, answered)) throw Unfulfilled{"the supervisor does not answer"};
+  if (!system_->wait(kAnswerTimeout, answered)) throw Unfulfilled{"the supervisor does not answer"};
 }
 
 void StoryRunner::send_sim(const StoryStep& step) {
@@ -203,13 +203,14 @@ void StoryRunner::signal_process(const std::string& process, int signal) {
 }
 
 std::string StoryRunner::evidence(const Condition& condition) const {
-  const GroundTruth& truth = system_->session().snapshot().truth.sample;
+  const GroundTruth& ground_truth = system_->session().snapshot().ground_truth.sample;
   switch (condition.kind) {
     case ConditionKind::no_limit_violations:
-      return ": " + std::to_string(truth.limit_violations) + " set-points broke a limit";
+      return ": " + std::to_string(ground_truth.limit_violations) + " set-points broke a limit";
     case ConditionKind::no_ssm_violations:
-      return ": for " + std::to_string(truth.ssm_violations) +
-             " ms the robot came nearer faster than the distance allowed, least distance " + std::to_string(truth.least_separation) + " m";
+      return ": for " + std::to_string(ground_truth.ssm_violations) +
+             " ms the robot came nearer faster than the distance allowed, least distance " + std::to_string(ground_truth.least_separation) +
+             " m";
     default:
       return {};
   }
@@ -224,7 +225,7 @@ void StoryRunner::await(const StoryStep& step) {
   } else {
     if (step.kind == StepKind::wait) watch->held = false;
     system_->wait(std::max(deadline - now(), Duration::zero()) + from_seconds(0.05), [&] {
-      look(system_->session().snapshot(), now());
+      on_snapshot(system_->session().snapshot(), now());
       wake_due();
       remind();
       return watch->held || now() > deadline + from_seconds(0.03);
@@ -240,7 +241,7 @@ void StoryRunner::refute(const StoryStep& step) {
   const auto watch = std::find_if(watches_.begin(), watches_.end(), [&](const Watch& w) { return w.step == &step; });
   const TimePoint deadline = origin_ + step.limit;
   system_->wait(std::max(deadline - now(), Duration::zero()), [&] {
-    look(system_->session().snapshot(), now());
+    on_snapshot(system_->session().snapshot(), now());
     wake_due();
     remind();
     return watch->held || now() > deadline;
@@ -268,7 +269,7 @@ void StoryRunner::begin_watching(std::size_t index) {
   }
 }
 
-void StoryRunner::look(const Snapshot& snapshot, TimePoint at) {
+void StoryRunner::on_snapshot(const Snapshot& snapshot, TimePoint at) {
   for (Watch& watch : watches_) {
     if (watch.held && !is_calm(*watch.step->condition)) continue;
     const bool held = watch.held;
@@ -285,7 +286,7 @@ bool StoryRunner::task_is(const std::string& word, const Snapshot& snapshot) con
 bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, TimePoint at) const {
   const std::string& subject = condition.subject;
   const auto fresh = [&](const auto& seen) { return seen.ever && seen.arrival >= origin_; };
-  const GroundTruth& truth = snapshot.truth.sample;
+  const GroundTruth& ground_truth = snapshot.ground_truth.sample;
   const ExecutionStatus& execution = snapshot.execution.sample;
   switch (condition.kind) {
     case ConditionKind::ready:
@@ -302,15 +303,15 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
     case ConditionKind::phase:
       return fresh(snapshot.action) && phase_text(snapshot.action.sample) == subject;
     case ConditionKind::carrier:
-      return fresh(snapshot.truth) && truth.carrier == subject;
+      return fresh(snapshot.ground_truth) && ground_truth.carrier == subject;
     case ConditionKind::task:
       return task_is(subject, snapshot);
     case ConditionKind::handover:
-      return snapshot.truth.ever && truth.handover_done;
+      return snapshot.ground_truth.ever && ground_truth.handover_done;
     case ConditionKind::moving:
-      return fresh(snapshot.truth) && truth.robot_moving;
+      return fresh(snapshot.ground_truth) && ground_truth.robot_moving;
     case ConditionKind::rest:
-      return fresh(snapshot.truth) && !truth.robot_moving;
+      return fresh(snapshot.ground_truth) && !ground_truth.robot_moving;
     case ConditionKind::back: {
       const auto health = snapshot.health.find(subject);
       if (health == snapshot.health.end() || !fresh(health->second) || health->second.sample.state != HealthState::ok) return false;
@@ -329,15 +330,15 @@ bool StoryRunner::holds(const Condition& condition, const Snapshot& snapshot, Ti
     case ConditionKind::speed_below:
       return fresh(snapshot.active) && std::abs(snapshot.active.sample.speed_factor) < condition.value;
     case ConditionKind::no_limit_violations:
-      return snapshot.truth.ever && truth.limit_violations == 0;
+      return snapshot.ground_truth.ever && ground_truth.limit_violations == 0;
     case ConditionKind::no_ssm_violations:
-      return snapshot.truth.ever && truth.ssm_violations == 0;
+      return snapshot.ground_truth.ever && ground_truth.ssm_violations == 0;
     case ConditionKind::no_collisions:
-      return snapshot.truth.ever && truth.self_or_scene_collisions == 0;
+      return snapshot.ground_truth.ever && ground_truth.self_or_scene_collisions == 0;
     case ConditionKind::one_commander:
-      return snapshot.truth.ever && truth.commanders == 1;
+      return snapshot.ground_truth.ever && ground_truth.commanders == 1;
     case ConditionKind::not_dropped:
-      return snapshot.truth.ever && !truth.dropped;
+      return snapshot.ground_truth.ever && !ground_truth.dropped;
   }
   return false;
 }

@@ -48,7 +48,7 @@ class StoryRunner {
   void refute(const StoryStep& step);
   void stop();
   void begin_watching(std::size_t index);
-  void look(const Snapshot& snapshot, TimePoint now);
+  void on_snapshot(const Snapshot& snapshot, TimePoint now);
   bool holds(const Condition& condition, const Snapshot& snapshot, TimePoint now) const;
   bool task_is(const std::string& word, const Snapshot& snapshot) const;
   void listen_until(TimePoint until);

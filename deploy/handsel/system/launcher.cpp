@@ -190,7 +190,7 @@ void Launcher::stop_children() {
       kill(child.pid, SIGCONT);
     }
   }
-  const TimePoint deadline = monotonic_now() + options_.stop_patience;
+  const TimePoint deadline = monotonic_now() + options_.stop_timeout;
   for (Child& child : children_) {
     if (child.pid < 0) continue;
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - monotonic_now()).count();
@@ -224,9 +224,9 @@ pid_t Launcher::pid(const std::string& name) const {
   return child == children_.end() ? -1 : child->pid;
 }
 
-std::optional<LaunchFailure> Launcher::failure(Duration patience) const {
+std::optional<LaunchFailure> Launcher::failure(Duration timeout) const {
   std::unique_lock lock(mutex_);
-  failed_.wait_for(lock, patience, [this] { return failure_.has_value(); });
+  failed_.wait_for(lock, timeout, [this] { return failure_.has_value(); });
   return failure_;
 }
 

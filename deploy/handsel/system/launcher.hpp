@@ -43,8 +43,8 @@ struct LauncherOptions {
   std::filesystem::path log_directory;  ///< one <name>.log each; made when it is not there
   /// One sentence for people; called on the launcher's thread; may be empty.
   std::function<void(const std::string&)> on_event;
-  Duration stop_patience{from_seconds(1.0)};  ///< between SIGTERM and SIGKILL
-  BackoffSettings backoff{};                  ///< between a death and the next start
+  Duration stop_timeout{from_seconds(1.0)};  ///< between SIGTERM and SIGKILL
+  BackoffSettings backoff{};                 ///< between a death and the next start
 };
 
 /// A process that ends is started again, after a wait that grows with each death; for ever. Only
@@ -63,13 +63,13 @@ class Launcher {
   /// Kills a process that is hung, when it is still the one with this pid; it is then started
   /// again. `why`: e.g. "hung: no heartbeat ...".
   void replace(const std::string& name, pid_t pid, const std::string& why);
-  /// Sends SIGTERM to all, SIGKILL after `stop_patience`; all are reaped when stop() returns.
+  /// Sends SIGTERM to all, SIGKILL after `stop_timeout`; all are reaped when stop() returns.
   /// Harmless when called again.
   void stop();
   std::vector<ProcessStatus> processes() const;  ///< state of each now, in the order of the options
   pid_t pid(const std::string& name) const;      ///< -1 if it does not run or is unknown
   /// Returns the failure, waiting for one up to the given time; nullopt when there is none.
-  std::optional<LaunchFailure> failure(Duration patience = {}) const;
+  std::optional<LaunchFailure> failure(Duration timeout = {}) const;
 
  private:
   struct Child;

@@ -16,7 +16,7 @@ void Liveness::beat(TimePoint at, bool job_silent) {
   if (!job_silent) job_since_.reset();
 }
 
-Life Liveness::judge(const LifeSigns& signs) {
+Life Liveness::assess(const LifeSigns& signs) {
   if (new_beat_) {
     last_ = signs;
     last_.now = *new_beat_;
@@ -36,8 +36,8 @@ Life Liveness::judge(const LifeSigns& signs) {
       beaten_ && job_since_ && !kept &&
       signs.now - job_since_->now - growth(job_since_->own_delay, signs.own_delay) - growth(job_since_->total_delay, signs.total_delay) >
           settings_.silent_job_after;
-  const Duration patience = beaten_ ? settings_.hung_after : settings_.start_patience;
-  if (stopped || job_hung_ || (idle > patience && !kept && signs.state != 'T')) return Life::hung;
+  const Duration timeout = beaten_ ? settings_.hung_after : settings_.start_timeout;
+  if (stopped || job_hung_ || (idle > timeout && !kept && signs.state != 'T')) return Life::hung;
   if (!beaten_) return Life::starting;
   return silence > settings_.hung_after ? Life::starved : Life::alive;
 }
@@ -45,7 +45,7 @@ Life Liveness::judge(const LifeSigns& signs) {
 Duration Backoff::after_life_of(Duration lived) {
   if (lived >= settings_.stable_after) next_ = settings_.first;
   const Duration wait = next_;
-  next_ = std::min(2 * next_, settings_.longest);
+  next_ = std::min(2 * next_, settings_.max_wait);
   return wait;
 }
 

@@ -19,7 +19,7 @@ enum class Life : std::uint8_t {
 struct LivenessSettings {
   Duration hung_after{from_seconds(2.0)};         ///< without a heartbeat
   Duration silent_job_after{from_seconds(10.0)};  ///< with a job that gives no sign of life
-  Duration start_patience{from_seconds(20.0)};    ///< until the first heartbeat
+  Duration start_timeout{from_seconds(20.0)};     ///< until the first heartbeat
 };
 
 /// What is known of a process at one moment. Delays grow from any origin; only their growth counts.
@@ -44,7 +44,7 @@ class Liveness {
   /// A heartbeat arrived; `job_silent`: it says that a job gives no sign of life.
   void beat(TimePoint at, bool job_silent);
   /// Returns the state of the process at `signs.now`, which must not decrease between calls.
-  Life judge(const LifeSigns& signs);
+  Life assess(const LifeSigns& signs);
   /// Returns the result of the last evaluation: heartbeats come, but a job is hung.
   bool job_hung() const { return job_hung_; }
 
@@ -61,7 +61,7 @@ class Liveness {
 /// value on after a stable life.
 struct BackoffSettings {
   Duration first{from_seconds(0.1)};          ///< wait after a first death
-  Duration longest{from_seconds(10.0)};       ///< upper limit of the wait
+  Duration max_wait{from_seconds(10.0)};      ///< upper limit of the wait
   Duration stable_after{from_seconds(30.0)};  ///< a life this long forgets the deaths before
 };
 

@@ -89,16 +89,16 @@ Observer::Observer(Bus& bus) {
     snapshot_.active.sample.time = active.time;
     snapshot_.active.sample.speed_factor = active.speed_factor;
   });
-  watch<GroundTruth>(bus, [this, keep](const GroundTruth& truth, TimePoint at) {
-    const auto& seen = snapshot_.truth;
-    if (!seen.ever || seen.sample.carrier != truth.carrier)
-      note(at, truth.object + " carried by " + (truth.carrier.empty() ? "nobody" : truth.carrier));
-    if (truth.hold == "constraint" && !(seen.ever && seen.sample.hold == truth.hold))
-      note(at, truth.object + " held by the constraint more than by contact");
-    if (truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
-    if (truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, truth.object + " dropped");
-    if (truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");
-    keep(snapshot_.truth, truth, at);
+  watch<GroundTruth>(bus, [this, keep](const GroundTruth& ground_truth, TimePoint at) {
+    const auto& seen = snapshot_.ground_truth;
+    if (!seen.ever || seen.sample.carrier != ground_truth.carrier)
+      note(at, ground_truth.object + " carried by " + (ground_truth.carrier.empty() ? "nobody" : ground_truth.carrier));
+    if (ground_truth.hold == "constraint" && !(seen.ever && seen.sample.hold == ground_truth.hold))
+      note(at, ground_truth.object + " held by the constraint more than by contact");
+    if (ground_truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
+    if (ground_truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, ground_truth.object + " dropped");
+    if (ground_truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");
+    keep(snapshot_.ground_truth, ground_truth, at);
   });
 }
 

@@ -35,7 +35,7 @@ struct Snapshot {
   Seen<AttentionState> attention;                       ///< behaviours and their clocks
   Seen<TrajectoryForecast> forecast;                    ///< of the running trajectory
   Seen<ActiveTrajectory> active;                        ///< without the trajectory itself
-  Seen<GroundTruth> truth;                              ///< of the simulator; never seen on a real robot
+  Seen<GroundTruth> ground_truth;                       ///< of the simulator; never seen on a real robot
 };
 
 /// A change worth reporting, e.g. "mode hold".

@@ -114,9 +114,9 @@ void Performer::follow(TimePoint now) {
   const TaskStatus& status = found->second;
   note_step(status, now);
   TaskOutcome& outcome = outcomes_.back();
-  const Seen<GroundTruth>& truth = observer_.snapshot().truth;
-  if (outcome.first_motion < 0 && truth.arrival > task_begin_ && truth.sample.robot_moving)
-    outcome.first_motion = to_seconds(truth.arrival - task_begin_);
+  const Seen<GroundTruth>& ground_truth = observer_.snapshot().ground_truth;
+  if (outcome.first_motion < 0 && ground_truth.arrival > task_begin_ && ground_truth.sample.robot_moving)
+    outcome.first_motion = to_seconds(ground_truth.arrival - task_begin_);
   outcome.state = name(status.state);
   outcome.reason = status.reason;
   outcome.refusals = status.refusals;
@@ -135,19 +135,21 @@ void Performer::verify(TimePoint now) {
     outcome.success = supervisor_says;
     return conclude(now);
   }
-  const Seen<GroundTruth>& truth = observer_.snapshot().truth;
-  const bool oracle_says = truth.ever && (goal.object.empty() || truth.sample.object == goal.object) && truth.sample.handover_done;
+  const Seen<GroundTruth>& ground_truth = observer_.snapshot().ground_truth;
+  const bool oracle_says =
+      ground_truth.ever && (goal.object.empty() || ground_truth.sample.object == goal.object) && ground_truth.sample.handover_done;
   if (oracle_says) {
     outcome.success = true;
     return conclude(now);
   }
   if (supervisor_says && now - verify_begin_ < kOraclePatience) return;
   if (supervisor_says) {
-    outcome.reason = !truth.ever                          ? "no word from the simulator's oracle"
-                     : truth.sample.dropped               ? goal.object + " was dropped"
-                     : truth.sample.object != goal.object ? "the simulator's oracle watches " + truth.sample.object + ", not " + goal.object
-                                                          : "the simulator's oracle saw no handover: " + goal.object + " is with " +
-                                                                (truth.sample.carrier.empty() ? "nobody" : truth.sample.carrier);
+    outcome.reason = !ground_truth.ever            ? "no word from the simulator's oracle"
+                     : ground_truth.sample.dropped ? goal.object + " was dropped"
+                     : ground_truth.sample.object != goal.object
+                         ? "the simulator's oracle watches " + ground_truth.sample.object + ", not " + goal.object
+                         : "the simulator's oracle saw no handover: " + goal.object + " is with " +
+                               (ground_truth.sample.carrier.empty() ? "nobody" : ground_truth.sample.carrier);
   }
   conclude(now);
 }

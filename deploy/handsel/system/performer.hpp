@@ -15,7 +15,7 @@ namespace handsel {
 /// often, and one goal twice is one task.
 inline constexpr Duration kTaskSilence = std::chrono::seconds(2);
 // the supervisor gives a thing that is named two seconds to be seen
-inline constexpr Duration kAnswerPatience = std::chrono::seconds(4);
+inline constexpr Duration kAnswerTimeout = std::chrono::seconds(4);
 
 /// "give mug to anna"
 std::string describe(const TaskGoal& goal);

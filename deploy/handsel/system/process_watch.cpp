@@ -25,11 +25,11 @@ std::string seconds(Duration time) {
 
 ProcessWatch::ProcessWatch(Bus& bus, Launcher& launcher, const LivenessSettings& settings)
     : launcher_(launcher), settings_(settings), out_(bus.advertise<ComponentHealth>()), last_check_(monotonic_now()) {
-  bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt&) { hear(health); });
+  bus.subscribe<ComponentHealth>([this](const ComponentHealth& health, const Receipt&) { on_health(health); });
   bus.every(kCheckPeriod, [this](TimePoint) { check(); });
 }
 
-void ProcessWatch::hear(const ComponentHealth& health) {
+void ProcessWatch::on_health(const ComponentHealth& health) {
   const auto watched = watched_.find(health.component);
   if (watched == watched_.end() || static_cast<std::uint32_t>(watched->second.pid) != health.pid) return;
   Watched& process = watched->second;
@@ -40,7 +40,7 @@ void ProcessWatch::hear(const ComponentHealth& health) {
 
 /// Returns whether most processes are silent at once: then the listener, the transport or the
 /// machine is at fault. A stopped process (SIGSTOP) does not count; its silence is its own.
-bool ProcessWatch::most_are_silent(TimePoint now) const {
+bool ProcessWatch::majority_is_silent(TimePoint now) const {
   std::size_t expected = 0, beating = 0;
   for (const auto& [name, process] : watched_) {
     if (process.last_beat == TimePoint{} || process.state == 'T') continue;
@@ -54,7 +54,7 @@ bool ProcessWatch::most_are_silent(TimePoint now) const {
 void ProcessWatch::measure_own_delay(TimePoint now) {
   const Duration passed = now - last_check_, threads = own_threads_.update(getpid());
   const Duration late = std::max({Duration{}, passed - kCheckPeriod, threads - own_threads_delay_});
-  own_delay_ += most_are_silent(now) ? passed : late;
+  own_delay_ += majority_is_silent(now) ? passed : late;
   own_threads_delay_ = threads;
   last_check_ = now;
 }
@@ -65,7 +65,7 @@ void ProcessWatch::check() {
   ++checks_;
   for (const ProcessStatus& process : launcher_.processes()) {
     if (process.pid > 0) {
-      judge(process, now);
+      assess(process, now);
     } else {
       watched_.erase(process.name);
       if (checks_ % kSpeakEvery == 0) speak_for(process);
@@ -73,7 +73,7 @@ void ProcessWatch::check() {
   }
 }
 
-void ProcessWatch::judge(const ProcessStatus& process, TimePoint now) {
+void ProcessWatch::assess(const ProcessStatus& process, TimePoint now) {
   LifeSigns signs{.now = now, .state = process_state(process.pid), .main_delay = main_thread_delay(process.pid), .own_delay = own_delay_};
   const auto known = watched_.find(process.name);
   if (known == watched_.end() || known->second.pid != process.pid) {
@@ -84,7 +84,7 @@ void ProcessWatch::judge(const ProcessStatus& process, TimePoint now) {
   watched.state = signs.state;
   if (watched.job_silent) watched.total_delay = watched.threads.update(process.pid);
   signs.total_delay = watched.total_delay;
-  if (watched.liveness.judge(signs) != Life::hung) return;
+  if (watched.liveness.assess(signs) != Life::hung) return;
   const std::string why = watched.liveness.job_hung()
                               ? "a job has given no sign of life for more than " + seconds(settings_.silent_job_after)
                           : signs.state == 'T' ? "stopped and without heartbeat for more than " + seconds(settings_.hung_after)

@@ -36,12 +36,12 @@ class ProcessWatch {
     Duration total_delay{};
     bool job_silent{};
   };
-  void hear(const ComponentHealth& health);
+  void on_health(const ComponentHealth& health);
   void check();
-  void judge(const ProcessStatus& process, TimePoint now);
+  void assess(const ProcessStatus& process, TimePoint now);
   void speak_for(const ProcessStatus& process);
   void measure_own_delay(TimePoint now);
-  bool most_are_silent(TimePoint now) const;
+  bool majority_is_silent(TimePoint now) const;
 
   Launcher& launcher_;
   LivenessSettings settings_;

@@ -9,7 +9,7 @@
 
 namespace handsel {
 
-inline constexpr Duration kReadyPatience = std::chrono::seconds(15);
+inline constexpr Duration kReadyTimeout = std::chrono::seconds(15);
 
 /// --domain N (default: $HANDSEL_DOMAIN, else 0).
 void add_domain_option(CLI::App& command, int& domain);

@@ -47,7 +47,7 @@ class BusySystem {
 
   /// Nobody takes the mug from the hand of an arm that stands for long: that would move the arm.
   bool ready() {
-    if (!system_.wait_ready(kReadyPatience)) return false;
+    if (!system_.wait_ready(kReadyTimeout)) return false;
     disturb(SimAction::person_refuse, 0.0, "anna");
     return true;
   }
@@ -68,7 +68,7 @@ class BusySystem {
     const bool approaches = phase == ActionPhase::approach;
     return moves() && (approaches || phase == ActionPhase::carry || phase == ActionPhase::to_rest);
   }
-  bool moves() { return now().truth.ever && now().truth.sample.robot_moving; }
+  bool moves() { return now().ground_truth.ever && now().ground_truth.sample.robot_moving; }
   void kill(const std::string& process) {
     const pid_t pid = system_.launcher().pid(process);
     ASSERT_GT(pid, 0) << process;
@@ -116,11 +116,11 @@ class BusySystem {
   /// What has happened since mark().
   std::string timeline() {
     std::string out;
-    const GroundTruth& truth = now().truth.sample;
-    const Vector3 at = truth.T_world_object.translation();
+    const GroundTruth& ground_truth = now().ground_truth.sample;
+    const Vector3 at = ground_truth.T_world_object.translation();
     char text[160];
-    std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n", truth.object.c_str(), at.x(), at.y(), at.z(),
-                  truth.carrier.c_str());
+    std::snprintf(text, sizeof text, "  %s at %.3f %.3f %.3f, carried by %s\n", ground_truth.object.c_str(), at.x(), at.y(), at.z(),
+                  ground_truth.carrier.c_str());
     out += text;
     out += "  execution: " + now().execution.sample.reason + "; external torque [Nm]";
     for (const int axis : arm_)
@@ -162,7 +162,7 @@ class BusySystem {
     const bool silent = time - now().task.arrival >= kTaskSilence;
     if (goal_.id != 0 && !over && !silent && status != now().tasks.end()) return;
     if (goal_.id == 0 || over) {
-      const bool holds = now().truth.sample.carrier == "robot";
+      const bool holds = now().ground_truth.sample.carrier == "robot";
       goal_ = {.id = session.new_task_id(), .kind = holds ? TaskKind::place : TaskKind::pick, .object = "mug"};
       if (holds) goal_.surface = "table";
     }

@@ -123,7 +123,7 @@ class FirstDay {
   }
   /// The plan of a motion to so far from the rest posture, on the way of every story; sent.
   Trajectory move_to(double angle) {
-    Vector goal = gathered(robot_.rest_posture());
+    Vector goal = gathered(robot_.rest_configuration());
     goal[plan_.axis] += angle;
     const KinematicLimits& l = robot_.comfort_limits();
     TrajectoryCommand c;
@@ -178,7 +178,7 @@ class FirstDay {
   Vector gathered(const Vector& robot) const { return drivers::gather(robot, arm_.axes); }
   double angle_of(const RobotState& s) const {
     const int axis = arm_.axes[static_cast<std::size_t>(plan_.axis)];
-    return s.position.size() > axis ? s.position[axis] - robot_.rest_posture()[axis] : 0.0;
+    return s.position.size() > axis ? s.position[axis] - robot_.rest_configuration()[axis] : 0.0;
   }
   void remember(const std::string& what) {
     constexpr std::size_t kLong = 2000;
@@ -203,7 +203,7 @@ class FirstDay {
     return furthest;
   }
   void place_wall() {
-    const Vector rest = robot_.rest_posture();
+    const Vector rest = robot_.rest_configuration();
     Vector far = rest;
     far[arm_.axes[static_cast<std::size_t>(plan_.axis)]] += kFar;
     std::vector<Pose> at_rest, at_far;

@@ -90,9 +90,9 @@ class Execution {
     }
     wait(1.0);
     out_.lifted = (world_.T_world_object("it").translation() - start.translation()).z();
-    GroundTruth truth;
-    world_.truth(truth);
-    out_.hold = truth.hold;
+    GroundTruth ground_truth;
+    world_.ground_truth(ground_truth);
+    out_.hold = ground_truth.hold;
     if (handling == Handling::lift_tilt_shake && out_.held()) {
       stage_ = "tilt";
       if (!tilt(T)) out_.lost = "no way to tilt";
@@ -101,7 +101,7 @@ class Execution {
       for (int axis = 0; axis < 3; ++axis) shake(Vector3::Unit(axis));
     }
     out_.real_time = (world_.time() - from) / (static_cast<double>(std::clock() - began) / CLOCKS_PER_SEC);
-    out_.constraint = world_.constraint_share();
+    out_.constraint = world_.constraint_fraction();
     return out_;
   }
 
@@ -142,7 +142,7 @@ class Execution {
   }
 
   Vector opened(const Vector& arm_q) const {
-    return RobotModel::with(RobotModel::with(robot_.rest_posture(), arm_, arm_q), hand_, grasp_.pregrasp_joints);
+    return RobotModel::with(RobotModel::with(robot_.rest_configuration(), arm_, arm_q), hand_, grasp_.pregrasp_joints);
   }
 
   void tick() {

@@ -24,14 +24,14 @@ class Grasping : public testing::Test {
     for (const double yaw : {0.0, 2.0, 4.0, 1.0, 3.0, 5.0}) {
       Scene scene;
       scene.robot_known = true;
-      scene.robot_position = robot_->rest_posture();
+      scene.robot_position = robot_->rest_configuration();
       scene.boxes.push_back({"table", make_pose(kTable), kTableSize, true});
       const Vector3 place(0.68, -0.42, 0.72 + library(model)->height_above_support);
       scene.objects.push_back(
           {"it", model, make_pose(place, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Vector3::UnitZ()))), Holder::surface, "table", 0});
       GraspRequest request;
       request.object = "it";
-      request.start = robot_->rest_posture();
+      request.start = robot_->rest_configuration();
       request.max_grasps = 6;
       for (const Grasp& g : chooser.choose(request, page->list, *page->object, scene, {}).grasps) {
         if (static_cast<int>(used.size()) < count && used.insert(g.id).second) each(g, place, yaw);
@@ -60,7 +60,7 @@ class Grasping : public testing::Test {
 
   sim::SimSettings settings_ = sim::load_settings(kDeploy / "config");
   std::shared_ptr<const RobotModel> robot_ = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
-  std::shared_ptr<const HandKit> kit_ = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  std::shared_ptr<const HandGeometry> kit_ = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   GraspBook book_{kit_, {}, GraspStore("")};
 };
 

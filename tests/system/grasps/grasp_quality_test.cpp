@@ -76,9 +76,8 @@ class Rig {
     dynamics_.getSolverInfo().m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS;
     q_ = RobotModel::with(Vector::Zero(robot.dof()), hand_, grasp.pregrasp_joints);
     const Pose base = make_pose(Vector3(0, 0, 1));
-    body_ = std::make_unique<sim::RobotBody>(
-        robot, base, q_, settings.servo, settings.pad,
-        sim::BodyWorld{dynamics_, shapes_, sim::kRobot, sim::kObject});
+    body_ = std::make_unique<sim::RobotBody>(robot, base, q_, settings.servo, settings.pad,
+                                             sim::BodyWorld{dynamics_, shapes_, sim::kRobot, sim::kObject});
     for (int i = 0; i < body_->bodies(); ++i) {
       if (body_->collider(i) == nullptr) continue;
       sim::own(*body_->collider(i), sim::Owner::robot, i);
@@ -225,7 +224,7 @@ double auc(const std::vector<Tried>& tried, double Tried::*figure) {
 
 TEST(GraspQuality, separates_what_holds_from_what_falls) {
   const int of_each = test::runs(10);
-  const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const RobotModel robot = hand_on_a_slide(kit->hand.model().axes());
   const sim::SimSettings settings = sim::load_settings(kDeploy / "config");
   GraspBook book(kit, {}, GraspStore(""));

@@ -109,8 +109,8 @@ void print(const RegraspPlan& plan, const std::string& object, const char* what)
 bool one_hand_reaches_both(int arm, const std::string& object, const Pose& a, const Pose& b) {
   const RegraspArm side = duo().arms(object)[static_cast<std::size_t>(arm)];
   return std::any_of(side.list->grasps.begin(), side.list->grasps.end(), [&](const ListedGrasp& g) {
-    return duo().robot.inverse(*side.arm.arm, a * g.grasp.T_object_hand, duo().robot.rest_posture()) &&
-           duo().robot.inverse(*side.arm.arm, b * g.grasp.T_object_hand, duo().robot.rest_posture());
+    return duo().robot.inverse(*side.arm.arm, a * g.grasp.T_object_hand, duo().robot.rest_configuration()) &&
+           duo().robot.inverse(*side.arm.arm, b * g.grasp.T_object_hand, duo().robot.rest_configuration());
   });
 }
 
@@ -119,7 +119,7 @@ TEST(Duo, its_description_lacks_nothing_and_it_is_its_own_mirror_image) {
   const auto arms = manipulators(duo().file, robot);
   ASSERT_EQ(arms.size(), 2U);
   EXPECT_EQ(arms[1].hand, "sah_left");
-  Vector q = robot.rest_posture();
+  Vector q = robot.rest_configuration();
   for (std::size_t i = 0; i < 7; ++i) {
     q[arms[0].arm->axes[i]] += 0.1 * static_cast<double>(i);
     q[arms[1].arm->axes[i]] = -q[arms[0].arm->axes[i]];

@@ -35,7 +35,7 @@ const Stage& stage() {
 Scene scene_with(const std::string& object) {
   Scene s;
   s.robot_known = true;
-  s.robot_position = stage().robot->rest_posture();
+  s.robot_position = stage().robot->rest_configuration();
   s.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
   s.objects.push_back(
       {"thing", object, make_pose({0.68, -0.42, 0.72 + object_model(object)->height_above_support}), Holder::surface, "table", 0});
@@ -118,7 +118,7 @@ void expect_transfer(const std::string& object, int place) {
   const HumanState people = somebody(place);
   GraspRequest request;
   request.object = "thing";
-  request.start = robot.rest_posture();
+  request.start = robot.rest_configuration();
   request.for_human = "anna";
   request.max_grasps = 8;
   const Choice choice = stage().chooser.choose(request, robot_hand.list, *robot_hand.object, scene, people, {}, table.get());

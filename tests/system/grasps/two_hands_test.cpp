@@ -22,7 +22,7 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 struct Trip {
   TaskStatus task;
-  GroundTruth truth;
+  GroundTruth ground_truth;
   std::vector<std::string> phases;
   Pose T_start{Pose::Identity()};
   double most_tilt{};  ///< of the object's z axis from up, ever [rad]
@@ -56,7 +56,7 @@ Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = Ta
   LockstepSystem system(system_context(scenario, "", seed, settings));
   const config::Scenario text = scenario_text(scenario);
   Trip run;
-  Bus& seat = system.seat();
+  Bus& seat = system.bus();
   auto goals = seat.advertise<TaskGoal>();
   bool started = false;
   seat.subscribe<ActionStatus>([&](const ActionStatus& s, const Receipt&) {
@@ -65,7 +65,7 @@ Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = Ta
   });
   seat.subscribe<GroundTruth>([&](const GroundTruth& t, const Receipt&) {
     if (!started) run.T_start = t.T_world_object;
-    run.truth = t;
+    run.ground_truth = t;
     ++run.truths;
     run.most_tilt = std::max(run.most_tilt, tilt(t.T_world_object));
   });
@@ -93,16 +93,16 @@ void expect_put(const Trip& run, const std::string& scenario) {
   EXPECT_EQ(run.task.state, TaskState::succeeded) << run.task.reason;
   const auto box = std::find_if(text.boxes().begin(), text.boxes().end(), [&](const auto& b) { return b.id() == text.tasks(0).surface(); });
   ASSERT_NE(box, text.boxes().end());
-  const Vector3 p = run.truth.T_world_object.translation();
+  const Vector3 p = run.ground_truth.T_world_object.translation();
   const ObjectModel& model = *grasp_planner::object_model(text.objects(0).model());
   EXPECT_LT(std::abs(p.x() - box->pose().xyz().x()), box->size().x() / 2);
   EXPECT_LT(std::abs(p.y() - box->pose().xyz().y()), box->size().y() / 2);
   EXPECT_NEAR(p.z(), box->pose().xyz().z() + box->size().z() / 2 + model.height_above_support, 0.01);
-  EXPECT_LT(tilt(run.truth.T_world_object), 3 * kDegree);
-  EXPECT_FALSE(run.truth.dropped);
-  EXPECT_EQ(run.truth.carrier, "surface");
-  EXPECT_EQ(run.truth.self_or_scene_collisions, 0U);
-  EXPECT_EQ(run.truth.limit_violations, 0U);
+  EXPECT_LT(tilt(run.ground_truth.T_world_object), 3 * kDegree);
+  EXPECT_FALSE(run.ground_truth.dropped);
+  EXPECT_EQ(run.ground_truth.carrier, "surface");
+  EXPECT_EQ(run.ground_truth.self_or_scene_collisions, 0U);
+  EXPECT_EQ(run.ground_truth.limit_violations, 0U);
 }
 
 TEST(TwoHands, pick_and_place_that_one_hand_cannot_do_goes_from_hand_to_hand) {
@@ -133,7 +133,7 @@ TEST(TwoHands, pick_and_place_that_one_hand_cannot_do_goes_from_hand_to_hand) {
           [](const std::string& name) { return grasp_planner::object_model(name); }, scene, "thing");
       grasp_planner::RegraspTask task;
       task.start.T_world_object = run.T_start;
-      task.goal.T_world_object = run.truth.T_world_object;
+      task.goal.T_world_object = run.ground_truth.T_world_object;
       EXPECT_FALSE(alone.plan(task).solved) << scenario << ": " << arms[arm].arm.name << " can do it alone";
     }
   }
@@ -151,9 +151,9 @@ TEST(TwoHands, a_tray_too_heavy_for_one_is_carried_level_by_both) {
                 static_cast<int>(run.truths));
     SCOPED_TRACE("seed " + std::to_string(seed));
     expect_put(run, "duo_tray");
-    EXPECT_GT(run.truth.max_lifted, 0.15) << "over the edge of the stand";
+    EXPECT_GT(run.ground_truth.max_lifted, 0.15) << "over the edge of the stand";
     EXPECT_LT(run.most_tilt, 5 * kDegree);
-    EXPECT_EQ(run.truth.constraint_time, 0.0) << "contact alone holds what is heavy";
+    EXPECT_EQ(run.ground_truth.constraint_time, 0.0) << "contact alone holds what is heavy";
     EXPECT_GT(static_cast<double>(run.truths), 990 * run.seconds);
   }
 }
@@ -162,7 +162,7 @@ TEST(TwoHands, one_hand_does_not_take_what_is_too_heavy_for_it) {
   const Trip run = perform("duo_tray", 1, TaskKind::pick);
   EXPECT_EQ(run.task.state, TaskState::refused);
   EXPECT_NE(run.task.reason.find("too heavy for one hand"), std::string::npos) << run.task.reason;
-  EXPECT_LT((run.truth.T_world_object.translation() - run.T_start.translation()).norm(), 1e-3);
+  EXPECT_LT((run.ground_truth.T_world_object.translation() - run.T_start.translation()).norm(), 1e-3);
 }
 
 }  // namespace

@@ -30,12 +30,12 @@ int states_wanted() {
 
 RobotModel load_jido() { return RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb"); }
 
-std::vector<const detail::WideKernels*> kernels() {
-  std::vector<const detail::WideKernels*> out = {&detail::kWideKernelsBase};
-  if (&detail::wide_kernels() != out[0]) out.push_back(&detail::wide_kernels());
+std::vector<const detail::SimdKernels*> kernels() {
+  std::vector<const detail::SimdKernels*> out = {&detail::kSimdKernelsBase};
+  if (&detail::simd_kernels() != out[0]) out.push_back(&detail::simd_kernels());
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && &detail::wide_kernels() != &detail::kWideKernelsAvx2)
-    out.push_back(&detail::kWideKernelsAvx2);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && &detail::simd_kernels() != &detail::kSimdKernelsAvx2)
+    out.push_back(&detail::kSimdKernelsAvx2);
 #endif
   return out;
 }
@@ -122,20 +122,20 @@ TEST(SphereCover, every_triangle_of_the_reference_robots_is_inside_its_spheres) 
 class BothChecks {
  public:
   BothChecks(const RobotModel& robot, ObjectLibrary library, const std::vector<int>& axes)
-      : robot_(robot), axes_(axes), exact_(robot, library), wide_(robot, library) {
-    wide_.set_moving_axes(axes);
+      : robot_(robot), axes_(axes), exact_(robot, library), batch_(robot, library) {
+    batch_.set_moving_axes(axes);
   }
   template <class F>
   void both(F&& f) {
     f(exact_);
-    f(wide_);
+    f(batch_);
   }
   /// Judges random states; a state the wide check clears must be free.
   void compare(int states, const Vector& rest, std::mt19937& random) {
     for (int i = 0; i < states; ++i) {
       const Vector q = random_state(robot_, axes_, rest, random);
-      const std::uint64_t before = wide_.exact_checks();
-      const bool cleared = wide_.is_free(q) && wide_.exact_checks() == before;
+      const std::uint64_t before = batch_.exact_checks();
+      const bool cleared = batch_.is_free(q) && batch_.exact_checks() == before;
       const bool free = exact_.is_free(q);
       ++states_;
       free_ += free;
@@ -155,7 +155,7 @@ class BothChecks {
   int states_{}, free_{}, cleared_{}, near_{}, refused_near_{};
   const RobotModel& robot_;
   std::vector<int> axes_;
-  CollisionWorld exact_, wide_;
+  CollisionWorld exact_, batch_;
 };
 
 TEST(WideCollision, never_clears_what_is_in_collision_among_the_panda_problems) {
@@ -260,7 +260,7 @@ TEST(WideCollision, agrees_on_jido_with_people_objects_and_something_in_the_hand
       attachment.T_tool_object = make_pose({0.0, 0.05, 0.12});
       world.set_attachment(attachment, k % 3 == 1 ? std::vector<std::string>{"far", "table"} : std::vector<std::string>{"anna"});
     });
-    checks.compare(states_wanted() / 12, robot.rest_posture(), random);
+    checks.compare(states_wanted() / 12, robot.rest_configuration(), random);
   }
   checks.report("jido");
   EXPECT_GT(checks.free_, 0);
@@ -280,23 +280,23 @@ TEST(WideCollision, lines_have_the_same_verdicts_names_and_counts) {
   });
   int free = 0, sure = 0;
   for (int k = 0; k < 60; ++k) {
-    const Vector from = random_state(robot, checks.axes_, robot.rest_posture(), random);
-    Vector to = random_state(robot, checks.axes_, robot.rest_posture(), random);
+    const Vector from = random_state(robot, checks.axes_, robot.rest_configuration(), random);
+    Vector to = random_state(robot, checks.axes_, robot.rest_configuration(), random);
     if (k % 2 == 0) to = from + 0.3 * (to - from);
     const double step = k % 3 == 0 ? 0.005 : 0.02;
-    const std::uint64_t before[2] = {checks.exact_.checks(), checks.wide_.checks()};
-    const CollisionVerdict exact = checks.exact_.check_motion(from, to, step), wide = checks.wide_.check_motion(from, to, step);
+    const std::uint64_t before[2] = {checks.exact_.checks(), checks.batch_.checks()};
+    const CollisionVerdict exact = checks.exact_.check_motion(from, to, step), wide = checks.batch_.check_motion(from, to, step);
     EXPECT_EQ(exact.free, wide.free);
     EXPECT_EQ(exact.first, wide.first);
     EXPECT_EQ(exact.second, wide.second);
-    EXPECT_EQ(checks.exact_.checks() - before[0], checks.wide_.checks() - before[1]);
-    const bool surely = checks.wide_.surely_free(from, to);
+    EXPECT_EQ(checks.exact_.checks() - before[0], checks.batch_.checks() - before[1]);
+    const bool surely = checks.batch_.surely_free(from, to);
     EXPECT_TRUE(exact.free || !surely);
     free += exact.free;
     sure += surely;
   }
   std::printf("%d of 60 lines free, %d shown free without steps, %llu of %llu states left to FCL\n", free, sure,
-              static_cast<unsigned long long>(checks.wide_.exact_checks()), static_cast<unsigned long long>(checks.wide_.checks()));
+              static_cast<unsigned long long>(checks.batch_.exact_checks()), static_cast<unsigned long long>(checks.batch_.checks()));
   EXPECT_GT(free, 3);
   EXPECT_LT(free, 60);
   EXPECT_GT(sure, 0);
@@ -310,13 +310,13 @@ TEST(WideCollision, what_the_moving_axes_do_not_move_still_counts) {
   checks.both([&](CollisionWorld& world) { world.set_scene(scene); });
   Vector q = Vector::Zero(3);
   EXPECT_FALSE(checks.exact_.is_free(q));
-  EXPECT_FALSE(checks.wide_.is_free(q));
+  EXPECT_FALSE(checks.batch_.is_free(q));
   q[0] = -1.0;
   EXPECT_TRUE(checks.exact_.is_free(q));
-  EXPECT_TRUE(checks.wide_.is_free(q));
+  EXPECT_TRUE(checks.batch_.is_free(q));
   q[1] = 2.9;
   q[2] = 2.9;
-  EXPECT_EQ(checks.wide_.is_free(q), checks.exact_.is_free(q));
+  EXPECT_EQ(checks.batch_.is_free(q), checks.exact_.is_free(q));
 }
 
 TEST(WideCollision, what_other_axes_turn_is_kept_off_by_the_turning_margin) {
@@ -353,7 +353,7 @@ TEST(WideCollision, what_other_axes_turn_is_kept_off_by_the_turning_margin) {
   for (CollisionWorld* world : {&plain, &margin}) world->set_moving_axes(arm.axes);
   margin.set_turning_margin(kMargin);
   exact.set_turning_margin(kMargin);
-  Vector rest = robot.rest_posture();
+  Vector rest = robot.rest_configuration();
   int near = 0, kept_off = 0;
   for (int k = 0; k < 60000 && near < 40; ++k) {
     if (k % 2000 == 0) rest = random_state(robot, head.axes, rest, random);
@@ -390,7 +390,7 @@ TEST(WideCollision, distance_to_people_is_that_of_the_nearest_pair_with_its_poin
     world.set_base(T_world_base);
     world.set_people(people);
     for (int i = 0; i < 25; ++i) {
-      const Vector q = random_state(robot, robot.require_group("arm").axes, robot.rest_posture(), random);
+      const Vector q = random_state(robot, robot.require_group("arm").axes, robot.rest_configuration(), random);
       std::vector<Pose> links;
       robot.forward(q, links);
       double least = std::numeric_limits<double>::infinity();
@@ -414,63 +414,63 @@ TEST(WideCollision, distance_to_people_is_that_of_the_nearest_pair_with_its_poin
 
 class Lanes : public ::testing::Test {
  protected:
-  Lanes() : wide_(robot_) {
+  Lanes() : batch_(robot_) {
     for (std::size_t i = 0; i < robot_.links().size(); ++i)
       for (const PlacedShape& placed : robot_.links()[i].collision)
         bodies_.push_back({static_cast<int>(i), std::make_shared<const SphereCover>(cover_shape(placed.shape)), placed.shape,
-                           placed.T_parent_shape, kWideArm});
+                           placed.T_parent_shape, kArmPart});
   }
   RobotModel robot_{load_jido()};
-  WideWorld wide_;
-  std::vector<WideWorld::Body> bodies_;
+  BatchWorld batch_;
+  std::vector<BatchWorld::Body> bodies_;
 };
 
 TEST_F(Lanes, have_the_poses_of_the_model_at_every_width_and_clear_no_numbers_that_are_none) {
   std::mt19937 random(kSeed + 3);
   std::vector<int> axes(static_cast<std::size_t>(robot_.dof()));
   for (int i = 0; i < robot_.dof(); ++i) axes[static_cast<std::size_t>(i)] = i;
-  wide_.set_robot(bodies_, {}, axes, robot_.rest_posture());
-  wide_.set_solids({}, Pose::Identity());
+  batch_.set_robot(bodies_, {}, axes, robot_.rest_configuration());
+  batch_.set_solids({}, Pose::Identity());
   double worst = 0;
-  for (const detail::WideKernels* kernel : kernels()) {
-    wide_.set_kernels(*kernel);
+  for (const detail::SimdKernels* kernel : kernels()) {
+    batch_.set_kernels(*kernel);
     for (int block = 0; block < 20; ++block) {
       std::vector<Vector> states;
-      for (int i = 0; i < WideWorld::kStates; ++i) states.push_back(random_state(robot_, axes, robot_.rest_posture(), random));
-      EXPECT_EQ(wide_.unclear(states.data(), WideWorld::kStates), 0u);
-      for (int lane = WideWorld::kStates - kernel->width; lane < WideWorld::kStates; ++lane)
+      for (int i = 0; i < BatchWorld::kStates; ++i) states.push_back(random_state(robot_, axes, robot_.rest_configuration(), random));
+      EXPECT_EQ(batch_.unclear(states.data(), BatchWorld::kStates), 0u);
+      for (int lane = BatchWorld::kStates - kernel->width; lane < BatchWorld::kStates; ++lane)
         for (std::size_t link = 0; link < robot_.links().size(); ++link) {
           const Pose T = robot_.link_pose(states[static_cast<std::size_t>(lane)], static_cast<int>(link));
-          const Pose lanes = wide_.link_pose(static_cast<int>(link), lane);
+          const Pose lanes = batch_.link_pose(static_cast<int>(link), lane);
           worst = std::max(worst, (T * Vector3(0.1, 0.1, 0.1) - lanes * Vector3(0.1, 0.1, 0.1)).norm());
         }
     }
   }
-  std::printf("poses in single precision within %.1e m, %.1e m are added to the radii\n", worst, wide_.rounding());
-  EXPECT_LT(worst, wide_.rounding() / 3);
-  wide_.set_solids({{Sphere{0.05}, nullptr, make_pose({0.6, 0, 0.9})}}, Pose::Identity());
-  Vector q = robot_.rest_posture();
+  std::printf("poses in single precision within %.1e m, %.1e m are added to the radii\n", worst, batch_.rounding());
+  EXPECT_LT(worst, batch_.rounding() / 3);
+  batch_.set_solids({{Sphere{0.05}, nullptr, make_pose({0.6, 0, 0.9})}}, Pose::Identity());
+  Vector q = robot_.rest_configuration();
   for (double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e9}) {
     q[robot_.require_group("arm").axes[1]] = bad;
-    EXPECT_NE(wide_.unclear(&q, 1), 0u);
+    EXPECT_NE(batch_.unclear(&q, 1), 0u);
   }
 }
 
 TEST_F(Lanes, every_width_clears_the_same_states_but_for_rounding) {
   std::mt19937 random(kSeed + 4);
   const std::vector<int>& axes = robot_.require_group("arm").axes;
-  wide_.set_robot(bodies_, {}, axes, robot_.rest_posture());
-  wide_.set_solids(
+  batch_.set_robot(bodies_, {}, axes, robot_.rest_configuration());
+  batch_.set_solids(
       {{Cylinder{0.1, 0.5}, nullptr, make_pose({0.8, 0.2, 0.9})}, {Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}},
       Pose::Identity());
   int different = 0, unclear = 0;
   for (int block = 0; block < 50; ++block) {
     std::vector<Vector> states;
-    for (int i = 0; i < WideWorld::kStates; ++i) states.push_back(random_state(robot_, axes, robot_.rest_posture(), random));
+    for (int i = 0; i < BatchWorld::kStates; ++i) states.push_back(random_state(robot_, axes, robot_.rest_configuration(), random));
     std::uint32_t first = 0;
-    for (const detail::WideKernels* kernel : kernels()) {
-      wide_.set_kernels(*kernel);
-      const std::uint32_t now = wide_.unclear(states.data(), WideWorld::kStates);
+    for (const detail::SimdKernels* kernel : kernels()) {
+      batch_.set_kernels(*kernel);
+      const std::uint32_t now = batch_.unclear(states.data(), BatchWorld::kStates);
       if (kernel == kernels()[0]) first = now;
       different += __builtin_popcount(now ^ first);
     }
@@ -487,18 +487,18 @@ TEST_F(Lanes, a_line_is_clear_for_who_asks_for_any_unclear_state_exactly_when_al
   std::vector<std::pair<int, int>> pairs;
   for (int a = 0; a < static_cast<int>(bodies_.size()); ++a)
     for (int b = a + 6; b < static_cast<int>(bodies_.size()); ++b) pairs.emplace_back(a, b);
-  wide_.set_robot(bodies_, pairs, axes, robot_.rest_posture());
-  wide_.set_solids({{Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}}, Pose::Identity());
-  std::array<double, WideWorld::kStates> at{};
+  batch_.set_robot(bodies_, pairs, axes, robot_.rest_configuration());
+  batch_.set_solids({{Box{{0.5, 0.5, 0.1}}, nullptr, make_pose({0.9, -0.3, 0.6})}}, Pose::Identity());
+  std::array<double, BatchWorld::kStates> at{};
   for (std::size_t i = 0; i < at.size(); ++i) at[i] = static_cast<double>(i) / (at.size() - 1.0);
   int clear = 0, partly = 0;
   for (int line = 0; line < 400; ++line) {
-    const Vector from = random_state(robot_, axes, robot_.rest_posture(), random),
-                 to = from + 0.2 * (random_state(robot_, axes, robot_.rest_posture(), random) - from);
-    for (const detail::WideKernels* kernel : kernels()) {
-      wide_.set_kernels(*kernel);
-      const std::uint32_t all = wide_.unclear_on_line(from, to, at.data(), WideWorld::kStates),
-                          any = wide_.unclear_on_line(from, to, at.data(), WideWorld::kStates, true);
+    const Vector from = random_state(robot_, axes, robot_.rest_configuration(), random),
+                 to = from + 0.2 * (random_state(robot_, axes, robot_.rest_configuration(), random) - from);
+    for (const detail::SimdKernels* kernel : kernels()) {
+      batch_.set_kernels(*kernel);
+      const std::uint32_t all = batch_.unclear_on_line(from, to, at.data(), BatchWorld::kStates),
+                          any = batch_.unclear_on_line(from, to, at.data(), BatchWorld::kStates, true);
       EXPECT_EQ(any != 0, all != 0) << kernel->name << ", line " << line;
       EXPECT_EQ(any & ~all, 0u) << kernel->name << ", line " << line;
       clear += all == 0;

@@ -12,34 +12,35 @@ namespace {
 /// A trial told by hand: the truth every 20 ms.
 class CriteriaTest : public testing::Test {
  protected:
-  CriteriaTest() : world_(network_.add("sim")), criteria_(network_.add("handsel"), network_), truth_out_(world_.advertise<GroundTruth>()) {
+  CriteriaTest()
+      : world_(network_.add("sim")), criteria_(network_.add("handsel"), network_), ground_truth_out_(world_.advertise<GroundTruth>()) {
     for (const char* component : {"spark", "costmap", "collision_checker", "attention", "path_planner", "grasp_planner",
                                   "trajectory_planner", "manipulation_planner"})
       network_.add(component);
-    truth_.person = standing_body(Vector3(0.85, 0, 0), M_PI, 1.75);
-    truth_.separation = 2.0;
+    ground_truth_.person = standing_body(Vector3(0.85, 0, 0), M_PI, 1.75);
+    ground_truth_.separation = 2.0;
     network_.run_for(from_seconds(0.5));
   }
   void tell(int times = 1) {
     for (int i = 0; i < times; ++i) {
-      truth_.sim_time += 0.02;
-      truth_out_->publish(truth_);
+      ground_truth_.sim_time += 0.02;
+      ground_truth_out_->publish(ground_truth_);
       network_.run_for(from_seconds(0.02));
     }
   }
   void carry(const Vector3& by, int steps) {
     for (int i = 0; i < steps; ++i) {
-      truth_.T_world_object.translation() += by / steps;
+      ground_truth_.T_world_object.translation() += by / steps;
       tell();
     }
   }
 
   /// Somebody comes on at 1 m/s, nearer than 0.40 m after `first_near` steps; the arm moves from `start` on, slower from `slower` on.
   std::vector<double> reactions(int first_near, int start, int slower, double before, double after, std::uint32_t causes) {
-    truth_.person = standing_body(Vector3(4, 0, 0), M_PI, 1.75);
-    truth_.separation = 0.39 + 0.02 * first_near;
+    ground_truth_.person = standing_body(Vector3(4, 0, 0), M_PI, 1.75);
+    ground_truth_.separation = 0.39 + 0.02 * first_near;
     for (int i = 0; i < first_near + 60; ++i) {
-      truth_.robot_moving = i >= start;
+      ground_truth_.robot_moving = i >= start;
       ActiveTrajectory active;
       active.robot = "jido";
       active.trajectory = i >= start ? 1 : 0;
@@ -49,8 +50,8 @@ class CriteriaTest : public testing::Test {
       status.robot = "jido";
       status.causes = i >= start ? causes : 0;
       status_out_->publish(status);
-      truth_.separation -= 0.02;
-      for (BodyJoint& joint : truth_.person) joint.position.x() -= 0.02;
+      ground_truth_.separation -= 0.02;
+      for (BodyJoint& joint : ground_truth_.person) joint.position.x() -= 0.02;
       tell();
     }
     return criteria_.fields()["reactions_s"];
@@ -59,22 +60,22 @@ class CriteriaTest : public testing::Test {
   LocalNetwork network_{3};
   Bus& world_;
   Criteria criteria_;
-  std::unique_ptr<Publisher<GroundTruth>> truth_out_;
+  std::unique_ptr<Publisher<GroundTruth>> ground_truth_out_;
   std::unique_ptr<Publisher<ActiveTrajectory>> active_out_{world_.advertise<ActiveTrajectory>()};
   std::unique_ptr<Publisher<ExecutionStatus>> status_out_{world_.advertise<ExecutionStatus>()};
-  GroundTruth truth_;
+  GroundTruth ground_truth_;
 };
 
 TEST_F(CriteriaTest, the_way_to_the_person_and_the_strain_of_their_arm_are_told_of_what_changes_hands) {
-  truth_.T_world_object.translation() = Vector3(0, 0, 1.1);
-  truth_.carrier = "surface";
+  ground_truth_.T_world_object.translation() = Vector3(0, 0, 1.1);
+  ground_truth_.carrier = "surface";
   tell(5);
   EXPECT_TRUE(criteria_.fields()["discomfort"].is_null());
-  truth_.carrier = "robot";
+  ground_truth_.carrier = "robot";
   tell();
   carry(Vector3(0.0, 0.3, 0), 20);
   carry(Vector3(0.4, 0.0, 0), 20);
-  truth_.carrier = "both";
+  ground_truth_.carrier = "both";
   tell();
   const nlohmann::json fields = criteria_.fields();
   EXPECT_NEAR(fields["legibility"].get<double>(), 0.5 / 0.7, 1e-9);
@@ -83,10 +84,10 @@ TEST_F(CriteriaTest, the_way_to_the_person_and_the_strain_of_their_arm_are_told_
 }
 
 TEST_F(CriteriaTest, an_object_out_of_reach_is_as_uncomfortable_as_can_be_and_what_the_person_brings_has_no_way_of_the_robot) {
-  truth_.carrier = "human";
-  truth_.T_world_object.translation() = Vector3(-1.5, 0, 1.1);
+  ground_truth_.carrier = "human";
+  ground_truth_.T_world_object.translation() = Vector3(-1.5, 0, 1.1);
   tell(2);
-  truth_.carrier = "both";
+  ground_truth_.carrier = "both";
   tell();
   EXPECT_EQ(criteria_.fields()["discomfort"], 1.0);
   EXPECT_TRUE(criteria_.fields()["legibility"].is_null());
@@ -95,7 +96,7 @@ TEST_F(CriteriaTest, an_object_out_of_reach_is_as_uncomfortable_as_can_be_and_wh
 TEST_F(CriteriaTest, a_delay_is_when_neither_of_them_moves) {
   tell();
   tell(50);
-  truth_.robot_moving = true;
+  ground_truth_.robot_moving = true;
   tell(25);
   EXPECT_NEAR(criteria_.fields()["functional_delay_s"].get<double>(), 1.0, 0.021);
   EXPECT_NEAR(criteria_.fields()["robot_idle_s"].get<double>(), 1.0, 0.021);

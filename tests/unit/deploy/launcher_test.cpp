@@ -81,7 +81,7 @@ TEST_F(LauncherTest, starts_again_what_was_killed) {
 
 TEST_F(LauncherTest, kills_what_ignores_the_polite_request) {
   LauncherOptions options = shell({"trap '' TERM; " + reporting("while :; do sleep 1; done")});
-  options.stop_patience = from_seconds(0.2);
+  options.stop_timeout = from_seconds(0.2);
   Launcher launcher(std::move(options));
   const pid_t pid = reported();
   ASSERT_GT(pid, 0);
@@ -109,7 +109,7 @@ TEST_F(LauncherTest, bad_input_is_a_failure_with_the_last_line_it_said) {
 
 TEST_F(LauncherTest, a_process_that_keeps_dying_is_started_again_for_ever_after_growing_waits) {
   LauncherOptions options = shell({reporting("echo 'out of luck' >&2; exit 1")});
-  options.backoff = {.first = from_seconds(0.02), .longest = from_seconds(0.3), .stable_after = from_seconds(30)};
+  options.backoff = {.first = from_seconds(0.02), .max_wait = from_seconds(0.3), .stable_after = from_seconds(30)};
   std::vector<std::string> events;  // read only after the launcher has ended
   options.on_event = [&](const std::string& sentence) { events.push_back(sentence); };
   std::vector<double> waits;

@@ -21,7 +21,7 @@ struct Process {
       signs.total_delay += from_seconds(0.1 * waiting);
       signs.own_delay += from_seconds(0.1 * deaf);
       if (beats) liveness.beat(signs.now, job_silent);
-      life = liveness.judge(signs);
+      life = liveness.assess(signs);
       if (life == Life::hung) return life;
     }
     return life;

@@ -25,7 +25,7 @@ struct Watched : testing::Test {
   fs::path folder = fs::temp_directory_path() / ("handsel-watch-" + std::to_string(getpid()));
   DdsBus bus{{.component = "watch", .domain = 227, .health = false}};
   std::unique_ptr<Publisher<ComponentHealth>> beats = bus.advertise<ComponentHealth>();
-  LivenessSettings settings{.hung_after = from_seconds(0.6), .silent_job_after = from_seconds(1.0), .start_patience = from_seconds(5.0)};
+  LivenessSettings settings{.hung_after = from_seconds(0.6), .silent_job_after = from_seconds(1.0), .start_timeout = from_seconds(5.0)};
   std::unique_ptr<Launcher> launcher;
   std::unique_ptr<ProcessWatch> watch;
   bool silent{};
@@ -124,7 +124,7 @@ TEST_F(Watched, a_process_whose_job_is_silent_for_long_is_replaced_though_it_bea
 TEST(LauncherSettings, are_read_and_each_bad_value_is_refused_with_file_line_and_key) {
   const LauncherSettings shipped = load_launcher_settings(resource("config/launcher.txtpb"));
   EXPECT_EQ(shipped.liveness.hung_after, from_seconds(2.0));
-  EXPECT_EQ(shipped.backoff.longest, from_seconds(10.0));
+  EXPECT_EQ(shipped.backoff.max_wait, from_seconds(10.0));
   const fs::path file = fs::temp_directory_path() / ("launcher-" + std::to_string(getpid()) + ".txtpb");
   const std::vector<std::string> keys{"hung_after",    "silent_job_after", "start_patience",
                                       "first_backoff", "longest_backoff",  "stable_after"};

@@ -25,7 +25,7 @@ struct Pair {
 
   /// Off the limits and off rest.
   Vector somewhere() {
-    Vector q = robot.rest_posture();
+    Vector q = robot.rest_configuration();
     for (const Group* arm : {&first, &second}) {
       for (const int i : arm->axes) {
         const Axis& axis = robot.axes()[static_cast<std::size_t>(i)];

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-double hands_distance(const HandKit& a, const Pose& T_object_a, const Vector& qa, const HandKit& b, const Pose& T_object_b,
+double hands_distance(const HandGeometry& a, const Pose& T_object_a, const Vector& qa, const HandGeometry& b, const Pose& T_object_b,
                       const Vector& qb) {
   std::vector<Pose> Ta, Tb;
   a.hand.model().forward(qa, Ta);

@@ -31,7 +31,7 @@ class GraspChoice : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
-    kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+    kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
     settings.positions = 40;
     settings.orientations = 72;
     book = std::make_unique<GraspBook>(kit, settings, GraspStore(store_folder()));
@@ -46,7 +46,7 @@ class GraspChoice : public testing::Test {
   static Scene scene_with_mug(double x, double y) {
     Scene s;
     s.robot_known = true;
-    s.robot_position = robot->rest_posture();
+    s.robot_position = robot->rest_configuration();
     s.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
     s.objects.push_back({"cup", "mug", make_pose({x, y, 0.72 + library("mug")->height_above_support}), Holder::surface, "table", 0});
     return s;
@@ -55,19 +55,19 @@ class GraspChoice : public testing::Test {
   static GraspRequest request() {
     GraspRequest r;
     r.object = "cup";
-    r.start = robot->rest_posture();
+    r.start = robot->rest_configuration();
     r.max_grasps = 10;
     return r;
   }
 
   static std::shared_ptr<const RobotModel> robot;
-  static std::shared_ptr<const HandKit> kit;
+  static std::shared_ptr<const HandGeometry> kit;
   static GraspListSettings settings;
   static std::unique_ptr<GraspBook> book;
   static std::shared_ptr<const GraspPage> page;
 };
 std::shared_ptr<const RobotModel> GraspChoice::robot;
-std::shared_ptr<const HandKit> GraspChoice::kit;
+std::shared_ptr<const HandGeometry> GraspChoice::kit;
 GraspListSettings GraspChoice::settings;
 std::unique_ptr<GraspBook> GraspChoice::book;
 std::shared_ptr<const GraspPage> GraspChoice::page;
@@ -87,7 +87,7 @@ TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
   allowed.set_attachment({}, {"cup"});
   for (const Grasp& g : choice.grasps) {
     const auto posture = [&](const Vector& arm_q, const Vector& hand_q) {
-      return RobotModel::with(RobotModel::with(robot->rest_posture(), arm, arm_q), hand, hand_q);
+      return RobotModel::with(RobotModel::with(robot->rest_configuration(), arm, arm_q), hand, hand_q);
     };
     const Pose reached = robot->link_pose(posture(g.arm_joints, g.hand_joints), robot->tool_link());
     const Pose wanted = scene.objects[0].T_world_object * g.T_object_hand;

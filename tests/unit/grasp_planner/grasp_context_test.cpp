@@ -40,7 +40,7 @@ Pose standing(double x, double y, double yaw = 0) {
 Scene table_with_mug(double x = 0.68, double y = -0.42) {
   Scene s;
   s.robot_known = true;
-  s.robot_position = robot().model->rest_posture();
+  s.robot_position = robot().model->rest_configuration();
   s.boxes.push_back({"table", make_pose({x + 0.17, y - 0.2, 0.5 * kTop}), {0.7, 0.7, kTop}, true});
   s.objects.push_back({"cup", "mug", standing(x, y), Holder::surface, "table", 0});
   return s;
@@ -49,7 +49,7 @@ Scene table_with_mug(double x = 0.68, double y = -0.42) {
 GraspRequest request(std::uint32_t most = 10) {
   GraspRequest r;
   r.object = "cup";
-  r.start = robot().model->rest_posture();
+  r.start = robot().model->rest_configuration();
   r.max_grasps = most;
   return r;
 }
@@ -71,7 +71,7 @@ Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& peopl
 std::uint64_t count(const Choice& c, ChoiceReason r) { return c.reasons[static_cast<std::size_t>(r)]; }
 
 Vector posture(const Vector& arm_q, const Vector& hand_q) {
-  return RobotModel::with(RobotModel::with(robot().model->rest_posture(), robot().arm, arm_q), robot().hand, hand_q);
+  return RobotModel::with(RobotModel::with(robot().model->rest_configuration(), robot().arm, arm_q), robot().hand, hand_q);
 }
 
 void expect_hand_at(const Vector& arm_q, const Vector& hand_q, const Pose& T_world_base, const Pose& wanted) {
@@ -177,7 +177,7 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
 
 // Lines of sight looked along in small steps, with the links' own shapes.
 double seen_by_steps(const Grasp& g, const Vector3& eye) {
-  const HandKit& kit = *mug().kit;
+  const HandGeometry& kit = *mug().kit;
   std::vector<Pose> T;
   kit.hand.model().forward(g.hand_joints, T);
   std::size_t facing = 0, seen = 0;
@@ -333,7 +333,7 @@ TEST(Platform, drives_to_what_is_out_of_reach_and_stays_clear) {
     const Pose T_world_base =
         make_pose({g.platform.x(), g.platform.y(), 0}, Eigen::Quaterniond(Eigen::AngleAxisd(g.platform.z(), Vector3::UnitZ())));
     expect_hand_at(g.arm_joints, g.hand_joints, T_world_base, scene.objects[0].T_world_object * g.T_object_hand);
-    const Vector there = with_platform(robot().model->rest_posture(), T_world_base);
+    const Vector there = with_platform(robot().model->rest_configuration(), T_world_base);
     driven.set_attachment({}, {});
     EXPECT_TRUE(driven.check(there).free);
     EXPECT_GE(driven.distance_to_people(there), 0.5);

@@ -22,7 +22,7 @@ class Hands : public testing::TestWithParam<const char*> {};
 
 TEST_P(Hands, every_contact_is_touched_nothing_is_pierced_and_the_opened_hand_is_off_the_object) {
   const std::string name = GetParam();
-  const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands" / name / (name + ".txtpb")));
+  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands" / name / (name + ".txtpb")));
   const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
   GraspListSettings settings;
   settings.positions = 16;

@@ -12,8 +12,8 @@ namespace {
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
-std::shared_ptr<const HandKit> sah() {
-  static const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+std::shared_ptr<const HandGeometry> sah() {
+  static const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   return kit;
 }
 

@@ -54,7 +54,7 @@ class GraspNode : public testing::Test {
     planner.subscribe<GraspReply>([this](const GraspReply& r, const Receipt&) { replies_.push_back(r); });
     planner.subscribe<GraspCandidates>([this](const GraspCandidates& c, const Receipt&) { candidates_.push_back(c); });
     scene_.robot_known = true;
-    scene_.robot_position = context_.robot->rest_posture();
+    scene_.robot_position = context_.robot->rest_configuration();
     scene_.boxes.push_back({"table", make_pose({0.85, -0.62, 0.36}), {0.7, 0.7, 0.72}, true});
     scene_.objects.push_back(
         {"cup", "mug", make_pose({0.68, -0.42, 0.72 + library("mug")->height_above_support}), Holder::surface, "table", 0});
@@ -72,7 +72,7 @@ class GraspNode : public testing::Test {
   void ask(std::uint64_t number, const std::string& object, GraspRequest r = {}) {
     r.id = {7, number};
     r.object = object;
-    r.start = context_.robot->rest_posture();
+    r.start = context_.robot->rest_configuration();
     r.max_grasps = 5;
     request_out_->publish(r);
   }

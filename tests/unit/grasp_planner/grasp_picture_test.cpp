@@ -71,7 +71,7 @@ class Figures : public testing::Test {
   }
 
   const std::filesystem::path deploy_ = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
-  HandKit kit_{HandModel::load(deploy_ / "hands/sah/sah.txtpb")};
+  HandGeometry kit_{HandModel::load(deploy_ / "hands/sah/sah.txtpb")};
   Graspable object_{ObjectModel::load(deploy_ / "objects/box/box.txtpb"), kit_.tip_radius(), 0.6, 1};
 };
 

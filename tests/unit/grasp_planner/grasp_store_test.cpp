@@ -117,7 +117,7 @@ TEST(GraspStore, a_list_that_names_joints_fingers_or_triangles_that_are_not_ther
 
 TEST(GraspBook, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_same_as_a_list_made_at_once) {
   const TemporaryFolder folder;
-  const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const ObjectModel box = ObjectModel::load(kDeploy / "objects/box/box.txtpb");
   GraspListSettings few, more;
   few.positions = more.positions = 8;
@@ -141,7 +141,7 @@ TEST(GraspBook, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_sa
 }
 
 TEST(GraspList, shared_among_listers_it_is_the_list_of_one) {
-  const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
   const auto box = std::make_shared<const Graspable>(ObjectModel::load(kDeploy / "objects/box/box.txtpb"), kit->tip_radius(), 0.6, 1);
   GraspListSettings settings;

@@ -11,8 +11,8 @@ namespace {
 
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
-std::shared_ptr<const HandKit> gripper() {
-  static const auto kit = std::make_shared<const HandKit>(HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
+std::shared_ptr<const HandGeometry> gripper() {
+  static const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
   return kit;
 }
 
@@ -107,7 +107,7 @@ TEST(Pinch, list_goes_on_where_it_stopped) {
 }
 
 TEST(Pinch, fingers_that_share_an_axis_carry_their_own_links) {
-  const HandKit& kit = *gripper();
+  const HandGeometry& kit = *gripper();
   ASSERT_EQ(kit.chains.size(), 2U);
   for (const FingerChain& chain : kit.chains) {
     EXPECT_EQ(chain.axes(), std::vector<int>{0});

@@ -37,7 +37,7 @@ class Held : public ::testing::Test {
   RobotModel robot_{RobotModel::load(kDeploy / "robots/jido/jido.txtpb")};
   ObjectModel mug_{ObjectModel::load(kDeploy / "objects/mug/mug.txtpb")};
   CollisionWorld world_{robot_, [this](const std::string& name) { return name == "mug" ? &mug_ : nullptr; }};
-  Vector q_ = robot_.rest_posture();
+  Vector q_ = robot_.rest_configuration();
   Scene scene_;
   Attachment held_;
   Vector3 place_;

@@ -27,7 +27,7 @@ class Rig {
         mug(ObjectModel::load(object_description("mug"))),
         planner(
             settings(), robot, [this](const std::string& name) { return name == "mug" ? &mug : nullptr; }, 1000) {
-    q = robot->rest_posture();
+    q = robot->rest_configuration();
     scene.robot_known = true;
     scene.T_world_base = Pose::Identity();
     scene.boxes.push_back({"table", make_pose({0.7, -0.6, 0.35}), {0.6, 0.6, 0.7}, true});

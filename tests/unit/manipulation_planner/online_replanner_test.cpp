@@ -14,7 +14,7 @@ class OnlineReplannerTest : public testing::Test {
   OnlineReplannerTest()
       : robot_(std::make_shared<RobotModel>(RobotModel::load(robot_description("jido")))),
         parts_(settings(), robot_, [](const std::string&) { return nullptr; }, 1000, {}) {
-    const Vector start = RobotModel::part(robot_->rest_posture(), arm());
+    const Vector start = RobotModel::part(robot_->rest_configuration(), arm());
     Vector goal = start;
     goal[0] += 1.0;
     running_ = {kCommand, 0, {start, goal}, Vector::Ones(1)};
@@ -23,7 +23,7 @@ class OnlineReplannerTest : public testing::Test {
     running_.duration = whole_.duration();
     Scene scene;
     scene.robot_known = true;
-    scene.robot_position = robot_->rest_posture();
+    scene.robot_position = robot_->rest_configuration();
     parts_.now.on(scene);
     report(kCommand, MotionState::running);
     run_at(0.3);
@@ -53,7 +53,7 @@ class OnlineReplannerTest : public testing::Test {
     active.rest = whole_;
     active.speed_factor = 1;
     const MotionState3 state = whole_.at(time);
-    active.position = RobotModel::with(robot_->rest_posture(), arm(), state.position);
+    active.position = RobotModel::with(robot_->rest_configuration(), arm(), state.position);
     active.velocity = Vector::Zero(robot_->dof());
     active.velocity(arm().axes) = state.velocity;
     parts_.now.on(active);

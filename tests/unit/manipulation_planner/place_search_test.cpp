@@ -25,7 +25,7 @@ class Placing : public testing::Test {
   /// Returns a configuration whose palm is above the table with the mug below it, turned by `R_world_mug`.
   Vector held_above_table(CollisionWorld& world, const Eigen::Matrix3d& R_world_mug, Attachment& held) const {
     std::mt19937 random(5);
-    Vector q = robot_.rest_posture();
+    Vector q = robot_.rest_configuration();
     for (;;) {
       for (const int axis : robot_.require_group("arm").axes) {
         const Axis& a = robot_.axes()[static_cast<std::size_t>(axis)];

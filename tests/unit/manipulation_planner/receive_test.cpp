@@ -35,7 +35,8 @@ Grasp upright_grasp(const Rig& rig, std::uint64_t id, bool from_below) {
   grasp.epsilon = 0.1;
   const Eigen::AngleAxisd tilt(from_below ? 0.0 : std::numbers::pi, Vector3::UnitY());
   grasp.T_object_hand = make_pose(-0.28 * (tilt * Vector3::UnitZ()), Eigen::Quaterniond(tilt));
-  const auto joints = rig.robot->inverse(arm, rig.scene.objects[0].T_world_object * grasp.T_object_hand, rig.robot->rest_posture(), {});
+  const auto joints =
+      rig.robot->inverse(arm, rig.scene.objects[0].T_world_object * grasp.T_object_hand, rig.robot->rest_configuration(), {});
   EXPECT_TRUE(joints) << "the arm does not reach it from " << (from_below ? "below" : "above");
   grasp.arm_joints = joints.value_or(RobotModel::part(rig.q, arm));
   grasp.approach_joints = grasp.arm_joints;

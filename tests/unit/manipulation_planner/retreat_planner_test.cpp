@@ -29,7 +29,7 @@ class RetreatPlannerTest : public testing::Test {
 
   const RobotModel robot = RobotModel::load(robot_description("jido"));
   const Group& arm = robot.require_group("arm");
-  const Vector rest = robot.rest_posture();
+  const Vector rest = robot.rest_configuration();
   const RetreatPlanner retreat{robot, arm};
   HumanState people;
 };

@@ -364,7 +364,7 @@ TEST(ForeignRobots, an_arm_of_more_axes_than_can_be_solved_has_no_inverse) {
   const auto robot = RobotModel::load_urdf(folder.write("r.urdf", urdf(inside)), folder.write("r.srdf", srdf));
   const Group& arm = robot.require_group("arm");
   ASSERT_EQ(arm.axes.size(), 31u);
-  const Vector q = robot.rest_posture();
+  const Vector q = robot.rest_configuration();
   EXPECT_FALSE(robot.inverse(arm, robot.link_pose(q, arm.tip), q).has_value());
 }
 

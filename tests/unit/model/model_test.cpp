@@ -83,7 +83,7 @@ TEST(Sah, is_the_hand_jido_carries) {
   ASSERT_EQ(group.axes.size(), sah().model().axes().size());
   for (std::size_t i = 0; i < group.axes.size(); ++i) EXPECT_EQ(jido().axes()[group.axes[i]].name, sah().model().axes()[i].name);
   std::vector<Pose> alone, carried;
-  Vector q = jido().rest_posture();
+  Vector q = jido().rest_configuration();
   q.segment(7, 13) = sah().pregrasp();
   sah().model().forward(sah().pregrasp(), alone);
   jido().forward(q, carried);
@@ -95,7 +95,7 @@ TEST(Sah, is_the_hand_jido_carries) {
 }
 
 TEST(Jido, rest_posture_is_inside_limits_with_the_hand_in_front) {
-  const Vector& q = jido().rest_posture();
+  const Vector& q = jido().rest_configuration();
   for (int i = 0; i < jido().dof(); ++i) {
     EXPECT_GE(q[i], jido().axes()[i].lower);
     EXPECT_LE(q[i], jido().axes()[i].upper);
@@ -123,7 +123,7 @@ TEST(Kinematics, jacobian_is_the_derivative_of_forward) {
   std::mt19937_64 engine(11);
   const auto& arm = jido().require_group("arm");
   for (int trial = 0; trial < 20; ++trial) {
-    const Vector q = random_axes(jido(), arm, engine, jido().rest_posture());
+    const Vector q = random_axes(jido(), arm, engine, jido().rest_configuration());
     const Eigen::MatrixXd J = jido().jacobian(q, arm);
     const double h = 1e-6;
     for (std::size_t i = 0; i < arm.axes.size(); ++i) {
@@ -153,11 +153,11 @@ TEST(InverseKinematics, finds_every_reachable_pose_inside_the_limits) {
   std::mt19937_64 engine(seed);
   const auto& arm = jido().require_group("arm");
   for (int trial = 0; trial < 300; ++trial) {
-    const Vector q = random_axes(jido(), arm, engine, jido().rest_posture());
+    const Vector q = random_axes(jido(), arm, engine, jido().rest_configuration());
     const Pose wanted = jido().link_pose(q, arm.tip);
-    const auto found = jido().inverse(arm, wanted, jido().rest_posture());
+    const auto found = jido().inverse(arm, wanted, jido().rest_configuration());
     ASSERT_TRUE(found.has_value()) << "trial " << trial << " of seed " << seed;
-    const Vector full = RobotModel::with(jido().rest_posture(), arm, *found);
+    const Vector full = RobotModel::with(jido().rest_configuration(), arm, *found);
     const Pose got = jido().link_pose(full, arm.tip);
     EXPECT_LT((got.translation() - wanted.translation()).norm(), 2e-5);
     EXPECT_LT(Eigen::AngleAxisd(Eigen::Matrix3d(got.linear() * wanted.linear().transpose())).angle(), 2e-4);
@@ -170,11 +170,11 @@ TEST(InverseKinematics, finds_every_reachable_pose_inside_the_limits) {
 
 TEST(InverseKinematics, stays_near_its_seed_for_a_nearby_pose) {
   const auto& arm = jido().require_group("arm");
-  Pose wanted = jido().link_pose(jido().rest_posture(), arm.tip);
+  Pose wanted = jido().link_pose(jido().rest_configuration(), arm.tip);
   wanted.translation().z() += 0.02;
-  const auto found = jido().inverse(arm, wanted, jido().rest_posture());
+  const auto found = jido().inverse(arm, wanted, jido().rest_configuration());
   ASSERT_TRUE(found.has_value());
-  EXPECT_LT((*found - RobotModel::part(jido().rest_posture(), arm)).cwiseAbs().maxCoeff(), 0.1);
+  EXPECT_LT((*found - RobotModel::part(jido().rest_configuration(), arm)).cwiseAbs().maxCoeff(), 0.1);
 }
 
 TEST(InverseKinematics, finds_the_solution_beside_its_seed) {
@@ -183,7 +183,7 @@ TEST(InverseKinematics, finds_the_solution_beside_its_seed) {
   std::uniform_real_distribution<double> share(0.12, 0.88), noise(-0.05, 0.05);
   const auto& arm = jido().require_group("arm");
   for (int trial = 0; trial < 200; ++trial) {
-    Vector q = jido().rest_posture(), near = q;
+    Vector q = jido().rest_configuration(), near = q;
     for (int a : arm.axes) {
       q[a] = jido().axes()[a].lower + share(engine) * (jido().axes()[a].upper - jido().axes()[a].lower);
       near[a] = q[a] + noise(engine);
@@ -210,18 +210,18 @@ TEST(InverseKinematics, is_numeric_for_other_chains) {
 
 TEST(InverseKinematics, says_no_out_of_reach) {
   const auto& arm = jido().require_group("arm");
-  Pose far = jido().link_pose(jido().rest_posture(), arm.tip);
+  Pose far = jido().link_pose(jido().rest_configuration(), arm.tip);
   far.translation().x() += 2;
-  EXPECT_FALSE(jido().inverse(arm, far, jido().rest_posture()).has_value());
+  EXPECT_FALSE(jido().inverse(arm, far, jido().rest_configuration()).has_value());
   far.translation().x() = std::nan("");
-  EXPECT_FALSE(jido().inverse(arm, far, jido().rest_posture()).has_value());
+  EXPECT_FALSE(jido().inverse(arm, far, jido().rest_configuration()).has_value());
 }
 
 TEST(InverseKinematics, is_the_same_for_the_same_seed) {
   const auto& arm = jido().require_group("arm");
   const Pose wanted = make_pose({0.7, -0.3, 0.8}, Eigen::Quaterniond(Eigen::AngleAxisd(2.5, Vector3(1, 1, 0).normalized())));
-  const auto first = jido().inverse(arm, wanted, jido().rest_posture());
-  const auto second = jido().inverse(arm, wanted, jido().rest_posture());
+  const auto first = jido().inverse(arm, wanted, jido().rest_configuration());
+  const auto second = jido().inverse(arm, wanted, jido().rest_configuration());
   ASSERT_EQ(first.has_value(), second.has_value());
   if (first) {
     EXPECT_EQ(*first, *second);
@@ -230,7 +230,7 @@ TEST(InverseKinematics, is_the_same_for_the_same_seed) {
 
 TEST(RobotModel, forward_reuses_its_output) {
   std::vector<Pose> T;
-  jido().forward(jido().rest_posture(), T);
+  jido().forward(jido().rest_configuration(), T);
   const Pose* data = T.data();
   jido().forward(Vector::Zero(jido().dof()), T);
   EXPECT_EQ(T.data(), data);

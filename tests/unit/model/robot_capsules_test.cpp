@@ -54,13 +54,13 @@ struct Setting {
   Pose T_world_base = make_pose({0.1, 0.2, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.3, Vector3::UnitZ())));
   HumanState people;
   Setting() {
-    robot.forward(robot.rest_posture(), T);
+    robot.forward(robot.rest_configuration(), T);
     Person person;
     person.id = "anna";
     person.joints = standing_body({1.6, 0.4, 0}, M_PI, 1.75);
     people.people.push_back(person);
   }
-  Separation find(const Exception& exception = {}) const { return separation(capsules, T, T_world_base, people, exception); }
+  Separation find(const SeparationExemption& exception = {}) const { return separation(capsules, T, T_world_base, people, exception); }
 };
 
 TEST(Separation, is_the_least_over_all_pairs) {

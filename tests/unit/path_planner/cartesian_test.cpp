@@ -29,7 +29,7 @@ class Cartesian : public ::testing::Test {
   }
   Vector random_posture() {
     std::uniform_real_distribution<double> unit(0, 1);
-    Vector q = robot_.rest_posture();
+    Vector q = robot_.rest_configuration();
     do {
       for (int axis : arm_.axes) {
         const Axis& a = robot_.axes()[static_cast<std::size_t>(axis)];
@@ -141,7 +141,7 @@ TEST_F(Cartesian, heeds_a_person_and_moves_hand_and_head_too) {
   exact_.set_people(people);
   cost_.set_people(people);
   CartesianProblem problem;
-  problem.start = robot_.rest_posture();
+  problem.start = robot_.rest_configuration();
   problem.T_root_goal = tool(random_posture_like(problem.start));
   problem.also = robot_.require_group("head").axes;
   problem.also_goal = Vector::Constant(2, 0.2);
@@ -157,7 +157,7 @@ TEST_F(Cartesian, says_why_not) {
   CartesianProblem problem;
   const auto reason = [&] { return plan_cartesian(robot_, world_, cost_, problem, settings_).reason; };
   EXPECT_THAT(reason(), HasSubstr("start"));
-  problem.start = robot_.rest_posture();
+  problem.start = robot_.rest_configuration();
   problem.T_root_goal = make_pose({5, 0, 1});
   EXPECT_THAT(reason(), HasSubstr("no posture"));
   problem.T_root_goal = make_pose({0.85, -0.62, 0.5});

@@ -32,7 +32,7 @@ class DrivingJido : public ::testing::Test {
   /// At x, y, heading with the arm at rest.
   static Vector at(double x, double y, double heading) {
     Vector q(mobile().dof());
-    q << fixed().rest_posture(), x, y, heading;
+    q << fixed().rest_configuration(), x, y, heading;
     return q;
   }
   Problem problem(const char* group, const Vector& from, const std::vector<Vector>& goals) {
@@ -86,7 +86,7 @@ TEST_F(DrivingJido, the_links_are_where_the_standing_robot_has_them) {
   std::mt19937 random(11);
   std::vector<Pose> standing, driving;
   for (int k = 0; k < 20; ++k) {
-    Vector q = fixed().rest_posture();
+    Vector q = fixed().rest_configuration();
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       const Axis& axis = fixed().axes()[static_cast<std::size_t>(i)];
       q[i] = std::uniform_real_distribution<double>(axis.lower, axis.upper)(random);
@@ -189,7 +189,7 @@ TEST_F(DrivingJido, a_request_on_the_bus_starts_where_the_robot_stands) {
   context.settings = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
   Scene scene;
   scene.robot_known = true;
-  scene.robot_position = fixed().rest_posture();
+  scene.robot_position = fixed().rest_configuration();
   scene.T_world_base = make_pose({1, -2, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(3.0, Vector3::UnitZ())));
   scene.boxes.push_back({"table", make_pose({2.5, -2, 0.36}), {0.7, 1.2, 0.72}, true});
   Bus& spark = network.add("spark");
@@ -215,7 +215,7 @@ TEST_F(DrivingJido, a_request_on_the_bus_starts_where_the_robot_stands) {
   };
   PathRequest r;
   r.group = "platform";
-  r.start = fixed().rest_posture();
+  r.start = fixed().rest_configuration();
   r.time_limit = 5;
   r.goals = {Vector3(2.5, -3.5, -3.0)};
   const PathReply drives = ask(r);

@@ -30,7 +30,7 @@ class PathRequests : public ::testing::Test {
     context_.objects = [](const std::string&) -> const ObjectModel* { return nullptr; };
     context_.settings = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy/config";
     scene_.robot_known = true;
-    scene_.robot_position = jido().rest_posture();
+    scene_.robot_position = jido().rest_configuration();
     scene_.T_world_base = make_pose({1.5, -0.5, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.8, Vector3::UnitZ())));
     Bus& spark = network_.add("spark");
     scene_out_ = spark.advertise<Scene>();
@@ -50,7 +50,7 @@ class PathRequests : public ::testing::Test {
     PathRequest r;
     r.id = {4, ++number_};
     r.group = "arm";
-    r.start = jido().rest_posture();
+    r.start = jido().rest_configuration();
     r.seed = 2;
     r.time_limit = 5;
     return r;
@@ -63,12 +63,12 @@ class PathRequests : public ::testing::Test {
   }
   /// The arm moved a bit from rest, and where its tip is then, in the world.
   Vector moved(double by) const {
-    Vector q = RobotModel::part(jido().rest_posture(), arm_);
+    Vector q = RobotModel::part(jido().rest_configuration(), arm_);
     for (Eigen::Index i = 0; i < q.size(); ++i) q[i] += q[i] > 0 ? -by : by;
     return q;
   }
   Pose tip(const Vector& arm_q) const {
-    return scene_.T_world_base * jido().link_pose(RobotModel::with(jido().rest_posture(), arm_, arm_q), arm_.tip);
+    return scene_.T_world_base * jido().link_pose(RobotModel::with(jido().rest_configuration(), arm_, arm_q), arm_.tip);
   }
 
   LocalNetwork network_;
@@ -116,7 +116,7 @@ TEST_F(PathRequests, a_pose_a_set_of_them_and_a_region_are_reached) {
 
 TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
   // The arm sweeps from one side to the other; a head is before the middle of the way.
-  Vector start = jido().rest_posture(), goal = start, middle = start;
+  Vector start = jido().rest_configuration(), goal = start, middle = start;
   start[arm_.axes[0]] -= 0.7;
   goal[arm_.axes[0]] += 0.7;
   CollisionWorld world(jido(), context_.objects);

@@ -21,7 +21,7 @@ class PoseGoalsOfJido : public ::testing::Test {
 
   RobotModel robot_{RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
   const Group& arm_{robot_.require_group("arm")};
-  Vector start_{robot_.rest_posture()};
+  Vector start_{robot_.rest_configuration()};
 };
 
 TEST_F(PoseGoalsOfJido, postures_reach_their_poses_and_regions) {

@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-Vector start() { return opened(jido().rest_posture()); }
+Vector start() { return opened(jido().rest_configuration()); }
 
 config::Scenario with_visitor() {
   config::Scenario scenario = mug_in_hand();

@@ -279,7 +279,7 @@ TEST(Sensors, in_the_world_the_head_sees_where_it_looks) {
       for (const ObservedPerson& person : d.message.people) count += person.has_gaze;
     return count;
   };
-  const Vector3 p_camera = jido().link_pose(jido().rest_posture(), jido().link_index("camera")).translation();
+  const Vector3 p_camera = jido().link_pose(jido().rest_configuration(), jido().link_index("camera")).translation();
   const Vector3 to_anna = in_hand() + Vector3(1.0, 0, 0) - p_camera;
   const double toward = std::atan2(to_anna.y(), to_anna.x());
   EXPECT_GE(gazes(toward), 5);

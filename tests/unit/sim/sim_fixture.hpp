@@ -27,7 +27,7 @@ inline const ObjectLibrary& library() {
 }
 
 /// The mug's centre within the fingers at the rest posture, world.
-inline Vector3 in_hand() { return jido().link_pose(jido().rest_posture(), jido().tool_link()) * Vector3(0.055, 0.0, 0.19); }
+inline Vector3 in_hand() { return jido().link_pose(jido().rest_configuration(), jido().tool_link()) * Vector3(0.055, 0.0, 0.19); }
 
 inline config::Scenario mug_in_hand() {
   config::Scenario scenario;
@@ -128,9 +128,9 @@ inline Vector raised(const Vector& q) {
 }
 
 inline GroundTruth truth_of(const SimWorld& world) {
-  GroundTruth truth;
-  world.truth(truth);
-  return truth;
+  GroundTruth ground_truth;
+  world.ground_truth(ground_truth);
+  return ground_truth;
 }
 
 }  // namespace handsel::sim::test

@@ -17,7 +17,7 @@ class Stream {
  public:
   explicit Stream(double share = 0.9) : share_(share) {
     command_.robot = "jido";
-    command_.position = jido().rest_posture();
+    command_.position = jido().rest_configuration();
     command_.velocity = command_.acceleration = Vector::Zero(jido().dof());
   }
   const JointCommand& next() {
@@ -50,8 +50,8 @@ TEST(LimitsOracleTest, a_legal_stream_has_no_violation_and_its_true_shares) {
   Stream stream(0.9);
   for (int i = 0; i < 2000; ++i) judge.see(stream.next());
   EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
-  EXPECT_NEAR(judge.oracle.share_jerk(), 0.9, 1e-6);
-  EXPECT_NEAR(judge.oracle.share_acceleration(), 0.9, 1e-2);
+  EXPECT_NEAR(judge.oracle.ratio_jerk(), 0.9, 1e-6);
+  EXPECT_NEAR(judge.oracle.ratio_acceleration(), 0.9, 1e-2);
   EXPECT_DOUBLE_EQ(judge.oracle.period(), 0.001);
   EXPECT_EQ(judge.oracle.count(), 2000u);
   EXPECT_EQ(judge.oracle.writers(), 1u);
@@ -96,7 +96,7 @@ TEST(LimitsOracleTest, lost_set_points_are_no_violation) {
     }
   }
   EXPECT_EQ(judge.oracle.violations(), 0u) << judge.oracle.last_violation();
-  EXPECT_LE(judge.oracle.share_jerk(), 1 + 1e-6);
+  EXPECT_LE(judge.oracle.ratio_jerk(), 1 + 1e-6);
 }
 
 TEST(LimitsOracleTest, share_is_just_above_one_when_jerk_is) {
@@ -104,7 +104,7 @@ TEST(LimitsOracleTest, share_is_just_above_one_when_jerk_is) {
   Stream stream(1.0 + 1e-5);
   for (int i = 0; i < 200; ++i) judge.see(stream.next());
   EXPECT_GT(judge.oracle.violations(), 0u);
-  EXPECT_NEAR(judge.oracle.share_jerk(), 1 + 1e-5, 2e-6);
+  EXPECT_NEAR(judge.oracle.ratio_jerk(), 1 + 1e-5, 2e-6);
 }
 
 using Break = std::function<void(JointCommand&)>;
@@ -191,7 +191,7 @@ TEST(LimitsOracleTest, a_second_writer_and_a_long_gap_are_seen) {
   judge.now += 0.5;
   judge.see(stream.next(), 2);
   EXPECT_EQ(judge.oracle.writers(), 2u);
-  EXPECT_NEAR(judge.oracle.longest_gap(), 0.501, 1e-9);
+  EXPECT_NEAR(judge.oracle.max_gap(), 0.501, 1e-9);
   EXPECT_EQ(judge.oracle.violations(), 0u) << "a new start at the robot's posture is legal";
   judge.now += 0.5;
   JointCommand far = stream.next();
@@ -238,7 +238,7 @@ TEST(SeparationOracleTest, approaching_fast_is_a_violation_standing_is_not) {
   auto* person = add_person(scenario, config::STILL);
   person->set_x(in_hand().x() + 0.45);
   SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
-  Driver driver(world, jido().rest_posture());
+  Driver driver(world, jido().rest_configuration());
   driver.hold(0.5);
   EXPECT_EQ(truth_of(world).ssm_violations, 0u);
   const Group& arm = jido().require_group("arm");
@@ -267,9 +267,9 @@ TEST(HandoverOracleTest, demands_lift_contact_and_a_second_alone) {
     pass(s, contact);
     s.robot_grips = s.robot_touches = false, s.on_floor = floor;
     pass(s, alone);
-    GroundTruth truth;
-    oracle.write(truth);
-    return truth.handover_done;
+    GroundTruth ground_truth;
+    oracle.write(ground_truth);
+    return ground_truth.handover_done;
   };
   EXPECT_TRUE(run(0.12, 0.3, 1.0, false));
   EXPECT_FALSE(run(0.09, 0.3, 1.0, false));
@@ -293,9 +293,9 @@ TEST(HandoverOracleTest, what_a_person_gives_must_be_in_both_hands_then_in_the_r
     EXPECT_TRUE(oracle.shared());
     s.human_grips = s.human_touches = false, s.on_floor = floor;
     pass(s, alone);
-    GroundTruth truth;
-    oracle.write(truth);
-    return truth.handover_done;
+    GroundTruth ground_truth;
+    oracle.write(ground_truth);
+    return ground_truth.handover_done;
   };
   EXPECT_TRUE(run(0.3, 1.0, false));
   EXPECT_FALSE(run(0.1, 1.0, false)) << "hardly shared";

@@ -139,7 +139,7 @@ TEST(SimPerson, who_gives_never_holds_it_into_the_robots_hand) {
 
 TEST(SimPerson, who_holds_something_keeps_it_above_the_table_they_sit_at) {
   PersonSettings settings = giver();
-  settings.manner.seated = true;
+  settings.behaviour.seated = true;
   PersonModel free(settings);
   const Vector3 where = free.hand().T_world_body.translation();
   EXPECT_LT(where.z(), 0.8);
@@ -186,7 +186,7 @@ TEST(SimPerson, a_step_nearer_is_no_faster_than_people_step) {
 
 TEST(SimPerson, who_changes_their_mind_draws_it_back_once_and_offers_again) {
   PersonSettings settings = giver();
-  settings.manner.withdraws = true;
+  settings.behaviour.withdraws = true;
   PersonModel person(settings);
   live(person, 4, {0.4, 0, 1.0});
   ASSERT_EQ(person.phase(), PersonPhase::offering);
@@ -199,11 +199,11 @@ TEST(SimPerson, who_changes_their_mind_draws_it_back_once_and_offers_again) {
 }
 
 TEST(SimPerson, who_hesitates_takes_it_later_and_who_is_early_takes_it_while_it_moves) {
-  const auto taken_after = [](const Manner& manner, double speed) {
+  const auto taken_after = [](const BehaviourProfile& behaviour, double speed) {
     PersonSettings settings;
     settings.feet = Vector3(1.5, 0, 0);
     settings.yaw = M_PI;
-    settings.manner = manner;
+    settings.behaviour = behaviour;
     PersonModel person(settings);
     PersonView view = offer({0.95, 0.05, 1.05});
     view.object_velocity = Vector3(speed, 0, 0);
@@ -211,7 +211,7 @@ TEST(SimPerson, who_hesitates_takes_it_later_and_who_is_early_takes_it_while_it_
     for (; person.phase() != PersonPhase::pulling && clock < 8; clock += 0.001) person.step(0.001, view);
     return clock;
   };
-  Manner hesitant, early;
+  BehaviourProfile hesitant, early;
   hesitant.hesitation = 1.0;
   early.early = true;
   const double usual = taken_after({}, 0);
@@ -306,14 +306,14 @@ TEST(SimWorld, who_fetches_a_mug_takes_it_from_where_it_stands_and_goes) {
   // The arm is raised out of the way.
   (*scenario.mutable_start())["arm_a2"] = 0.2;
   SimWorld world(jido(), library(), scenario, SimSettings{}, 1);
-  GroundTruth truth;
+  GroundTruth ground_truth;
   const Vector3 before = world.T_world_object("mug").translation();
   while (world.time() < 0.95) world.step();
   EXPECT_LT((world.T_world_object("mug").translation() - before).norm(), 0.02) << "not yet";
   while (world.time() < 9) world.step();
-  world.truth(truth);
-  EXPECT_EQ(truth.carrier, "human");
-  EXPECT_FALSE(truth.dropped);
+  world.ground_truth(ground_truth);
+  EXPECT_EQ(ground_truth.carrier, "human");
+  EXPECT_FALSE(ground_truth.dropped);
   EXPECT_EQ(world.person_phase(0), PersonPhase::leaving);
   EXPECT_GT((world.T_world_object("mug").translation() - before).norm(), 0.5);
 }

@@ -12,7 +12,7 @@ using namespace test;
 
 SimWorld make(const config::Scenario& scenario, std::uint64_t seed = 1) { return {jido(), library(), scenario, SimSettings{}, seed}; }
 
-Vector start() { return opened(jido().rest_posture()); }
+Vector start() { return opened(jido().rest_configuration()); }
 
 config::Scenario from_open(config::Scenario scenario) {
   const Vector q = start();
@@ -208,10 +208,10 @@ TEST(SimGrasp, carries_the_mug_and_measures_its_weight) {
   driver.move(closed(start()), 1.5);
   driver.move(raised(driver.q()), 2.0);
   driver.hold(1.0);
-  const GroundTruth truth = truth_of(world);
-  EXPECT_EQ(truth.carrier, "robot");
-  EXPECT_NEAR(truth.lifted, 0.15, 0.01);
-  EXPECT_FALSE(truth.dropped);
+  const GroundTruth ground_truth = truth_of(world);
+  EXPECT_EQ(ground_truth.carrier, "robot");
+  EXPECT_NEAR(ground_truth.lifted, 0.15, 0.01);
+  EXPECT_FALSE(ground_truth.dropped);
   RobotState state;
   world.robot_state(state);
   EXPECT_NEAR(state.payload, library()("mug")->mass, 0.05);
@@ -244,22 +244,22 @@ TEST(SimHandover, a_taker_reaches_pulls_and_carries_the_mug_alone) {
   config::Scenario scenario = from_open(mug_in_hand());
   add_person(scenario, config::TAKER);
   SimWorld world = make(scenario);
-  const GroundTruth truth = perform(world);
-  EXPECT_TRUE(truth.handover_done);
-  EXPECT_EQ(truth.carrier, "human");
-  EXPECT_GE(truth.max_lifted, 0.10);
-  EXPECT_GE(truth.human_contact_before_release, 0.2);
+  const GroundTruth ground_truth = perform(world);
+  EXPECT_TRUE(ground_truth.handover_done);
+  EXPECT_EQ(ground_truth.carrier, "human");
+  EXPECT_GE(ground_truth.max_lifted, 0.10);
+  EXPECT_GE(ground_truth.human_contact_before_release, 0.2);
   EXPECT_EQ(world.person_phase(0), PersonPhase::keeping);
-  EXPECT_EQ(truth.limit_violations, 0u) << world.last_limit_violation();
+  EXPECT_EQ(ground_truth.limit_violations, 0u) << world.last_limit_violation();
 }
 
 TEST(SimHandover, fails_with_a_person_who_never_moves) {
   config::Scenario scenario = from_open(mug_in_hand());
   add_person(scenario, config::STILL);
   SimWorld world = make(scenario);
-  const GroundTruth truth = perform(world);
-  EXPECT_FALSE(truth.handover_done);
-  EXPECT_EQ(truth.carrier, "robot");
+  const GroundTruth ground_truth = perform(world);
+  EXPECT_FALSE(ground_truth.handover_done);
+  EXPECT_EQ(ground_truth.carrier, "robot");
 }
 
 TEST(SimHandover, fails_with_a_robot_that_never_releases) {
@@ -267,9 +267,9 @@ TEST(SimHandover, fails_with_a_robot_that_never_releases) {
   add_person(scenario, config::TAKER);
   scenario.set_robot_never_releases(true);
   SimWorld world = make(scenario);
-  const GroundTruth truth = perform(world);
-  EXPECT_FALSE(truth.handover_done);
-  EXPECT_NE(truth.carrier, "human");
+  const GroundTruth ground_truth = perform(world);
+  EXPECT_FALSE(ground_truth.handover_done);
+  EXPECT_NE(ground_truth.carrier, "human");
 }
 
 TEST(SimWorldTest, same_seed_same_hash_other_seed_other_hash) {
@@ -296,11 +296,11 @@ TEST(SimWorldTest, a_darting_hand_touches_the_robot_and_the_touch_is_counted) {
   EXPECT_EQ(world.control({0, SimAction::person_dart, "anna", 1.5}), "");
   EXPECT_EQ(world.control({0, SimAction::person_dart, "bob", 1.5}), "there is no person bob");
   driver.hold(1.0);
-  const GroundTruth truth = truth_of(world);
-  EXPECT_LT(truth.least_separation, 0.02);
-  EXPECT_GT(truth.peak_closing_speed, 0.8);
-  EXPECT_GT(truth.contact_force, 0.0);
-  EXPECT_LT(truth.contact_force, 5000.0);
+  const GroundTruth ground_truth = truth_of(world);
+  EXPECT_LT(ground_truth.least_separation, 0.02);
+  EXPECT_GT(ground_truth.peak_closing_speed, 0.8);
+  EXPECT_GT(ground_truth.contact_force, 0.0);
+  EXPECT_LT(ground_truth.contact_force, 5000.0);
 }
 
 TEST(SimWorldTest, hitting_a_table_is_a_collision_with_a_name) {
@@ -396,12 +396,12 @@ TEST(SimScenario, people_differ_from_trial_to_trial_and_the_same_seed_gives_the_
     const PersonSettings &one = setup.people[0].settings, &two = again.people[0].settings;
     EXPECT_EQ(one.feet, two.feet);
     EXPECT_LE((one.feet - Vector3(1.5, 0, 0)).cwiseAbs().maxCoeff(), 0.1);
-    EXPECT_GE(one.manner.pace, 0.5);
-    EXPECT_LE(one.manner.pace, 2.0);
+    EXPECT_GE(one.behaviour.speed_scale, 0.5);
+    EXPECT_LE(one.behaviour.speed_scale, 2.0);
     left += one.left_handed;
-    seated += one.manner.seated;
-    EXPECT_TRUE(!one.manner.seated || one.manner.sidestep.norm() == 0);
-    EXPECT_LT(one.manner.sidestep.dot(-one.feet), 1e-9) << "toward the robot";
+    seated += one.behaviour.seated;
+    EXPECT_TRUE(!one.behaviour.seated || one.behaviour.sidestep.norm() == 0);
+    EXPECT_LT(one.behaviour.sidestep.dot(-one.feet), 1e-9) << "toward the robot";
   }
   EXPECT_NEAR(there, 150, 30);
   EXPECT_NEAR(left, there / 2, 30);

@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 class CartesianWay : public ::testing::Test {
  protected:
   CartesianWay() {
-    request_.start = robot_.rest_posture();
+    request_.start = robot_.rest_configuration();
     home_ = chain_.forward(RobotModel::part(request_.start, arm_), nullptr);
   }
   CartesianMotion run() { return plan_cartesian(robot_, arm_, world_, request_); }
@@ -39,7 +39,7 @@ class CartesianWay : public ::testing::Test {
   RobotModel robot_{RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb")};
   const Group& arm_{robot_.require_group("arm")};
   CollisionWorld world_{robot_, nullptr};
-  ik::Chain chain_{robot_, arm_, robot_.rest_posture()};
+  ik::Chain chain_{robot_, arm_, robot_.rest_configuration()};
   ik::SrsArm srs_{*ik::SrsArm::recognise(chain_)};
   CartesianRequest request_;
   Pose home_;
@@ -167,7 +167,7 @@ TEST_F(CartesianWay, a_corner_that_would_collide_keeps_its_stop) {
   const CartesianMotion open = run();
   ASSERT_TRUE(open.solved) << open.reason;
   ASSERT_EQ(open.corners.size(), 1u);
-  ASSERT_NE(open.corners[0].method, CornerMethod::stop);
+  ASSERT_NE(open.corners[0].method, BlendMethod::stop);
   const auto postures = [&](const CartesianMotion& motion) {
     std::vector<Vector> out(motion.samples.size(), request_.start);
     for (std::size_t i = 0; i < out.size(); ++i) out[i](motion.axes) = motion.samples[i];
@@ -204,7 +204,7 @@ TEST_F(CartesianWay, a_corner_that_would_collide_keeps_its_stop) {
   ASSERT_TRUE(tight.solved) << tight.reason;
   EXPECT_TRUE(all_free(postures(tight)));
   EXPECT_GT(tight.path.duration(), open.path.duration());
-  if (tight.corners[0].method == CornerMethod::stop) {
+  if (tight.corners[0].method == BlendMethod::stop) {
     EXPECT_THAT(tight.corners[0].reason, HasSubstr("collides"));
     EXPECT_NEAR(tight.path.duration(), tight.duration_ptp, 1e-9);
   }

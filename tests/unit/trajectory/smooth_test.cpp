@@ -44,11 +44,11 @@ double smooth_corners(int corners, const SmoothSettings& settings, const char* t
     const SmoothResult r = smooth(nodes, l, settings);
     const auto fail = [&](const std::string& why) { ADD_FAILURE() << why << ", seed " << seed << " case " << k; };
     if (!r.ok()) return fail(r.reason), 0;
-    const CornerReport& corner = r.corners[0];
+    const BlendReport& corner = r.corners[0];
     const MotionState3 end = final_state(r.trajectory);
-    const double allowed = corner.method == CornerMethod::overlap || corner.method == CornerMethod::stop ? 1e-9 : 0.1 + 1e-9;
+    const double allowed = corner.method == BlendMethod::overlap || corner.method == BlendMethod::stop ? 1e-9 : 0.1 + 1e-9;
     if (const std::string why = why_not_within(r.trajectory, l, allowed); !why.empty()) return fail(why), 0;
-    if (limit_share(r.trajectory, l) > 1 + corner.excess + 1e-9) return fail("more excess than reported"), 0;
+    if (limit_ratio(r.trajectory, l) > 1 + corner.excess + 1e-9) return fail("more excess than reported"), 0;
     if (r.trajectory.duration() > r.duration_ptp + 1e-9) return fail("longer than stopping"), 0;
     if (std::abs(r.trajectory.duration() - r.duration_ptp + corner.saved) > 1e-9) return fail("the saving is not what is reported"), 0;
     if ((end.position - nodes[2]).lpNorm<Eigen::Infinity>() > 1e-9 || end.velocity.norm() + end.acceleration.norm() > 1e-9) {
@@ -97,9 +97,9 @@ TEST(Smooth, the_predicate_is_offered_exactly_what_is_then_run) {
       offered = corner;
       return refusals-- <= 0;
     });
-    const CornerReport& c = r.corners[0];
+    const BlendReport& c = r.corners[0];
     ++seen[name(c.method)];
-    if (c.method == CornerMethod::stop) continue;
+    if (c.method == BlendMethod::stop) continue;
     // Where the corner begins: the instant at which the whole is in the state the corner starts from.
     const double leg = straight_motion(nodes[0], nodes[1], l).duration();
     double begin = -1;
@@ -122,7 +122,7 @@ TEST(Smooth, tau_zero_stops_at_the_node) {
   settings.tau = 0;
   const SmoothResult stop = smooth(nodes, kFigure18, settings);
   ASSERT_TRUE(stop.ok());
-  EXPECT_EQ(stop.corners[0].method, CornerMethod::stop);
+  EXPECT_EQ(stop.corners[0].method, BlendMethod::stop);
   EXPECT_NE(stop.corners[0].reason, "");
   EXPECT_NEAR(stop.trajectory.duration(), stop.duration_ptp, 1e-12);
   settings.tau = 1.0;
@@ -133,7 +133,7 @@ TEST(Smooth, tau_zero_stops_at_the_node) {
 double share_between(const SpeedZones& zones, double from, double to) {
   double least = 1, begin = 0;
   for (const SpeedZone& zone : zones) {
-    if (begin <= to && from <= zone.end) least = std::min(least, zone.share);
+    if (begin <= to && from <= zone.end) least = std::min(least, zone.scale);
     begin = zone.end;
   }
   return least;
@@ -185,13 +185,13 @@ TEST(Smooth, speed_follows_the_zones_of_the_legs_exactly) {
         },
         speeds);
     ASSERT_TRUE(r.ok()) << r.reason;
-    for (const CornerReport& corner : r.corners) ++(corner.method == CornerMethod::stop ? stops : smoothed);
+    for (const BlendReport& corner : r.corners) ++(corner.method == BlendMethod::stop ? stops : smoothed);
     EXPECT_EQ(why_not_within(r.trajectory, limits, 0.1 + 1e-9), "") << where();
     EXPECT_LE(r.trajectory.duration(), r.duration_ptp + 1e-9) << where();
     EXPECT_LT((final_state(r.trajectory).position - nodes.back()).lpNorm<Eigen::Infinity>(), 1e-9) << where();
     double sum = 0;
     for (std::size_t k = 0; k + 1 < nodes.size(); ++k) {
-      sum += r.legs[k];
+      sum += r.segment_durations[k];
       const Trajectory leg = straight_motion(nodes[k], nodes[k + 1], limits, speeds[k]);
       EXPECT_EQ(why_not_within(leg, limits, 1e-9), "") << where();
       EXPECT_LE(leg.duration(), straight_motion(nodes[k], nodes[k + 1], limits, {{1, share_between(speeds[k], 0, 1)}}).duration() + 1e-9);
@@ -235,7 +235,7 @@ TEST(Smooth, a_forbidden_corner_keeps_its_stop_and_says_why) {
   ASSERT_TRUE(r.ok());
   ASSERT_EQ(r.corners.size(), 2u);
   EXPECT_GT(asked, 1);
-  for (const CornerReport& c : r.corners) EXPECT_EQ(c.method == CornerMethod::stop, !c.reason.empty());
+  for (const BlendReport& c : r.corners) EXPECT_EQ(c.method == BlendMethod::stop, !c.reason.empty());
   const SmoothResult none = smooth(nodes, kFigure18, {}, [](const Trajectory&) { return false; });
   EXPECT_NEAR(none.trajectory.duration(), none.duration_ptp, 1e-9);
   EXPECT_NE(none.corners[1].reason, "");

@@ -107,7 +107,7 @@ TEST(Switch, nothing_leads_over_where_only_rounding_is_between) {
     ASSERT_TRUE(s.ok()) << s.reason << " seed " << seed << " case " << k;
     ASSERT_EQ(s.connecting, 0) << "seed " << seed << " case " << k;
     ASSERT_NEAR(s.trajectory.duration(), next.duration(), 1e-9);
-    TimeLaw law;
+    TimeScaling law;
     ASSERT_EQ(law.init(first, guard), "");
     for (int i = 0; i < 20; ++i) law.advance(0.001);
     ASSERT_EQ(law.switch_at(leave, SegmentTable(next), at_its_beginning), SwitchOutcome::ok);
@@ -134,7 +134,7 @@ TEST(Switch, says_why_not) {
   now.velocity[1] = 0;
   EXPECT_EQ(connection.plan(now, SegmentTable(next), {guard.velocity * 0, guard.acceleration, guard.jerk}, {}), SwitchOutcome::bad_limits);
   EXPECT_EQ(connection.plan(now, SegmentTable(), guard, {}), SwitchOutcome::wrong_size);
-  TimeLaw idle;
+  TimeScaling idle;
   EXPECT_EQ(idle.switch_to(SegmentTable(next)), SwitchOutcome::wrong_size);
 }
 
@@ -143,7 +143,7 @@ TEST(Switch, keeps_the_path_behind_and_the_own_time_of_what_runs) {
   for (int k = 0; k < 15; ++k) {
     const KinematicLimits guard = draw.limits(3);
     const Trajectory first = draw.path(guard), next = draw.path(guard);
-    TimeLaw law;
+    TimeScaling law;
     ASSERT_EQ(law.init(first, guard), "");
     law.set_target(k % 2 ? 0.5 : 1);
     for (double until = draw(0.2, 0.7) * first.duration(); law.time() < until;) law.advance(0.001);
@@ -167,16 +167,16 @@ TEST(Switch, is_planned_ahead_and_taken_back_without_a_trace) {
   for (int k = 0; k < 15; ++k) {
     const KinematicLimits guard = draw.limits(3);
     const Trajectory first = draw.path(guard), next = draw.path(guard);
-    TimeLaw law, other;
+    TimeScaling law, other;
     ASSERT_EQ(law.init(first, guard), "");
     ASSERT_EQ(other.init(first, guard), "");
     const double leave = draw(0.3, 0.9) * first.duration();
-    for (TimeLaw* l : {&law, &other}) {
+    for (TimeScaling* l : {&law, &other}) {
       l->set_target(0.7);
       for (int i = 0; i < 150; ++i) l->advance(0.001);
     }
     ASSERT_EQ(law.switch_at(leave, SegmentTable(next)), SwitchOutcome::ok);
-    EXPECT_DOUBLE_EQ(law.left_at(), leave);
+    EXPECT_DOUBLE_EQ(law.switched_at(), leave);
     law.undo_switch();
     EXPECT_EQ(law.duration(), other.duration());
     for (int i = 0; i < 100; ++i) {
@@ -202,7 +202,7 @@ TEST(Switch, what_may_not_run_back_stands_when_asked_to) {
   for (int k = 0; k < 30; ++k) {
     const KinematicLimits guard = draw.limits(3);
     const Trajectory first = draw.path(guard), next = draw.path(guard);
-    TimeLaw law;
+    TimeScaling law;
     ASSERT_EQ(law.init(first, guard), "");
     for (double until = draw(0.2, 0.7) * first.duration(); law.time() < until;) law.advance(0.001);
     if (law.start_from(MotionState3(law.state()), SegmentTable(next)) != SwitchOutcome::ok) continue;
@@ -257,11 +257,11 @@ TEST(Switch, nothing_that_runs_in_a_cycle_allocates) {
   Draw draw{std::mt19937_64(54)};
   const KinematicLimits guard = draw.limits(7);
   const SegmentTable next(draw.path(guard)), other(draw.path(guard));
-  TimeLaw law;
+  TimeScaling law;
   ASSERT_EQ(law.init(draw.path(guard), guard), "");
   SynchronisedAxes axes(7);
   const MotionState3 a = draw.state(guard), b = draw.state(guard);
-  SoftStop stop;
+  JerkLimitedStop stop;
   SetpointFilter filter({0, 0, 0}, {1, 2, 10});
   AxisProfile profile;
   MotionState3 out = rest_state(VectorXd::Zero(7));

@@ -17,7 +17,7 @@ using test::Draw;
 using test::runs;
 using test::scaled;
 
-TEST(TimeLaw, every_step_is_within_the_guard_whatever_is_asked_for) {
+TEST(TimeScaling, every_step_is_within_the_guard_whatever_is_asked_for) {
   const std::uint64_t seed = 31;
   Draw draw{std::mt19937_64(seed)};
   double largest = 0;
@@ -25,7 +25,7 @@ TEST(TimeLaw, every_step_is_within_the_guard_whatever_is_asked_for) {
     const int n = 7;
     const KinematicLimits guard = draw.limits(n);
     Trajectory t = solve(rest_state(draw.vector(n, -1, 1)), rest_state(draw.vector(n, -1, 1)), scaled(guard, 1 / 1.1)).trajectory;
-    TimeLaw law;
+    TimeScaling law;
     ASSERT_EQ(law.init(t, guard), "");
     MotionState3 last = law.state();
     double until = 0;
@@ -56,7 +56,7 @@ TEST(TimeLaw, every_step_is_within_the_guard_whatever_is_asked_for) {
   RecordProperty("largest_share", std::to_string(largest));
 }
 
-TEST(TimeLaw, corners_that_use_the_whole_guard_are_kept_too) {
+TEST(TimeScaling, corners_that_use_the_whole_guard_are_kept_too) {
   const std::uint64_t seed = 34;
   Draw draw{std::mt19937_64(seed)};
   for (int k = 0; k < runs(25); ++k) {
@@ -66,7 +66,7 @@ TEST(TimeLaw, corners_that_use_the_whole_guard_are_kept_too) {
     for (int i = 0; i < 4; ++i) nodes.push_back(draw.vector(n, -1, 1));
     const SmoothResult smoothed = smooth(nodes, scaled(guard, 1 / 1.1));
     ASSERT_TRUE(smoothed.ok()) << smoothed.reason;
-    TimeLaw law;
+    TimeScaling law;
     ASSERT_EQ(law.init(smoothed.trajectory, guard), "");
     double until = 0;
     for (int i = 0; i < 6000 && !law.finished(); ++i) {
@@ -85,7 +85,7 @@ TEST(TimeLaw, corners_that_use_the_whole_guard_are_kept_too) {
   }
 }
 
-TEST(TimeLaw, stops_nearly_as_fast_as_the_axes_could) {
+TEST(TimeScaling, stops_nearly_as_fast_as_the_axes_could) {
   Draw draw{std::mt19937_64(32)};
   double along = 0, own = 0, worst = 0;
   int stops = 0;
@@ -93,7 +93,7 @@ TEST(TimeLaw, stops_nearly_as_fast_as_the_axes_could) {
     const int n = 7;
     const KinematicLimits guard{VectorXd::Constant(n, 0.475 * 1.1), VectorXd::Constant(n, 0.95 * 1.1), VectorXd::Constant(n, 2.85 * 1.1)};
     const Trajectory t = solve(rest_state(draw.vector(n, -2, 2)), rest_state(draw.vector(n, -2, 2)), scaled(guard, 1 / 1.1)).trajectory;
-    TimeLaw law;
+    TimeScaling law;
     ASSERT_EQ(law.init(t, guard), "");
     const double at = draw(0.1, 0.7) * t.duration();
     while (law.time() < at) law.advance(0.001);
@@ -112,11 +112,11 @@ TEST(TimeLaw, stops_nearly_as_fast_as_the_axes_could) {
   EXPECT_LT(along / stops, 2.0 * own / stops);
 }
 
-TEST(TimeLaw, holds_resumes_and_runs_back) {
+TEST(TimeScaling, holds_resumes_and_runs_back) {
   const KinematicLimits guard{VectorXd::Ones(2), VectorXd::Ones(2) * 2, VectorXd::Ones(2) * 8};
   const VectorXd a = VectorXd::Zero(2), b = (VectorXd(2) << 1.0, -0.4).finished();
   const Trajectory t = solve(rest_state(a), rest_state(b), scaled(guard, 0.9)).trajectory;
-  TimeLaw law;
+  TimeScaling law;
   ASSERT_EQ(law.init(t, guard), "");
   for (int i = 0; i < 600; ++i) law.advance(0.001);
   law.set_target(0);
@@ -133,10 +133,10 @@ TEST(TimeLaw, holds_resumes_and_runs_back) {
   EXPECT_LT((law.state().position - b).norm(), 1e-9);
 }
 
-TEST(TimeLaw, refuses_what_it_cannot_run) {
+TEST(TimeScaling, refuses_what_it_cannot_run) {
   const KinematicLimits guard{VectorXd::Ones(1), VectorXd::Ones(1), VectorXd::Ones(1)};
   Trajectory t = solve(rest_state(VectorXd::Zero(1)), rest_state(VectorXd::Ones(1)), guard).trajectory;
-  TimeLaw law;
+  TimeScaling law;
   EXPECT_EQ(law.init(t, guard), "");
   EXPECT_NE(law.init(t, scaled(guard, 0.9)), "");
   EXPECT_NE(law.init(cut(t, 0, 0.5), guard), "");

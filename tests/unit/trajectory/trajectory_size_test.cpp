@@ -63,13 +63,13 @@ TEST(TrajectorySize, of_jido_is_below64k_b) {
   HumanCost cost(robot, {});
   const std::vector<int> also = test::hand_and_head(robot);
   for (const int nodes : {4, 7}) {
-    const Result result = plan(robot, world, cost, {}, tool_motion(robot, arm, also, robot.rest_posture(), nodes), {});
+    const Result result = plan(robot, world, cost, {}, tool_motion(robot, arm, also, robot.rest_configuration(), nodes), {});
     EXPECT_GT(result.reply.trajectory.duration(), 5);
     measure("Jido, tool", robot, result.reply);
   }
   TrajectoryRequest request;
   request.group = "arm";
-  request.start = robot.rest_posture();
+  request.start = robot.rest_configuration();
   std::mt19937 random(kSeed);
   for (int k = 0; k < 30; ++k) {
     Vector q = RobotModel::part(request.start, arm);

@@ -129,13 +129,13 @@ TEST(ThreeSegment, meets_both_ends) {
   }
 }
 
-TEST(SoftStop, comes_to_rest_in_the_measured_time) {
+TEST(JerkLimitedStop, comes_to_rest_in_the_measured_time) {
   Draw draw{std::mt19937_64(24)};
   for (int k = 0; k < 10000; ++k) {
     const AxisLimits l{1, draw(0.5, 4), draw(1, 20)};
     const AxisState start{draw(-1, 1), draw(-1, 1), draw(-1.5, 1.5) * l.acceleration};
     const StopMeasure m = measure_stop(start.velocity, start.acceleration, l.acceleration, l.jerk);
-    SoftStop stop;
+    JerkLimitedStop stop;
     stop.init(start, l);
     AxisState last = start;
     double t = 0;
@@ -153,7 +153,7 @@ TEST(SoftStop, comes_to_rest_in_the_measured_time) {
   }
 }
 
-TEST(SoftStop, critical_movement_ends_at_its_end_for_small_speeds_too) {
+TEST(JerkLimitedStop, critical_movement_ends_at_its_end_for_small_speeds_too) {
   Draw draw{std::mt19937_64(26)};
   for (int k = 0; k < 100000; ++k) {
     const double A = draw(0.5, 4), J = draw(1, 20);

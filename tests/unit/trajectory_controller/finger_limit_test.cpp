@@ -18,7 +18,7 @@ class FingersBesideSomebody {
   explicit FingersBesideSomebody(double distance)
       : robot_(std::make_shared<const RobotModel>(RobotModel::load(robot_description("jido")))), core_({}, robot_) {
     state_.robot = robot_->name();
-    state_.position = robot_->rest_posture();
+    state_.position = robot_->rest_configuration();
     state_.velocity = state_.effort = Vector::Zero(robot_->dof());
     state_.mode = DriveMode::enabled;
     std::vector<Pose> links;

@@ -43,7 +43,7 @@ TEST(Gaze, stays_inside_the_bounds_for_points_out_of_view) {
 TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
   const RobotModel robot = RobotModel::load(std::string(HANDSEL_SOURCE_DIR) + "/deploy/robots/jido/jido.txtpb");
   HeadRoom room(robot);
-  Vector q = robot.rest_posture();
+  Vector q = robot.rest_configuration();
   q.head(7) << -0.286, 1.673, -0.285, -1.170, -1.204, 1.639, -1.292;
   const std::vector<int>& head = robot.require_group("head").axes;
   q[head[0]] = 0.001;
@@ -55,7 +55,7 @@ TEST(HeadRoom, the_head_does_not_turn_into_the_arm) {
   ASSERT_LT(room.clearance(q), 0.02);
   EXPECT_TRUE(room.lets_turn(q, {0.115, 0.127})) << "away from the arm it always may";
   Vector away = q;
-  away.head(7) = robot.rest_posture().head(7);
+  away.head(7) = robot.rest_configuration().head(7);
   EXPECT_TRUE(room.lets_turn(away, {-1.0, -0.7})) << "nothing is there";
 }
 

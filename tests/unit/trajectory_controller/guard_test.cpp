@@ -20,7 +20,7 @@ class GuardTest : public testing::Test {
     p.joints = standing_body(Vector3(x, y, 0), M_PI, 1.75);
     return p;
   }
-  GuardVerdict judge(const HumanState& people, double age = 0.0, double factor = 1.0, const Exception& exception = {}) {
+  GuardVerdict judge(const HumanState& people, double age = 0.0, double factor = 1.0, const SeparationExemption& exception = {}) {
     prepare(people, exception, settings_.unknown_after, crowd_);
     robot_->forward(q_, links_);
     link_twists(*robot_, dq_, links_, twists_);
@@ -32,7 +32,7 @@ class GuardTest : public testing::Test {
     const Pose base = Pose::Identity();
     return trajectory_controller::guard(settings_, {capsules_, motion, stop, base, people, walls_, age, factor});
   }
-  GuardVerdict judge(const Person& person, double age = 0.0, double factor = 1.0, const Exception& exception = {}) {
+  GuardVerdict judge(const Person& person, double age = 0.0, double factor = 1.0, const SeparationExemption& exception = {}) {
     return judge(HumanState{0, {person}, true}, age, factor, exception);
   }
   static void walk(Person& p, const Vector3& velocity) {
@@ -227,12 +227,12 @@ TEST_F(GuardTest, the_exchanging_hand_is_excepted_but_its_speed_stays_limited) {
   p.joints[10].position = Vector3(1.0, 0, 1.0);
   p.joints[11].position = Vector3(0.92, 0, 1.0);
   const GuardVerdict before = judge(p);
-  const GuardVerdict engaged = judge(p, 0.0, 1.0, Exception{"anna", Side::right, true});
+  const GuardVerdict engaged = judge(p, 0.0, 1.0, SeparationExemption{"anna", Side::right, true});
   EXPECT_GT(engaged.forward, before.forward);
   EXPECT_FALSE(engaged.exchange_clear);
   EXPECT_LE(engaged.forward * 0.5 * 0.8, settings_.exchange_speed * 1.3);
-  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, Exception{"bert", Side::right, true}).forward, before.forward);
-  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, Exception{"anna", Side::left, false}).forward, before.forward);
+  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"bert", Side::right, true}).forward, before.forward);
+  EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"anna", Side::left, false}).forward, before.forward);
 }
 
 TEST_F(GuardTest, only_the_part_of_the_exchanging_hand_within_range_counts_and_its_speed_is_capped_both_ways) {
@@ -241,7 +241,7 @@ TEST_F(GuardTest, only_the_part_of_the_exchanging_hand_within_range_counts_and_i
   p.joints[9].position = Vector3(1.25, -0.1, 1.0);
   p.joints[10].position = Vector3(1.0, 0, 1.0);
   p.joints[11].position = Vector3(0.92, 0, 1.0);
-  const Exception exchange{"anna", Side::right, true};
+  const SeparationExemption exchange{"anna", Side::right, true};
   dq_[0] = 3.0;
   const GuardVerdict leaving = judge(p, 0.0, 1.0, exchange);
   EXPECT_GT(leaving.backward, -0.5) << "running back would close in too fast";
