@@ -54,8 +54,7 @@ int run(int argc, char** argv, const char* component, const NodeFactory& make_no
   app.add_option("--config", config, "folder of the components' settings");
   app.add_option("--state", state, "folder of what must survive a restart (default: HANDSEL_STATE, else a folder of the domain)");
   app.add_option("--seed", seed, "of every random choice")->capture_default_str();
-  app.add_flag("--sim-time", sim_time,
-               "the simulator gives the pace: time stands still while a component of the system waits for a processor")
+  app.add_flag("--sim-time", sim_time, "the simulator gives the pace: time stops while a component of the system waits for a processor")
       ->envname("HANDSEL_SIM_TIME");
   app.add_flag("--realtime", settings.realtime, "SCHED_FIFO and locked memory where permitted");
   app.add_option("--cpu-affinity", settings.cpu, "run the executor on this processor");

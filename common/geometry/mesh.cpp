@@ -46,7 +46,7 @@ void append(const aiMesh& mesh, const aiMatrix4x4& T, const std::filesystem::pat
     for (int& corner : corners) corner = place[static_cast<std::size_t>(corner)];
     mesh::split_polygon(soup.points, corners, soup.faces);
     if (soup.faces.size() > mesh::kMaxTriangles || soup.points.size() > mesh::kMaxVertices)
-      throw ConfigError(file.string() + ": more than 500000 triangles or 1500000 vertices, the most a mesh may have");
+      throw ConfigError(file.string() + ": more than 500000 triangles or 1500000 vertices, the maximum of a mesh");
   }
   if (T.Determinant() >= 0) return;
   for (std::size_t t = first; t < soup.faces.size(); ++t) std::swap(soup.faces[t][1], soup.faces[t][2]);
@@ -75,7 +75,7 @@ std::string read(const std::filesystem::path& file) {
   namespace fs = std::filesystem;
   if (!fs::exists(file)) throw MissingError("no mesh " + file.string());
   if (!fs::is_regular_file(file)) throw ConfigError(file.string() + " is not a file");
-  if (fs::file_size(file) > mesh::kMaxBytes) throw ConfigError(file.string() + ": larger than 64 MB, the most a mesh may have");
+  if (fs::file_size(file) > mesh::kMaxBytes) throw ConfigError(file.string() + ": larger than 64 MB, the maximum of a mesh");
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();

@@ -20,7 +20,7 @@ class TriangleCount {
   explicit TriangleCount(const fs::path& file) : file_(file) {}
   void add(std::size_t corners) {
     count_ += corners > 2 ? corners - 2 : 0;
-    if (count_ > kMaxTriangles) fail(file_, "more than 500000 triangles, the most a mesh may have");
+    if (count_ > kMaxTriangles) fail(file_, "more than 500000 triangles, the maximum of a mesh");
   }
 
  private:
@@ -46,7 +46,7 @@ std::uint32_t stl_count(const std::string& content) {
 }
 
 void check_binary_stl(const fs::path& file, const std::string& content, std::uint32_t count) {
-  if (count > kMaxTriangles) fail(file, "more than 500000 triangles, the most a mesh may have");
+  if (count > kMaxTriangles) fail(file, "more than 500000 triangles, the maximum of a mesh");
   for (std::uint32_t t = 0; t < count; ++t) {
     float corners[9];
     std::memcpy(corners, content.data() + kStlHead + t * kStlTriangle + 12, sizeof corners);
@@ -92,11 +92,11 @@ std::string checked_obj(const fs::path& file, std::string content) {
     all += word == "v" ? 1 : 0;
     if (word == "mtllib") content[static_cast<std::size_t>(word.data() - content.data())] = '#';
   }
-  if (all > static_cast<long long>(kMaxVertices)) fail(file, "more than 1500000 vertices, the most a mesh may have");
+  if (all > static_cast<long long>(kMaxVertices)) fail(file, "more than 1500000 vertices, the maximum of a mesh");
   long long before = 0;
   TriangleCount triangles(file);
   for (Lines lines(file, content); lines.next();) {
-    if (lines.is_continued()) lines.fail("a line that goes on in the next one (\\); it must be one line");
+    if (lines.is_continued()) lines.fail("a line that continues in the next one (\\); it must be one line");
     const std::string_view kind = lines.word();
     if (kind == "v") {
       ++before;

@@ -183,7 +183,7 @@ class Body {
       corners = values;
       if (values > kMaxFaceVertices) fail("face " + std::to_string(entry_ + 1) + " has more than 1000 vertices");
       triangles_ += values > 2 ? values - 2 : 0;
-      if (triangles_ > kMaxTriangles) throw ConfigError(file_.string() + ": more than 500000 triangles, the most a mesh may have");
+      if (triangles_ > kMaxTriangles) throw ConfigError(file_.string() + ": more than 500000 triangles, the maximum of a mesh");
     } else if (values > 2 * corners) {
       fail("face " + std::to_string(entry_ + 1) + " has a list " + property.name + " longer than its vertices allow");
     }
