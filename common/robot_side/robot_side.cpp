@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kReached = 1e-10;  // of a resting set-point [rad]
 constexpr double kAtRest = 1e-6;    // fastest set-point that counts as resting [rad/s]
-constexpr const char* kAgain = "; the robot follows again once set-points rest at its posture";
+constexpr const char* kAgain = "; the robot follows again once set-points rest where it is";
 
 Vector bounds(const RobotModel& model, double Axis::*bound) {
   Vector out(model.dof());

@@ -77,7 +77,7 @@ void PositionArm::set_load(double mass) {
 
 std::string PositionArm::trouble() const {
   if (!core_.trouble().empty() || core_.settings().dry_run || session_ == Session::commanding_active) return core_.trouble();
-  return last_.position.size() == 0 ? "the arm's controller has not been heard yet" : "the commanding session is being negotiated";
+  return last_.position.size() == 0 ? "nothing was received from the arm's controller yet" : "the commanding session is being negotiated";
 }
 
 }  // namespace handsel::drivers

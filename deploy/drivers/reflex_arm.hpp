@@ -69,7 +69,7 @@ class ReflexArm : public Driver {
   void acknowledge() override;
   RobotState state() const override { return core_.state(commanding_); }
   std::string trouble() const override {
-    return state_.position.size() == 0 ? "the arm's controller has not been heard yet" : core_.trouble();
+    return state_.position.size() == 0 ? "nothing was received from the arm's controller yet" : core_.trouble();
   }
   const DriverCore& core() const override { return core_; }
 

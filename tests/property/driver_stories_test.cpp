@@ -207,7 +207,7 @@ TYPED_TEST(AnyDriver, what_the_hand_holds_is_told_to_the_maker_with_the_set_poin
   jumps.position[1] += 0.2;
   EXPECT_FALSE(s.driver().command(jumps, s.now()));
   EXPECT_EQ(s.fake().account.load, 0.4) << "nothing of a set-point that is refused";
-  s.run(0.1);  // the refused one stops the robot, which follows again once set-points rest at its posture
+  s.run(0.1);  // the refused one stops the robot, which follows again once set-points rest where it is
   EXPECT_EQ(s.fake().account.load, 0.0) << "the controller says that nothing is held";
 }
 

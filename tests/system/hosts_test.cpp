@@ -76,7 +76,7 @@ TEST_F(OnHosts, every_service_of_the_compose_file_on_its_own_address_hands_over_
   Session session(kDomain);
   const Snapshot& now = session.snapshot();
   ASSERT_TRUE(session.wait(from_seconds(15), [&] { return now.health.size() == services.size() - 1; })) << told(now);
-  EXPECT_THAT(not_ready(now), testing::Contains("spark (not heard yet)"));
+  EXPECT_THAT(not_ready(now), testing::Contains("spark (nothing received yet)"));
   ASSERT_TRUE(session.send({.id = session.new_task_id(), .kind = TaskKind::give, .object = "mug"}));
   EXPECT_FALSE(session.wait(from_seconds(1.0), [&] { return now.ground_truth.ever && now.ground_truth.sample.robot_moving; })) << told(now);
   session.send({.id = session.new_task_id(), .kind = TaskKind::cancel});
@@ -199,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Mistakes, a_system_that_is_not_there_is_not_healthy) {
   const Outcome outcome = shell("env HANDSEL_DOMAIN=" + std::to_string(kDomain) + " " + HANDSEL_COMMAND + " health spark --within 0.5");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.out, testing::HasSubstr("not ready on DDS domain 39: spark (not heard yet)"));
+  EXPECT_THAT(outcome.out, testing::HasSubstr("not ready on DDS domain 39: spark (nothing received yet)"));
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ std::string why_bad_speeds(const std::vector<SpeedZones>& speeds, std::size_t no
     return "there are speeds of " + std::to_string(speeds.size()) + " legs, the nodes make " + std::to_string(nodes - 1);
   for (const SpeedZones& path_segment : speeds)
     for (const SpeedZone& zone : path_segment)
-      if (!(zone.scale > 0 && zone.scale <= 1 && std::isfinite(zone.end))) return "a share of the velocity limits must be in (0, 1]";
+      if (!(zone.scale > 0 && zone.scale <= 1 && std::isfinite(zone.end))) return "a scale of the velocity limits must be in (0, 1]";
   return {};
 }
 
@@ -182,7 +182,7 @@ SmoothResult smooth(const std::vector<Eigen::VectorXd>& nodes, const KinematicLi
     last = &nodes[k];
     out.duration_ptp += out.segment_durations[k - 1] = path_segments.back().duration;
     if (!(path_segments.back().duration > 0) || !std::isfinite(path_segments.back().duration)) {
-      out.reason = "the way to node " + std::to_string(k) + " cannot be computed with such limits";
+      out.reason = "the motion to node " + std::to_string(k) + " cannot be computed with such limits";
       return out;
     }
   }

@@ -51,7 +51,7 @@ std::string join(const std::vector<std::string>& items) {
 
 std::string why_not_ready(const Snapshot& snapshot, const std::string& process) {
   const auto found = snapshot.health.find(process);
-  if (found == snapshot.health.end()) return "not heard yet";
+  if (found == snapshot.health.end()) return "nothing received yet";
   const ComponentHealth& health = found->second.sample;
   const bool enough = health.state == HealthState::ok || (process == "bridge" && health.state == HealthState::degraded);
   return enough ? "" : health.reason.empty() ? "starting" : health.reason;
