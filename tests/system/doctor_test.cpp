@@ -305,7 +305,7 @@ TEST_F(Doctor, finds_a_calibration_that_is_wrong_stale_or_not_what_comes) {
       },
       "driver");
   const Diagnosis diagnosis = doctor("--perception", home);
-  for (const char* words : {"source side was measured", "source top is heard, and is not in", "source side of",
+  for (const char* words : {"source side was measured", "source top publishes, and is not in", "source side of",
                             "the base of jido is 0.200 m and 0.0 degrees from"})
     EXPECT_FALSE(diagnosis.find("calibration", words).is_null()) << words << "\n" << diagnosis.all();
 }

@@ -60,7 +60,8 @@ int run(int argc, char** argv) {
   bool realtime = false;
   CLI::App app{"a maker's controller that is not there"};
   app.add_option("kind", kind, "position_arm or reflex_arm")->required()->check(CLI::IsMember({"position_arm", "reflex_arm"}));
-  app.add_option("--robot", robot, "robot description: name or file; its group \"arm\" stands at the rest posture")->capture_default_str();
+  app.add_option("--robot", robot, "robot description: name or file; its group \"arm\" stands in the rest configuration")
+      ->capture_default_str();
   app.add_option("--port", port, "where the driver listens")->required()->check(CLI::Range(1, 65535));
   app.add_option("--script", script, "what happens to the arm");
   app.add_option("--cycle", cycle, "of a position_arm [s]")->check(CLI::Range(0.001, 0.01))->capture_default_str();

@@ -318,10 +318,11 @@ void add_eval_command(CLI::App& app, int& exit_code) {
   command->add_option("--replay", options->replay, "one trial with this seed, bit for bit, telling what happens")->check(kAboveZero);
   command->add_option("--record", options->record, "with --replay: write everything that is said into this MCAP file");
   command
-      ->add_option("--attention", options->modes,
-                   "how its clocks run: adaptive; max: all at their shortest period; mean: each at the mean period of the adaptive ones, "
-                   "found in a few trials before; fixed:SHARE: all at this share of the way to their longest period, 0 to 1; off: no "
-                   "attention. Several are compared, with the same seeds")
+      ->add_option(
+          "--attention", options->modes,
+          "how its clocks run: adaptive; max: all at their shortest period; mean: each at the mean period of the adaptive ones, "
+          "found in a few trials before; fixed:SHARE: all at this fraction from their shortest to their longest period, 0 to 1; off: no "
+          "attention. Several are compared, with the same seeds")
       ->check([](const std::string& mode) {
         for (const char* known : {"adaptive", "max", "mean", "off"})
           if (mode == known) return std::string();

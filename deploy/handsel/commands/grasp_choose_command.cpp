@@ -132,7 +132,7 @@ void add_grasp_choose(CLI::App& grasp, int& exit_code) {
   choosing->add_option("--stature", o->stature, "of the person [m]")->check(CLI::Range(0.8, 2.4))->capture_default_str();
   choosing
       ->add_option("--least-visible", o->least_visible,
-                   "share of the object that the person, else the robot's head, must see past the hand")
+                   "fraction of the object that the person, else the robot's head, must see past the hand")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   choosing->add_flag("--move-platform", o->move_platform, "where no grasp is in reach, look for places the platform may drive to");

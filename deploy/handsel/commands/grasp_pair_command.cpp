@@ -208,7 +208,7 @@ int regrasp(const RegraspOptions& o) {
   if (o.again) task.placements = stage.resting(0.5 * (o.from[0] + o.to[0]), 0.5 * (o.from[1] + o.to[1]));
   const auto start = Clock::now();
   const RegraspPlan plan = planner.plan(task);
-  std::fprintf(stderr, "%zu steps; %llu double grasps, %llu steps judged in %.2f s\n", plan.steps.size(), whole(plan.double_grasps),
+  std::fprintf(stderr, "%zu steps; %llu double grasps, %llu steps checked in %.2f s\n", plan.steps.size(), whole(plan.double_grasps),
                whole(plan.judged), since(start));
   print_refusals(plan.rejected);
   print_plan(plan, stage, !json_wanted(o.as_json));
@@ -235,7 +235,7 @@ void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
   doubling->callback([d, &exit_code] { exit_code = pairs(*d); });
 
   CLI::App* giving =
-      grasp.add_subcommand("transfer", "Grasps from which a person can take the object comfortably, and where it is held out");
+      grasp.add_subcommand("transfer", "Grasps from which a person can take the object comfortably, and where it is offered");
   auto t = std::make_shared<TransferOptions>();
   add_stage_options(*giving, *t);
   giving->add_option("--taker", t->taker, "the person's right hand: name or file of its description")->capture_default_str();

@@ -48,7 +48,7 @@ int ask(const HealthOptions& options) {
 void add_health_command(CLI::App& app, int& exit_code) {
   auto options = std::make_shared<HealthOptions>();
   CLI::App* command =
-      app.add_subcommand("health", "is a process, or without a name the whole system, there and ok? 0 yes, 1 no, 3 nobody is heard");
+      app.add_subcommand("health", "is a process, or without a name the whole system, there and ok? 0 yes, 1 no, 3 nothing is received");
   add_domain_option(*command, options->domain);
   command->add_option("--within", options->within, "[s] wait so long for a yes")->capture_default_str()->check(kAboveZero);
   command->add_option("component", options->component, "as `handsel status` names it: spark, supervisor, ...");

@@ -55,8 +55,8 @@ void check_rest(const RobotModel& robot, std::vector<std::string>& lacks) {
       const std::pair pair(b.link, a.link);
       if (apart >= a.radius + b.radius || std::find(seen.begin(), seen.end(), pair) != seen.end()) continue;
       seen.push_back(pair);
-      lacks.push_back("the rest posture brings the hulls of links " + robot.links()[b.link].name + " and " + robot.links()[a.link].name +
-                      " together; if they cannot collide, disable the pair in the SRDF");
+      lacks.push_back("the rest configuration brings the hulls of links " + robot.links()[b.link].name + " and " +
+                      robot.links()[a.link].name + " together; if they cannot collide, disable the pair in the SRDF");
     }
 }
 

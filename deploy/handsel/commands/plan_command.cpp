@@ -282,9 +282,9 @@ void add_plan_command(CLI::App& app, int& exit_code) {
   plan->add_option("--planner", options->planner, "auto, rrt, rrtconnect, trrt or bitrrt")->check(CLI::IsMember(kPlanners));
   plan->add_option("--space", options->space, "joint, or cartesian: place of the tool and angle of the elbow")
       ->check(CLI::IsMember({"joint", "cartesian"}));
-  plan->add_flag("--stock", options->stock, "OMPL's planner of that name instead of ours");
+  plan->add_flag("--stock", options->stock, "OMPL's planner of that name instead of the own one");
   plan->add_option("--time", options->time, "limit of a problem [s]");
-  plan->add_option("--checks", options->checks, "limit in judged states instead: repeatable");
+  plan->add_option("--checks", options->checks, "limit in checked states instead: repeatable");
   plan->add_option("--seed", options->seed, "of every random choice");
   plan->add_flag("--landscape", options->landscape, "instead of problems: trees and path on a landscape of costs over two axes");
   plan->add_option("--png", options->png, "file to draw the landscape, the trees and the path to");

@@ -152,8 +152,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--human", options->human, "recording that the first person plays: .csv, .bvh, or a folder of the KTH handover set");
   command->add_option("--report", options->report, "write the report to this file");
   command->add_option("--condition", options->condition, "of a study: in the report and, as a mark at begin and end, in the record");
-  command->add_option("--participant", options->participant, "pseudonym, likewise");
-  command->add_option("--trial", options->trial, "number of the trial, likewise");
+  command->add_option("--participant", options->participant, "pseudonym, in the report and the record");
+  command->add_option("--trial", options->trial, "number of the trial, in the report and the record");
   command->add_option("--timeout", options->timeout, "[s] for all tasks (default: the scenario's)")->check(kAboveZero);
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

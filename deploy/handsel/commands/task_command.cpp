@@ -243,9 +243,9 @@ void add_task_commands(CLI::App& app, int& exit_code) {
   object(regrasp);
   auto lift = goal("lift", "lifts an object", TaskKind::lift);
   object(lift);
-  auto go_to = goal("goto", "moves the arm to a named posture", TaskKind::go_to);
-  go_to.first->add_option("place", go_to.second->goal.surface, "posture: rest")->required();
-  add(*task, exit_code, "pause", "stops the robot softly until a person resumes, whatever restarts", TaskKind::pause, tell);
+  auto go_to = goal("goto", "moves the arm to a named configuration", TaskKind::go_to);
+  go_to.first->add_option("place", go_to.second->goal.surface, "configuration: rest")->required();
+  add(*task, exit_code, "pause", "stops the robot with limited jerk until a person resumes, whatever restarts", TaskKind::pause, tell);
   add(*task, exit_code, "resume", "ends a pause, and the wait after a stop of the robot", TaskKind::resume, tell);
   add(*task, exit_code, "cancel", "ends the running task", TaskKind::cancel, tell);
   add(*task, exit_code, "acknowledge", "a person has dealt with the cause of a fault or stop", TaskKind::acknowledge, tell);

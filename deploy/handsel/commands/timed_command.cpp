@@ -108,10 +108,10 @@ void add_timed_command(CLI::App& trajectory, int& exit_code) {
   command->footer(
       R"(A line: {"nodes": [{joint: rad}, ...], "start"?: {joint: rad} of the others, "obstacles"?, "human"?: {"joints": {name: [x, y, z]},
  "gaze"?: [x, y, z], "velocity"?: [x, y, z]} in the root frame, "weights"?, "speed_scale"?, "title"?: of the picture's panel}.
-An answer: "speeds" of each leg, [[up to this share of the leg, this share of the velocity limits], ...]; nothing without a human.)");
+An answer: "speeds" of each path segment, [[up to this fraction of it, this scale of the velocity limits], ...]; nothing without a human.)");
   command->add_option("--robot", options->robot, "a .urdf, or a robot description by name or file")->required();
   command->add_option("--group", options->group, "whose joints move")->capture_default_str();
-  command->add_option("--svg", options->svg, "file to draw speed and cost along the way to, a panel a line");
+  command->add_option("--svg", options->svg, "file to draw speed and cost along the path to, a panel a line");
   command->add_flag("--json")->description("JSON Lines (always so)");
   command->callback([options, &exit_code] { exit_code = run(*options); });
 }

@@ -134,7 +134,7 @@ class Look {
     const double took = to_seconds(monotonic_now() - begin);
     session_.listen(kLook);
     const double looked = to_seconds(monotonic_now() - begin);
-    Json out{{"heard", heard_.size()}, {"met", met}, {"took", took}, {"jump", wall_minus_monotonic() - before}};
+    Json out{{"received", heard_.size()}, {"met", met}, {"took", took}, {"jump", wall_minus_monotonic() - before}};
     const SystemStatus status = make_status(session_.snapshot(), session_.bus().now());
     out["system"] = !session_.snapshot().health.empty();
     out["troubles"] = status.troubles;
@@ -259,7 +259,7 @@ Finding not_entered(const DoctorOptions& options, const DdsConfiguration& dds, s
 
 Finding not_met(const DoctorOptions& options, const DdsConfiguration& dds, const Json& seen, std::size_t speakers) {
   const std::string text =
-      format("%zu of %zu processes on domain %d are heard within 3 s", seen["heard"].get<std::size_t>(), speakers, options.domain);
+      format("%zu of %zu processes on domain %d are found within 3 s", seen["received"].get<std::size_t>(), speakers, options.domain);
   if (dds.peers.empty()) {
     return {"DDS", Verdict::bad, text + ": no peer is named and multicast does not reach this machine's own processes",
             "name a peer: <Peer address=\"localhost\"/> under Discovery/Peers"};
@@ -281,7 +281,7 @@ bool left_to_perception(const DoctorOptions& options, const std::string& topic) 
 void judge_clocks(const DoctorOptions& options, const Json& seen, std::vector<Finding>& out) {
   const double jump = seen["jump"];
   if (std::abs(jump) > kJump) {
-    out.push_back({"clocks", Verdict::bad, format("the wall clock jumped by %.3f s while it was looked at", jump),
+    out.push_back({"clocks", Verdict::bad, format("the wall clock jumped by %.3f s while it was checked", jump),
                    "let one service alone set the clock (chrony or PTP), and let it slew"});
   }
   double worst = 0.0;
@@ -348,7 +348,7 @@ void judge_calibration(const DoctorOptions& options, const Json& seen, std::vect
   for (const std::string& source : heard)
     if (!calibration.sources().empty() && !calibration.sources().contains(source))
       out.push_back({"calibration", Verdict::bad,
-                     "source " + source + " is heard, and is not in " + file + ": taken to speak in frame world",
+                     "source " + source + " publishes, and is not in " + file + ": taken to speak in frame world",
                      "say there where it stands, or that it speaks_in WORLD"});
   for (const auto& [name, source] : calibration.sources())
     if (options.perception && !heard.contains(name))
@@ -467,7 +467,7 @@ std::vector<Finding> check_domain(const DoctorOptions& options) {
   if (entered == wanted && !seen["met"].get<bool>()) out.push_back(not_met(options, dds, seen, speakers.size()));
   if (entered == wanted && seen["met"].get<bool>()) {
     out.push_back({"DDS", Verdict::good,
-                   format("%zu processes on domain %d heard each other after %.0f ms", speakers.size() + 1, options.domain,
+                   format("%zu processes on domain %d found each other after %.0f ms", speakers.size() + 1, options.domain,
                           1e3 * seen["took"].get<double>()),
                    ""});
   }

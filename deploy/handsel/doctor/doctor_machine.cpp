@@ -61,7 +61,7 @@ std::vector<Finding> check_realtime() {
 Finding check_logs() {
   namespace fs = std::filesystem;
   const fs::path folder = state_directory();
-  const std::string remedy = "make room there, or name another folder in XDG_STATE_HOME";
+  const std::string remedy = "free space there, or name another folder in XDG_STATE_HOME";
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || access(folder.c_str(), W_OK) != 0) {

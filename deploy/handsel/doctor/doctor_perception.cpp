@@ -213,7 +213,7 @@ std::vector<Finding> look(const DoctorOptions& options) {
   if (!reader)
     out.push_back({"readers", Verdict::note,
                    "nobody reads people or objects here yet: no system runs on domain " + std::to_string(options.domain),
-                   "start one with `handsel up`; what is published was judged all the same"});
+                   "start one with `handsel up`; what is published was checked all the same"});
   return out;
 }
 
@@ -235,7 +235,7 @@ std::vector<Finding> check_perception(const DoctorOptions& options) {
     const auto line = probe.line(deadline - monotonic_now());
     if (!line) {
       out.push_back({"DDS", Verdict::bad,
-                     "perception on domain " + std::to_string(options.domain) + " could not be looked at: " + probe.said(),
+                     "perception on domain " + std::to_string(options.domain) + " could not be checked: " + probe.said(),
                      "`handsel doctor` without --inputs-only says what is wrong with DDS here"});
       return out;
     }

@@ -127,7 +127,7 @@ Finding check_leftovers(const DoctorOptions& options, const std::vector<RunningP
   }
   if (!stopped.empty())
     return {"processes", Verdict::bad, "processes on " + domain + " are stopped: " + names(stopped),
-            "let them go on with kill -CONT, or stop the system"};
+            "continue them with kill -CONT, or stop the system"};
   if (!replaced.empty()) {
     return {"processes", Verdict::bad, "processes on " + domain + " are older than their program files: " + names(replaced),
             "stop the system and start it again"};

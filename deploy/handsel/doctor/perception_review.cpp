@@ -156,8 +156,9 @@ std::vector<Finding> SampleTimes::findings(const std::string& publisher, const s
             format("%s stamps %s %.3f s %s", publisher.c_str(), what.c_str(), std::abs(age), age > 0 ? "in the past" : "in the future"),
             "stamp with the time of measurement by the system clock, and run chrony or PTP on the host that does"));
   } else if (age > kOld) {
-    out.push_back(bad("age", format("%s of %s are %.2f s old when they come", what.c_str(), publisher.c_str(), age),
-                      "shorten the way from exposure to publication below 0.2 s: the robot keeps the room a person may have gone through"));
+    out.push_back(
+        bad("age", format("%s of %s are %.2f s old when they come", what.c_str(), publisher.c_str(), age),
+            "shorten the time from exposure to publication below 0.2 s: the robot keeps the room a person may have gone through"));
   } else if (spread > kJitter) {
     out.push_back(bad("jitter", format("the age of %s from %s varies by %.0f ms", what.c_str(), publisher.c_str(), 1e3 * spread),
                       "stamp with the time of exposure, not of sending, and publish at an even pace; below 50 ms are right"));
@@ -294,7 +295,7 @@ void PerceptionReview::check_source(const std::string& source, const Bodies& bod
                  ""});
   if (bodies.bodies == 0)
     out.push_back({"people", Verdict::note, source + " sees nobody",
-                   "let somebody stand before the robot: size, frame and names can be judged then"});
+                   "let somebody stand before the robot: size, frame and names can be checked then"});
   else if (!bodies.statures.empty())
     out.push_back({"people", Verdict::good,
                    format("%s sees %zu, about %.2f m tall, %.1f m from the robot's base", source.c_str(), bodies.max_at_once,

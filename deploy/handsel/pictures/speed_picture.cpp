@@ -66,7 +66,7 @@ std::string speed_picture(const std::vector<SpeedCurve>& curves) {
     out += line_of(curve, curve.speed, top, "stroke=\"#1f5fa8\" stroke-width=\"2\"");
   }
   const double bottom = kTop + static_cast<double>(curves.size()) * (kHigh + kGap) - kGap + 20;
-  out += text("<text x=\"%.0f\" y=\"%.0f\">the way, begin to end</text>\n", kLeft, bottom);
+  out += text("<text x=\"%.0f\" y=\"%.0f\">the path, begin to end</text>\n", kLeft, bottom);
   const std::pair<const char*, const char*> names[] = {{"#b35a00", "human-aware cost"}, {"#777", "allowed"}, {"#1f5fa8", "speed"}};
   double x = kLeft + 170;
   for (const auto& [colour, what] : names) {

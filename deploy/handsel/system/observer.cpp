@@ -94,7 +94,7 @@ Observer::Observer(Bus& bus) {
     if (!seen.ever || seen.sample.carrier != ground_truth.carrier)
       note(at, ground_truth.object + " carried by " + (ground_truth.carrier.empty() ? "nobody" : ground_truth.carrier));
     if (ground_truth.hold == "constraint" && !(seen.ever && seen.sample.hold == ground_truth.hold))
-      note(at, ground_truth.object + " held by the constraint more than by contact");
+      note(at, ground_truth.object + " held by the grasp constraint more than by contact");
     if (ground_truth.handover_done && !(seen.ever && seen.sample.handover_done)) note(at, "handover done");
     if (ground_truth.dropped && !(seen.ever && seen.sample.dropped)) note(at, ground_truth.object + " dropped");
     if (ground_truth.limit_violations && !(seen.ever && seen.sample.limit_violations)) note(at, "a set-point broke a limit");

@@ -25,13 +25,13 @@ void add_system_options(CLI::App& command, SystemOptions& options) {
   command.add_option("--port", options.web_port, "of the page; 0: any free one (default: as in the bridge's settings)")
       ->check(CLI::Range(0, 65535));
   command.add_option("--record", options.record, "write everything that is said into this MCAP file");
-  command.add_flag("--ros2", options.ros2, "with the lane to ROS 2 (docs/ros2.md)");
+  command.add_flag("--ros2", options.ros2, "with the connection to ROS 2 (docs/ros2.md)");
   add_no_weld_option(command);
 }
 
 void add_no_weld_option(CLI::App& command) {
   command.add_flag_callback(
-      "--no-weld", [] { setenv("HANDSEL_NO_WELD", "1", 1); }, "contact alone holds what the robot grasps: no constraint helps");
+      "--no-weld", [] { setenv("HANDSEL_NO_WELD", "1", 1); }, "contact alone holds what the robot grasps: no grasp constraint helps");
 }
 
 void announce_page(System& system, bool headless) {
