@@ -112,7 +112,7 @@ void check_body(const BodyPoints& p, const std::string& name, std::size_t line) 
   if (p[kHead].z() - p[kWaist].z() < 0.5 * (p[kHead] - p[kWaist]).norm())
     fail_at(name, line, "the head is not above the waist; z must be up, and the first frame must show a body that stands or sits");
   if (((p[kShoulder[0]] - p[kShoulder[1]]).cwiseProduct(Vector3(1, 1, 0))).norm() < 0.05)
-    fail_at(name, line, "the shoulders are less than 5 cm apart: which way the body faces cannot be told");
+    fail_at(name, line, "the shoulders are less than 5 cm apart: the direction in which the body faces is unknown");
 }
 
 /// Turns world points into the recording's own frame and finds the reach.
