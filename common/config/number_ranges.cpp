@@ -3,8 +3,8 @@
 namespace handsel {
 namespace {
 
-// Sorted by field. The bounds exclude values that no hardware or person can have: a wrong unit, sign or power of ten is refused.
-// Units are those of the schema.
+// Sorted by field. The bounds exclude values that no hardware or person can have: a wrong unit,
+// sign or power of ten is refused. Units are those of the schema.
 constexpr NumberRange kRanges[] = {
     {"AttentionBehaviour.p_max", 0, 60, true},
     {"AttentionBehaviour.p_min", 0, 60, true},

@@ -16,7 +16,9 @@ config::PeopleProfiles load_people(const std::filesystem::path& settings) {
   load_text_proto(file, profiles);
   std::set<std::string> known;
   for (const config::PersonProfile& one : profiles.people()) {
-    const auto refuse = [&](const std::string& what) { throw ConfigError(file.string() + ": people: " + what); };
+    const auto refuse = [&](const std::string& what) {
+      throw ConfigError(file.string() + ": people: " + what);
+    };
     if (one.id().empty()) refuse("a profile needs the person's id");
     if (!known.insert(one.id()).second) refuse(one.id() + " has two profiles");
     if (!(one.preferred_distance() >= 0 && one.preferred_distance() <= kFarthest))
