@@ -1,6 +1,5 @@
 #include "common/config/resources.hpp"
 
-#include <google/protobuf/io/tokenizer.h>
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
@@ -8,25 +7,16 @@
 #include <fstream>
 #include <vector>
 
+#include "common/config/defaults.hpp"
 #include "common/config/described.hpp"
 #include "common/config/located.hpp"
+#include "common/config/parse_error.hpp"
 #include "common/config/text_check.hpp"
 #include "common/config/text_file.hpp"
 
 namespace handsel {
 namespace fs = std::filesystem;
 namespace {
-
-class FirstError : public google::protobuf::io::ErrorCollector {
- public:
-  void AddError(int line, google::protobuf::io::ColumnNumber column,
-                const std::string& message) override {
-    if (!text.empty()) return;
-    text = line < 0 ? message
-                    : std::to_string(line + 1) + ":" + std::to_string(column + 1) + ": " + message;
-  }
-  std::string text;
-};
 
 fs::path find_root() {
   if (const char* home = std::getenv("HANDSEL_HOME"); home != nullptr && *home != '\0') {
@@ -104,7 +94,6 @@ void parse(const std::string& text, const std::string& name, google::protobuf::M
                       " is XML, e.g. a URDF; a description in Protobuf text is needed here, which "
                       "may name it (docs/own_robot.md)");
   constexpr int kMaxDepth = 32;
-  constexpr std::size_t kMaxComplaint = 300;  // [bytes] the parser quotes a wrong word whole
   FirstError error;
   google::protobuf::TextFormat::Parser parser;
   google::protobuf::TextFormat::ParseInfoTree own;
@@ -113,8 +102,9 @@ void parse(const std::string& text, const std::string& name, google::protobuf::M
   if (places == nullptr) places = &own;
   parser.WriteLocationsTo(places);
   if (!parser.ParseFromString(text, &out))
-    throw ConfigError(name + ":" + printable(error.text, kMaxComplaint));
+    throw ConfigError(name + ":" + error.explain(text, *out.GetDescriptor()));
   check_text(out, *places, name);
+  take_defaults(out, *places, name);
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "common/config/text_check.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "common/base/errors.hpp"
+#include "common/config/setting.hpp"
 
 namespace handsel {
 namespace {
@@ -18,19 +17,20 @@ using Places = google::protobuf::TextFormat::ParseInfoTree;
 
 constexpr std::size_t kMaxText = 4096;  // [bytes] names, paths and sentences are far shorter
 
-std::string short_form(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-const NumberRange* range_of(const FieldDescriptor& field) {
+/// Returns the setting of a field, with the range of number_ranges() where the schema states none.
+Setting checked_setting(const FieldDescriptor& field) {
+  Setting setting = setting_of(field);
+  if (setting.has_range) return setting;
   const std::string key = field.containing_type()->name() + "." + field.name();
   const auto ranges = number_ranges();
   const auto found =
       std::lower_bound(ranges.begin(), ranges.end(), key,
                        [](const NumberRange& r, const std::string& k) { return r.field < k; });
-  return found != ranges.end() && found->field == key ? &*found : nullptr;
+  if (found == ranges.end() || found->field != key) return setting;
+  setting.min = found->low;
+  setting.max = found->high;
+  setting.above_min = found->open_low;
+  return setting;
 }
 
 /// Returns the length of the UTF-8 character at `at`, 0 where there is none.
@@ -119,14 +119,10 @@ class TextCheck {
     const bool written =
         value != 0 || (places != nullptr && places->GetLocation(&field, index).line >= 0);
     if (!written) return;  // whether a field may be left out is known to the component
-    const NumberRange* range = range_of(field);
-    const double low = range != nullptr ? range->low : -kLargestNumber,
-                 high = range != nullptr ? range->high : kLargestNumber;
-    const bool open = range != nullptr && range->open_low;
-    if (std::isfinite(value) && value <= high && (open ? value > low : value >= low)) return;
+    const Setting setting = checked_setting(field);
+    if (is_allowed(value, setting)) return;
     fail(field, index, places,
-         "is " + short_form(value) + ", must be a number in " + (open ? "(" : "[") +
-             short_form(low) + ", " + short_form(high) + "]");
+         "is " + short_form(value) + ", must be a number in " + range_text(setting));
   }
 
   void text(const std::string& value, const FieldDescriptor& field, int index,

@@ -17,11 +17,8 @@ struct NumberRange {
   bool open_low{false};  ///< `low` itself is refused
 };
 
-/// Limit of the absolute value of a number that number_ranges() does not name. SI units: nothing
-/// here is larger.
-inline constexpr double kLargestNumber = 1e6;
-
-/// Returns the ranges of the fields that need one narrower than kLargestNumber, sorted by field.
+/// Returns the ranges of the fields without options that need one narrower than kLargestNumber,
+/// sorted by field.
 /// Fields whose component checks them against each other are not listed.
 std::span<const NumberRange> number_ranges();
 

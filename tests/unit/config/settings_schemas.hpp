@@ -1,0 +1,20 @@
+// The schemas of the settings files, one row each.
+#pragma once
+
+#include <vector>
+
+#include "common/config/schema/cost.pb.h"
+#include "common/config/schema/costmap.pb.h"
+
+namespace handsel::test {
+
+/// Returns the outermost messages of the settings files.
+inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
+  using namespace config;
+  return {
+      CostmapSettings::descriptor(),
+      HumanCostSettings::descriptor(),
+  };
+}
+
+}  // namespace handsel::test
