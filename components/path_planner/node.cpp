@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/resources.hpp"
-#include "common/config/schema/path_planner.pb.h"
+#include "common/config/settings/path_planner.hpp"
 #include "common/cost/cost_settings.hpp"
 #include "components/path_planner/cartesian.hpp"
 #include "components/path_planner/head_room.hpp"
@@ -17,34 +16,19 @@ namespace {
 constexpr const char* kCancelled = "cancelled on request";
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
-config::PathPlannerSettings load(const NodeContext& context) {
-  config::PathPlannerSettings s;
-  load_text_proto(context.settings / "path_planner.txtpb", s);
-  for (double positive : {s.step(), s.verify_step(), s.connect_range(), s.transition_range(), s.initial_temperature(), s.search_share(),
-                          s.cost_step(), s.longest_edge(), s.check_time(), s.longest_time(), s.max_scene_age(), s.roam()})
-    if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share, the temperature and roam must be > 0");
-  if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
-    throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
-  if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0 ||
-      s.live_turning_margin() < 0)
-    throw ConfigError("path_planner.txtpb: live_rounds, live_tries and the margins must be >= 0, live_gain in [0, 1)");
-  if (s.head_room() < 0) throw ConfigError("path_planner.txtpb: head_room must be >= 0");
-  return s;
-}
-
-Settings core_settings(const config::PathPlannerSettings& s) {
+Settings core_settings(const settings::PathPlannerSettings& s) {
   Settings out;
-  out.step = s.step();
-  out.verify_step = s.verify_step();
-  out.connect_range = s.connect_range();
-  out.transition_range = s.transition_range();
-  out.initial_temperature = s.initial_temperature();
-  out.search_share = s.search_share();
-  out.cost_step = s.cost_step();
-  out.length_weight = s.length_weight();
-  out.smoothing_rounds = s.smoothing_rounds();
-  out.patience = s.patience();
-  out.longest_edge = s.longest_edge();
+  out.step = s.step;
+  out.verify_step = s.verify_step;
+  out.connect_range = s.connect_range;
+  out.transition_range = s.transition_range;
+  out.initial_temperature = s.initial_temperature;
+  out.search_share = s.search_share;
+  out.cost_step = s.cost_step;
+  out.length_weight = s.length_weight;
+  out.smoothing_rounds = s.smoothing_rounds;
+  out.patience = s.patience;
+  out.longest_edge = s.longest_edge;
   return out;
 }
 
@@ -74,15 +58,15 @@ Node::Node(Bus& bus, const NodeContext& context)
       objects_(context.objects),
       weights_(load_cost_settings(context.settings)) {
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
-  const config::PathPlannerSettings file = load(context);
+  const auto file = settings::read_path_planner_settings(context.settings / "path_planner.txtpb");
   settings_ = core_settings(file);
-  timing_ = {file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())};
-  live_.least_gain = file.live_gain();
-  live_.rounds = file.live_rounds();
-  live_.tries = file.live_tries();
-  live_margins_ = {file.live_margin(), file.live_turning_margin()};
-  roam_ = file.roam();
-  head_room_ = file.head_room();
+  timing_ = {file.check_time, file.longest_time, from_seconds(file.max_scene_age)};
+  live_.least_gain = file.live_gain;
+  live_.rounds = file.live_rounds;
+  live_.tries = file.live_tries;
+  live_margins_ = {file.live_margin, file.live_turning_margin};
+  roam_ = file.roam;
+  head_room_ = file.head_room;
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(

@@ -6,6 +6,7 @@
 #include "common/config/schema/collision_checker.pb.h"
 #include "common/config/schema/cost.pb.h"
 #include "common/config/schema/costmap.pb.h"
+#include "common/config/schema/path_planner.pb.h"
 
 namespace handsel::test {
 
@@ -16,6 +17,7 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       CollisionCheckerSettings::descriptor(),
       CostmapSettings::descriptor(),
       HumanCostSettings::descriptor(),
+      PathPlannerSettings::descriptor(),
   };
 }
 
