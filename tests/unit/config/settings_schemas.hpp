@@ -7,6 +7,7 @@
 #include "common/config/schema/cost.pb.h"
 #include "common/config/schema/costmap.pb.h"
 #include "common/config/schema/path_planner.pb.h"
+#include "common/config/schema/trajectory_planner.pb.h"
 
 namespace handsel::test {
 
@@ -18,6 +19,7 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       CostmapSettings::descriptor(),
       HumanCostSettings::descriptor(),
       PathPlannerSettings::descriptor(),
+      TrajectoryPlannerSettings::descriptor(),
   };
 }
 
