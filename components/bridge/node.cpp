@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "common/config/resources.hpp"
-#include "common/config/schema/bridge.pb.h"
+#include "common/config/settings/bridge.hpp"
 #include "common/messages/system.hpp"
 #include "components/bridge/catalogue.hpp"
 
@@ -19,7 +19,7 @@ constexpr Duration kClock = std::chrono::milliseconds(100);
 constexpr Duration kGraphPeriod = std::chrono::seconds(1);
 constexpr Duration kSilent = std::chrono::seconds(3);  // then a component is no longer shown as alive
 
-std::uint16_t port_of(const config::BridgeSettings& settings) {
+std::uint16_t port_of(const settings::BridgeSettings& settings) {
   if (const char* text = std::getenv("HANDSEL_WEB_PORT"); text && *text) {
     const std::string value = text;
     std::uint16_t port = 0;
@@ -28,18 +28,7 @@ std::uint16_t port_of(const config::BridgeSettings& settings) {
       throw ConfigError("HANDSEL_WEB_PORT is \"" + value + "\"; it must be a port, 0..65535");
     return port;
   }
-  if (settings.port() > 65535) throw ConfigError("bridge.txtpb: port is " + std::to_string(settings.port()) + "; it must be 0..65535");
-  return static_cast<std::uint16_t>(settings.port());
-}
-
-config::BridgeSettings read_settings(const std::filesystem::path& folder) {
-  config::BridgeSettings settings;
-  load_text_proto(folder / "bridge.txtpb", settings);
-  if (!(settings.rate() > 0.0 && settings.rate() <= 120.0))
-    throw ConfigError("bridge.txtpb: rate is " + std::to_string(settings.rate()) + "; it must be in (0, 120] Hz");
-  if (settings.max_clients() == 0 || settings.max_clients() > 64)
-    throw ConfigError("bridge.txtpb: max_clients is " + std::to_string(settings.max_clients()) + "; it must be 1..64");
-  return settings;
+  return static_cast<std::uint16_t>(settings.port);
 }
 
 }  // namespace
@@ -50,11 +39,11 @@ Node::Node(Bus& bus, const NodeContext& context)
       site_(find_page(), resource_root()),
       readers_(topics().size()),
       drawing_(context.robot, context.objects) {
-  const config::BridgeSettings settings = read_settings(context.settings);
+  const auto settings = settings::read_bridge_settings(context.settings / "bridge.txtpb");
   settings_.port = port_of(settings);
   if (const char* address = std::getenv("HANDSEL_WEB_ADDRESS"); address && *address) settings_.address = address;
-  settings_.max_clients = settings.max_clients();
-  settings_.allowed_origins.assign(settings.allowed_origins().begin(), settings.allowed_origins().end());
+  settings_.max_clients = settings.max_clients;
+  settings_.allowed_origins = settings.allowed_origins;
 
   const SystemFacts facts{.scenario = context.scenario.stem(),
                           .domain = raw_ ? raw_->domain() : 0,
@@ -72,7 +61,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       {.period = kGraphPeriod});
   open_page();
   bus_.every(kRetry, [this](TimePoint) { open_page(); });
-  bus_.every(from_seconds(1.0 / settings.rate()), [this](TimePoint) { look(); });
+  bus_.every(from_seconds(1.0 / settings.rate), [this](TimePoint) { look(); });
   bus_.every(kClock, [this](TimePoint) {
     if (!server_ || !server_->any_client()) return;
     server_->set_time(bus_.stamp_now());

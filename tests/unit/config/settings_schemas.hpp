@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/config/schema/bridge.pb.h"
 #include "common/config/schema/collision_checker.pb.h"
 #include "common/config/schema/cost.pb.h"
 #include "common/config/schema/costmap.pb.h"
@@ -15,6 +16,7 @@ namespace handsel::test {
 inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
   using namespace config;
   return {
+      BridgeSettings::descriptor(),
       CollisionCheckerSettings::descriptor(),
       CostmapSettings::descriptor(),
       HumanCostSettings::descriptor(),
