@@ -6,12 +6,6 @@ namespace {
 // Sorted by field. The bounds exclude values that no hardware or person can have: a wrong unit,
 // sign or power of ten is refused. Units are those of the schema.
 constexpr NumberRange kRanges[] = {
-    {"AttentionBehaviour.p_max", 0, 60, true},
-    {"AttentionBehaviour.p_min", 0, 60, true},
-    {"AttentionBehaviour.period", 0, 60},
-    {"AttentionWork.p_max", 0, 10, true},
-    {"AttentionWork.p_min", 0, 10, true},
-    {"AttentionWork.period", 0, 10},
     {"Calibration.valid_days", 0, 36500},
     {"ControllerWall.nx", -1000, 1000},
     {"ControllerWall.ny", -1000, 1000},

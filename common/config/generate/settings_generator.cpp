@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -40,6 +41,23 @@ std::string in_snake_case(const std::string& name) {
     out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   }
   return out;
+}
+
+/// "robot_grip" -> "RobotGrip".
+std::string in_camel_case(const std::string& name) {
+  std::string out;
+  bool begins = true;
+  for (const char c : name) {
+    if (c != '_')
+      out += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins = c == '_';
+  }
+  return out;
+}
+
+/// Returns the inner struct that holds a field; empty: none.
+std::string part_of(const FieldDescriptor& field) {
+  return field.options().GetExtension(config::part);
 }
 
 /// Returns the name of a message or an enumeration without its package, parts joined by `joint`.
@@ -217,16 +235,23 @@ class Structs {
     out << "};\n\n";
   }
 
+  static void write_member(std::ostream& out, const FieldDescriptor& field) {
+    const std::string type = is_optional_message(field) ? "std::optional<" + value_type(field) + ">"
+                                                        : member_type(field);
+    out << "  " << type << " " << field.name() << initial_value(field) << ";  ///< "
+        << comment_of(field) << "\n";
+  }
+
   void write(std::ostream& out, const Descriptor& message) const {
     out << "struct " << message.name() << " {\n";
     for (int i = 0; i < message.enum_type_count(); ++i) write(out, *message.enum_type(i));
-    for (int i = 0; i < message.field_count(); ++i) {
-      const FieldDescriptor& field = *message.field(i);
-      const std::string type = is_optional_message(field)
-                                   ? "std::optional<" + value_type(field) + ">"
-                                   : member_type(field);
-      out << "  " << type << " " << field.name() << initial_value(field) << ";  ///< "
-          << comment_of(field) << "\n";
+    std::map<std::string, std::vector<const FieldDescriptor*>> parts;
+    for (int i = 0; i < message.field_count(); ++i)
+      parts[part_of(*message.field(i))].push_back(message.field(i));
+    for (const auto& [part, fields] : parts) {
+      if (!part.empty()) out << "  struct " << in_camel_case(part) << " {\n";
+      for (const FieldDescriptor* field : fields) write_member(out, *field);
+      if (!part.empty()) out << "  } " << part << ";  ///< settings of the part " << part << "\n";
     }
     out << "};\n\n";
   }
@@ -241,8 +266,9 @@ class Structs {
   }
 
   static std::string assignment(const FieldDescriptor& field) {
-    const std::string member = "out." + field.name(), get = field.lowercase_name(),
-                      value = "in." + get + "()";
+    const std::string part = part_of(field);
+    const std::string member = "out." + (part.empty() ? "" : part + ".") + field.name(),
+                      get = field.lowercase_name(), value = "in." + get + "()";
     const bool is_message = field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE;
     if (field.is_map())
       return "for (const auto& [key, value] : " + value + ") " + member + "[key] = value;";

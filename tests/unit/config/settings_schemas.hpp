@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "common/config/schema/attention.pb.h"
 #include "common/config/schema/bridge.pb.h"
 #include "common/config/schema/collision_checker.pb.h"
 #include "common/config/schema/cost.pb.h"
@@ -16,6 +17,7 @@ namespace handsel::test {
 inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
   using namespace config;
   return {
+      AttentionSettings::descriptor(),
       BridgeSettings::descriptor(),
       CollisionCheckerSettings::descriptor(),
       CostmapSettings::descriptor(),
