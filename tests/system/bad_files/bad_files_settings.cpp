@@ -95,7 +95,7 @@ void add_components(BadFiles& table) {
   Settings(table, "attention", "attention.txtpb")
       .key("tick", "nan", "is nan, must be")
       .key("contact_zone", "9", "the zones must grow")
-      .key("gaze_advantage", "1.01", "gaze_advantage must be in [0");
+      .key("gaze_advantage", "1.01", "is 1.01, must be a number in [0, 1]");
   Settings(table, "bridge", "bridge.txtpb")
       .key("port", "70000", "is 70000, must be")
       .key("rate", "nan", "is nan, must be")
