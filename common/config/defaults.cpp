@@ -14,6 +14,7 @@ using Places = TextFormat::ParseInfoTree;
 bool is_number(const FieldDescriptor& field) {
   return field.cpp_type() != FieldDescriptor::CPPTYPE_STRING &&
          field.cpp_type() != FieldDescriptor::CPPTYPE_BOOL &&
+         field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE &&
          field.cpp_type() != FieldDescriptor::CPPTYPE_ENUM;
 }
 
@@ -36,7 +37,7 @@ class Defaults {
       const FieldDescriptor& field = *message.GetDescriptor()->field(i);
       if (field.is_map()) continue;
       if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-        take_inside(message, field, places);
+        take_inside(message, field, places, line);
       } else if (!field.is_repeated() && line_of(field, -1, places) == 0) {
         take_one(message, field, line);
       }
@@ -48,7 +49,8 @@ class Defaults {
     return places == nullptr ? 0 : places->GetLocation(&field, index).line + 1;
   }
 
-  void take_inside(Message& message, const FieldDescriptor& field, const Places* places) const {
+  void take_inside(Message& message, const FieldDescriptor& field, const Places* places,
+                   int line) const {
     const auto& reflection = *message.GetReflection();
     const auto inside = [&](Message& part, int index) {
       const Places* parts = places == nullptr ? nullptr : places->GetTreeForNested(&field, index);
@@ -59,16 +61,27 @@ class Defaults {
         inside(*reflection.MutableRepeatedMessage(&message, &field, k), k);
     } else if (reflection.HasField(message, &field)) {
       inside(*reflection.MutableMessage(&message, &field), -1);
+    } else if (!field.has_optional_keyword() && has_required(*field.message_type())) {
+      refuse(field, line);
     }
   }
 
   void take_one(Message& message, const FieldDescriptor& field, int line) const {
     const Setting setting = setting_of(field);
     if (setting.has_default) return set(message, field, setting.default_value);
-    if (!setting.required) return;
+    if (setting.required) refuse(field, line);
+  }
+
+  static bool has_required(const google::protobuf::Descriptor& type) {
+    for (int i = 0; i < type.field_count(); ++i)
+      if (setting_of(*type.field(i)).required) return true;
+    return false;
+  }
+
+  [[noreturn]] void refuse(const FieldDescriptor& field, int line) const {
     throw ConfigError(file_ + (line == 0 ? "" : ":" + std::to_string(line)) + ":" + field.name() +
                       ": must be given" +
-                      (is_number(field) ? ", a number in " + range_text(setting) : ""));
+                      (is_number(field) ? ", a number in " + range_text(setting_of(field)) : ""));
   }
 
   const std::string& file_;

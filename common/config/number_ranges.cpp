@@ -7,16 +7,6 @@ namespace {
 // sign or power of ten is refused. Units are those of the schema.
 constexpr NumberRange kRanges[] = {
     {"Calibration.valid_days", 0, 36500},
-    {"ControllerWall.nx", -1000, 1000},
-    {"ControllerWall.ny", -1000, 1000},
-    {"ControllerWall.nz", -1000, 1000},
-    {"ControllerWall.offset", -1000, 1000},
-    {"ControllerWorkspace.x_max", -1000, 1000},
-    {"ControllerWorkspace.x_min", -1000, 1000},
-    {"ControllerWorkspace.y_max", -1000, 1000},
-    {"ControllerWorkspace.y_min", -1000, 1000},
-    {"ControllerWorkspace.z_max", -1000, 1000},
-    {"ControllerWorkspace.z_min", -1000, 1000},
     {"Disturbance.at", 0, 86400},
     {"FailureRule.pause", 0, 3600},
     {"FailureRule.tries", 0, 1000},

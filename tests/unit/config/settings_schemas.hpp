@@ -9,6 +9,7 @@
 #include "common/config/schema/cost.pb.h"
 #include "common/config/schema/costmap.pb.h"
 #include "common/config/schema/path_planner.pb.h"
+#include "common/config/schema/trajectory_controller.pb.h"
 #include "common/config/schema/trajectory_planner.pb.h"
 
 namespace handsel::test {
@@ -23,6 +24,7 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       CostmapSettings::descriptor(),
       HumanCostSettings::descriptor(),
       PathPlannerSettings::descriptor(),
+      TrajectoryControllerSettings::descriptor(),
       TrajectoryPlannerSettings::descriptor(),
   };
 }

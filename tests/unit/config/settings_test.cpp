@@ -125,10 +125,7 @@ TEST(Settings, what_a_file_leaves_out_has_the_default_value) {
   for (const SettingsFile& file : test::settings_files()) {
     const auto out = empty_message(*file.type);
     google::protobuf::TextFormat::ParseInfoTree places;
-    bool complete = true;
-    for (int i = 0; i < file.type->field_count(); ++i)
-      if (setting_of(*file.type->field(i)).required) complete = false;
-    if (!complete) continue;
+    if (refusal(file, "").ends_with("must be given")) continue;
     parse_text_proto("", "s.txtpb", *out, places);
     for (int i = 0; i < file.type->field_count(); ++i) {
       const auto& field = *file.type->field(i);
