@@ -68,8 +68,8 @@ void add_components(BadFiles& table) {
   Settings(table, "trajectory_controller", "trajectory_controller.txtpb")
       .key("period", "nan", "is nan, must be")
       .key("late_limit", "1.5", "Expected integer")
-      .key("recoil_limit", "2", "recoil_limit must be given, in [0")
-      .text("empty", "", "period must be given")
+      .key("recoil_limit", "2", "is 2, must be a number in [0, 1]")
+      .text("empty", "", "view: must be given")
       .missing();
   Settings(table, "path_planner", "path_planner.txtpb")
       .key("step", "inf", "is inf, must be")
