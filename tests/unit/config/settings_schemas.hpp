@@ -8,6 +8,7 @@
 #include "common/config/schema/collision_checker.pb.h"
 #include "common/config/schema/cost.pb.h"
 #include "common/config/schema/costmap.pb.h"
+#include "common/config/schema/launcher.pb.h"
 #include "common/config/schema/path_planner.pb.h"
 #include "common/config/schema/trajectory_controller.pb.h"
 #include "common/config/schema/trajectory_planner.pb.h"
@@ -23,6 +24,7 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       CollisionCheckerSettings::descriptor(),
       CostmapSettings::descriptor(),
       HumanCostSettings::descriptor(),
+      LauncherSettings::descriptor(),
       PathPlannerSettings::descriptor(),
       TrajectoryControllerSettings::descriptor(),
       TrajectoryPlannerSettings::descriptor(),
