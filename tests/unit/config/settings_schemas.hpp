@@ -10,6 +10,7 @@
 #include "common/config/schema/costmap.pb.h"
 #include "common/config/schema/launcher.pb.h"
 #include "common/config/schema/path_planner.pb.h"
+#include "common/config/schema/sim.pb.h"
 #include "common/config/schema/trajectory_controller.pb.h"
 #include "common/config/schema/trajectory_planner.pb.h"
 
@@ -26,6 +27,7 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       HumanCostSettings::descriptor(),
       LauncherSettings::descriptor(),
       PathPlannerSettings::descriptor(),
+      SimSettings::descriptor(),
       TrajectoryControllerSettings::descriptor(),
       TrajectoryPlannerSettings::descriptor(),
   };
