@@ -8,6 +8,7 @@
 #include "common/config/schema/collision_checker.pb.h"
 #include "common/config/schema/cost.pb.h"
 #include "common/config/schema/costmap.pb.h"
+#include "common/config/schema/driver.pb.h"
 #include "common/config/schema/launcher.pb.h"
 #include "common/config/schema/path_planner.pb.h"
 #include "common/config/schema/sim.pb.h"
@@ -27,6 +28,8 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       HumanCostSettings::descriptor(),
       LauncherSettings::descriptor(),
       PathPlannerSettings::descriptor(),
+      PositionArmSettings::descriptor(),
+      ReflexArmSettings::descriptor(),
       SimSettings::descriptor(),
       TrajectoryControllerSettings::descriptor(),
       TrajectoryPlannerSettings::descriptor(),
