@@ -179,9 +179,6 @@ constexpr NumberRange kRanges[] = {
     {"SupervisorSettings.speed_override", 0, 1, true},
     {"SupervisorSettings.spot", 0, 10, true},
     {"SupervisorSettings.status_period", 0, 10, true},
-    {"Vec3.x", -1e4, 1e4},
-    {"Vec3.y", -1e4, 1e4},
-    {"Vec3.z", -1e4, 1e4},
 };
 
 }  // namespace

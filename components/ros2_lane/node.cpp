@@ -13,29 +13,17 @@ namespace {
 constexpr Duration kStep = std::chrono::milliseconds(10);
 constexpr double kShown = 10;  // [s] a refusal is shown in the health
 
-config::Ros2LaneSettings load(const NodeContext& context) {
-  config::Ros2LaneSettings s;
-  load_text_proto(context.settings / "ros2_lane.txtpb", s);
-  const auto within = [](double value, double most, const char* key) {
-    if (!(value > 0 && value <= most))
-      throw ConfigError(std::string("ros2_lane.txtpb: ") + key + " must be above 0 and at most " + std::to_string(static_cast<int>(most)));
-  };
-  within(s.people_rate(), 200, "people_rate");
-  within(s.people_age(), 10, "people_age");
-  within(s.objects_rate(), 200, "objects_rate");
-  within(s.joint_age(), 10, "joint_age");
-  within(s.start_tolerance(), 1, "start_tolerance");
-  within(s.check_step(), 1, "check_step");
-  within(s.joint_states_rate(), 500, "joint_states_rate");
-  within(s.tf_rate(), 200, "tf_rate");
-  if (s.world_frame().empty()) throw ConfigError("ros2_lane.txtpb: world_frame is empty, must name the frame of TF that is our world");
-  if (s.tf().empty() && (s.people() || s.objects_size() > 0 || s.tf_out()))
-    throw ConfigError("ros2_lane.txtpb: people, objects and tf_out need `tf`, the name of TF's topic");
-  if (s.people() && s.people_source().empty()) throw ConfigError("ros2_lane.txtpb: people_source is empty, a source needs a name");
-  if (s.objects_size() > 0 && s.objects_source().empty())
-    throw ConfigError("ros2_lane.txtpb: objects_source is empty, a source needs a name");
-  if (!s.robot_in().empty() && s.robot_in() == s.joint_states_out())
-    throw ConfigError("ros2_lane.txtpb: robot_in and joint_states_out are the same topic");
+settings::Ros2LaneSettings load(const NodeContext& context) {
+  SettingsText text;
+  const auto s = settings::read_ros2_lane_settings(context.settings / "ros2_lane.txtpb", &text);
+  if (s.world_frame.empty()) text.refuse("world_frame", "is empty, must name the frame of TF that is our world");
+  if (s.tf.empty() && (s.people || !s.objects.empty() || s.tf_out))
+    text.refuse("tf", "is empty, but people, objects and tf_out need the name of TF's topic");
+  if (s.people && s.people_source.empty()) text.refuse("people_source", "is empty, a source needs a name");
+  if (!s.objects.empty() && s.objects_source.empty())
+    text.refuse("objects_source", "is empty, a source needs a name");
+  if (!s.robot_in.empty() && s.robot_in == s.joint_states_out)
+    text.refuse("robot_in", "robot_in and joint_states_out are the same topic");
   return s;
 }
 
@@ -47,7 +35,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       robot_(context.robot),
       people_(settings_),
       objects_(settings_),
-      joints_(*robot_, settings_.joint_age()),
+      joints_(*robot_, settings_.joint_age),
       desk_(settings_, robot_, static_cast<std::uint64_t>(bus.stamp_now())) {
   open_people_and_objects();
   open_robot(context);
@@ -74,19 +62,19 @@ std::unique_ptr<Publisher<M>> Node::write(const std::string& name, Profile profi
 }
 
 void Node::open_people_and_objects() {
-  read<ros2::Transforms>(settings_.tf(), Profile::goal, [this](const ros2::Transforms& m, const Receipt& r) { on(m, r.arrival, false); });
-  read<ros2::Transforms>(settings_.tf_static(), Profile::state,
+  read<ros2::Transforms>(settings_.tf, Profile::goal, [this](const ros2::Transforms& m, const Receipt& r) { on(m, r.arrival, false); });
+  read<ros2::Transforms>(settings_.tf_static, Profile::state,
                          [this](const ros2::Transforms& m, const Receipt& r) { on(m, r.arrival, true); });
-  if (settings_.people()) {
+  if (settings_.people) {
     human_out_ = bus_.advertise<HumanObservation>();
-    read<ros2::Ids>(settings_.tracked(), Profile::sensor, [this](const ros2::Ids& m, const Receipt& r) { people_.on(m, r.arrival); });
-    bus_.every(from_seconds(1 / settings_.people_rate()), [this](TimePoint now) {
+    read<ros2::Ids>(settings_.tracked, Profile::sensor, [this](const ros2::Ids& m, const Receipt& r) { people_.on(m, r.arrival); });
+    bus_.every(from_seconds(1 / settings_.people_rate), [this](TimePoint now) {
       if (const auto seen = people_.observe(tree_, now)) human_out_->publish(*seen);
     });
   }
-  if (settings_.objects_size() > 0) {
+  if (!settings_.objects.empty()) {
     object_out_ = bus_.advertise<ObjectObservation>();
-    bus_.every(from_seconds(1 / settings_.objects_rate()), [this](TimePoint now) {
+    bus_.every(from_seconds(1 / settings_.objects_rate), [this](TimePoint now) {
       if (const auto seen = objects_.observe(tree_, now)) object_out_->publish(*seen);
     });
   }
@@ -106,14 +94,14 @@ void Node::on(const ros2::Transforms& message, TimePoint arrival, bool is_static
 }
 
 void Node::open_robot(const NodeContext& context) {
-  if (settings_.robot_in().empty()) return;
+  if (settings_.robot_in.empty()) return;
   if (!context.scenario.empty()) {
     config::Scenario scenario;
     load_text_proto(context.scenario, scenario);
     T_world_base_ = to_pose(scenario.base());
   }
   robot_out_ = bus_.advertise<RobotState>();
-  read<ros2::JointState>(settings_.robot_in(), Profile::sensor, [this](const ros2::JointState& m, const Receipt& r) {
+  read<ros2::JointState>(settings_.robot_in, Profile::sensor, [this](const ros2::JointState& m, const Receipt& r) {
     joints_.on(m, r.arrival);
     robot_heard_ = true;
     gather(r.arrival);
@@ -124,9 +112,9 @@ void Node::gather(TimePoint now) {
   auto state = joints_.state(now);
   if (!state) return;
   state->T_world_base = T_world_base_;
-  if (!settings_.base_frame().empty()) {
-    const auto place = tree_.find(settings_.base_frame(), settings_.world_frame());
-    base_known_ = place && now - place->arrival <= from_seconds(settings_.people_age());
+  if (!settings_.base_frame.empty()) {
+    const auto place = tree_.find(settings_.base_frame, settings_.world_frame);
+    base_known_ = place && now - place->arrival <= from_seconds(settings_.people_age);
     if (!base_known_) return;
     state->T_world_base = place->T_root_frame;
   }
@@ -138,7 +126,7 @@ std::string Node::trouble() const {
   if (robot_out_ && robot_heard_)
     if (const std::string missing = joints_.missing(now); !missing.empty()) return "JointState does not tell of " + missing;
   if (robot_out_ && robot_heard_ && !base_known_)
-    return "TF has no current transform from frame " + settings_.base_frame() + " to " + settings_.world_frame();
+    return "TF has no current transform from frame " + settings_.base_frame + " to " + settings_.world_frame;
   if (!clash_.empty() && to_seconds(now - clash_at_) < kShown) return clash_;
   if (!refused_.empty() && to_seconds(now - refused_at_) < kShown) return "JointTrajectory " + refused_;
   return {};
@@ -151,16 +139,16 @@ void Node::open_trajectories() {
     send(out);
     bus_.set_degraded(trouble());
   });
-  if (settings_.trajectory_in().empty()) return;
+  if (settings_.trajectory_in.empty()) return;
   query_out_ = bus_.advertise<StateQuery>();
   request_out_ = bus_.advertise<TrajectoryRequest>();
-  if (!settings_.trajectory_result().empty()) result_out_ = write<ros2::Text>(settings_.trajectory_result(), Profile::goal);
+  if (!settings_.trajectory_result.empty()) result_out_ = write<ros2::Text>(settings_.trajectory_result, Profile::goal);
   bus_.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt&) { desk_.on(m); });
   bus_.subscribe<ExecutionStatus>([this](const ExecutionStatus& m, const Receipt&) { desk_.on(m); });
   bus_.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& m, const Receipt& r) { desk_.on(m, r.arrival); });
   bus_.subscribe<StateVerdict>([this](const StateVerdict& m, const Receipt&) { desk_.on(m); });
   bus_.subscribe<TrajectoryReply>([this](const TrajectoryReply& m, const Receipt&) { desk_.on(m); });
-  read<ros2::JointTrajectory>(settings_.trajectory_in(), Profile::goal, [this](const ros2::JointTrajectory& m, const Receipt& r) {
+  read<ros2::JointTrajectory>(settings_.trajectory_in, Profile::goal, [this](const ros2::JointTrajectory& m, const Receipt& r) {
     TrajectoryOutbox out;
     desk_.on(m, r.arrival, out);
     send(out);
@@ -184,35 +172,35 @@ void Node::send(const TrajectoryOutbox& out) {
 }
 
 void Node::open_outputs() {
-  if (settings_.joint_states_out().empty() && !settings_.tf_out()) return;
+  if (settings_.joint_states_out.empty() && !settings_.tf_out) return;
   bus_.subscribe<RobotState>(
       [this](const RobotState& m, const Receipt&) {
         if (m.robot == robot_->name() && m.position.size() == robot_->dof()) state_ = m;
       },
-      {from_seconds(1 / std::max(settings_.joint_states_rate(), settings_.tf_rate()))});
-  if (!settings_.joint_states_out().empty()) {
-    joints_out_ = write<ros2::JointState>(settings_.joint_states_out(), Profile::goal);
-    bus_.every(from_seconds(1 / settings_.joint_states_rate()), [this](TimePoint) {
+      {from_seconds(1 / std::max(settings_.joint_states_rate, settings_.tf_rate))});
+  if (!settings_.joint_states_out.empty()) {
+    joints_out_ = write<ros2::JointState>(settings_.joint_states_out, Profile::goal);
+    bus_.every(from_seconds(1 / settings_.joint_states_rate), [this](TimePoint) {
       if (state_) joints_out_->publish(joint_state_of(*robot_, *state_));
     });
   }
-  if (settings_.tf_out()) {
-    frames_out_ = write<ros2::Transforms>(settings_.tf(), Profile::goal);
+  if (settings_.tf_out) {
+    frames_out_ = write<ros2::Transforms>(settings_.tf, Profile::goal);
     const std::vector<Link>& links = robot_->links();
     for (std::size_t i = 1; i < links.size(); ++i)
       own_parents_[links[i].name] =
           links[static_cast<std::size_t>(robot_->joints()[static_cast<std::size_t>(links[i].parent_joint)].parent)].name;
     bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { scene_ = m; });
-    bus_.every(from_seconds(1 / settings_.tf_rate()), [this](TimePoint) { tell_frames(); });
+    bus_.every(from_seconds(1 / settings_.tf_rate), [this](TimePoint) { tell_frames(); });
   }
 }
 
 void Node::tell_frames() {
   ros2::Transforms out;
-  if (state_) add_links(*robot_, *state_, settings_.world_frame(), out.transforms);
+  if (state_) add_links(*robot_, *state_, settings_.world_frame, out.transforms);
   if (scene_)
     for (const SceneObject& object : scene_->objects)
-      out.transforms.push_back({scene_->stamp, settings_.world_frame(), settings_.object_prefix() + object.id, object.T_world_object});
+      out.transforms.push_back({scene_->stamp, settings_.world_frame, settings_.object_prefix + object.id, object.T_world_object});
   if (!out.transforms.empty()) frames_out_->publish(out);
 }
 

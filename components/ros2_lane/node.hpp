@@ -41,7 +41,7 @@ class Node {
   void tell_frames();
 
   Bus& bus_;
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   std::vector<std::unique_ptr<MessageType>> types_;
   TfTree tree_;

@@ -24,7 +24,7 @@ std::string number(double value) {
 
 }  // namespace
 
-TrajectoryDesk::TrajectoryDesk(const config::Ros2LaneSettings& settings, std::shared_ptr<const RobotModel> robot, std::uint64_t client)
+TrajectoryDesk::TrajectoryDesk(const settings::Ros2LaneSettings& settings, std::shared_ptr<const RobotModel> robot, std::uint64_t client)
     : settings_(settings), robot_(std::move(robot)), arm_(robot_->require_group("arm")), client_(client), commands_(client) {}
 
 void TrajectoryDesk::on(const ActiveTrajectory& active, TimePoint arrival) {
@@ -80,7 +80,7 @@ std::string TrajectoryDesk::prepare(const ros2::JointTrajectory& wanted, TimePoi
     }
     const double off = (node - here).cwiseAbs().maxCoeff();
     if (p == 0 && wanted.points[0].time_from_start == 0) {
-      if (off > settings_.start_tolerance()) return "its first point, at time 0, is " + number(off) + " rad from where the arm is";
+      if (off > settings_.start_tolerance) return "its first point, at time 0, is " + number(off) + " rad from where the arm is";
       continue;
     }
     if ((node - request_.nodes.back()).cwiseAbs().maxCoeff() > kSame) request_.nodes.push_back(std::move(node));
@@ -93,7 +93,7 @@ std::string TrajectoryDesk::prepare(const ros2::JointTrajectory& wanted, TimePoi
   query_.allowed_contacts = request_.allowed_contacts;
   for (std::size_t n = 1; n < request_.nodes.size(); ++n) {
     const Vector step = request_.nodes[n] - request_.nodes[n - 1];
-    const int parts = std::max(1, static_cast<int>(std::ceil(step.cwiseAbs().maxCoeff() / settings_.check_step())));
+    const int parts = std::max(1, static_cast<int>(std::ceil(step.cwiseAbs().maxCoeff() / settings_.check_step)));
     for (int i = 1; i <= parts; ++i)
       query_.states.push_back(
           RobotModel::with(request_.start, arm_, Vector(request_.nodes[n - 1] + static_cast<double>(i) / parts * step)));

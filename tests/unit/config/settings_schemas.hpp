@@ -11,6 +11,7 @@
 #include "common/config/schema/driver.pb.h"
 #include "common/config/schema/launcher.pb.h"
 #include "common/config/schema/path_planner.pb.h"
+#include "common/config/schema/ros2_lane.pb.h"
 #include "common/config/schema/sim.pb.h"
 #include "common/config/schema/trajectory_controller.pb.h"
 #include "common/config/schema/trajectory_planner.pb.h"
@@ -30,6 +31,7 @@ inline std::vector<const google::protobuf::Descriptor*> settings_schemas() {
       PathPlannerSettings::descriptor(),
       PositionArmSettings::descriptor(),
       ReflexArmSettings::descriptor(),
+      Ros2LaneSettings::descriptor(),
       SimSettings::descriptor(),
       TrajectoryControllerSettings::descriptor(),
       TrajectoryPlannerSettings::descriptor(),
