@@ -104,7 +104,7 @@ void add_components(BadFiles& table) {
       .key("step", "1", "is 1, must be")
       .key("position_noise", "nan", "is nan, must be")
       .key("solver_iterations", "2000000000", "is 2e+09, must be");
-  Settings(table, "ros2_lane", "ros2_lane.txtpb").key("people_rate", "nan", "is nan, must be").key("tf_rate", "900", "tf_rate must be");
+  Settings(table, "ros2_lane", "ros2_lane.txtpb").key("people_rate", "nan", "is nan, must be").key("tf_rate", "900", "is 900, must be");
   Settings(table, "position_arm", "position_arm.txtpb").key("cycle", "nan", "is nan, must be");
   Settings(table, "reflex_arm", "reflex_arm.txtpb").key("joint_deceleration", "inf", "is inf, must be");
 }
