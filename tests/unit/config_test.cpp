@@ -193,8 +193,8 @@ TEST(People, profiles_are_read_and_those_that_cannot_be_are_refused) {
   EXPECT_DOUBLE_EQ(load_people(folder.path()).people(0).height(), 1.66);
   EXPECT_THAT(refused("people { height: 1.7 }"), HasSubstr("a profile needs the person's id"));
   EXPECT_THAT(refused("people { id: \"a\" } people { id: \"a\" }"), HasSubstr("a has two profiles"));
-  EXPECT_THAT(refused("people { id: \"a\" height: 17 }"), HasSubstr("height of a must be 0 (as it is seen) or in [0.8, 2.5]"));
-  EXPECT_THAT(refused("people { id: \"a\" preferred_distance: -1 }"), HasSubstr("preferred_distance of a must be in [0, 2]"));
+  EXPECT_THAT(refused("people { id: \"a\" height: 17 }"), HasSubstr("height: is 17, must be a number in [0, 2.5]"));
+  EXPECT_THAT(refused("people { id: \"a\" preferred_distance: -1 }"), HasSubstr("preferred_distance: is -1, must be a number in [0, 2]"));
 }
 
 TEST(Resources, finds_the_descriptions_of_the_project) {

@@ -54,7 +54,6 @@ void add_components(BadFiles& table) {
       .key("human_period", "0", "is 0, must be")
       .key("joint_noise", "-1", "is -1, must be")
       .key("lost_speed", "1e400", "is inf, must be")
-      .text("empty", "", "publish_period")
       .text("unknown_key", "speed: 1\n", "spark.txtpb:1")
       .text("binary", std::string("\0\377\1", 3), "spark.txtpb:1")
       .missing();
@@ -122,7 +121,7 @@ void add_companions(BadFiles& table) {
   Settings(table, "spark", "people.txtpb")
       .text("height_nan", "people { id: \"a\" height: nan }\n", "people.txtpb:1:height: is nan")
       .text("person_twice", "people { id: \"a\" }\npeople { id: \"a\" }\n", "two profiles")
-      .text("giant", "people { id: \"a\" height: 17 }\n", "must be 0 (as it is seen) or in");
+      .text("giant", "people { id: \"a\" height: 17 }\n", "is 17, must be a number in [0, 2.5]");
   Settings(table, "supervisor", "tasks.txtpb")
       .text("tasks_binary", std::string("\1\2\3", 3), "tasks.txtpb:1")
       .text("cost_nan", "tasks { name: \"t\" methods { cost: nan } }\n", "tasks.txtpb:1:cost: is nan")
