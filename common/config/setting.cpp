@@ -7,8 +7,24 @@
 
 namespace handsel {
 
-Setting setting_of(const google::protobuf::FieldDescriptor& field) {
-  const auto& options = field.options();
+namespace {
+
+using google::protobuf::FieldDescriptor;
+
+/// Returns the map that a field is the value of, else the field itself.
+const FieldDescriptor& map_of(const FieldDescriptor& field) {
+  const auto& entry = *field.containing_type();
+  if (!entry.options().map_entry() || field.number() != entry.map_value()->number()) return field;
+  const auto& outer = *entry.containing_type();
+  for (int i = 0; i < outer.field_count(); ++i)
+    if (outer.field(i)->message_type() == &entry) return *outer.field(i);
+  return field;
+}
+
+}  // namespace
+
+Setting setting_of(const FieldDescriptor& field) {
+  const auto& options = map_of(field).options();
   Setting s;
   s.unit = options.GetExtension(config::unit);
   s.has_range = options.HasExtension(config::min) && options.HasExtension(config::max);

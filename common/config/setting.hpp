@@ -24,7 +24,8 @@ struct Setting {
   std::string doc;              ///< what it is, one phrase
 };
 
-/// Returns what the schema states about a field.
+/// Returns what the schema states about a field; about a value of a map, what it states about the
+/// map.
 Setting setting_of(const google::protobuf::FieldDescriptor& field);
 
 /// Returns whether a number is finite and in the range of a setting.

@@ -17,22 +17,6 @@ using Places = google::protobuf::TextFormat::ParseInfoTree;
 
 constexpr std::size_t kMaxText = 4096;  // [bytes] names, paths and sentences are far shorter
 
-/// Returns the setting of a field, with the range of number_ranges() where the schema states none.
-Setting checked_setting(const FieldDescriptor& field) {
-  Setting setting = setting_of(field);
-  if (setting.has_range) return setting;
-  const std::string key = field.containing_type()->name() + "." + field.name();
-  const auto ranges = number_ranges();
-  const auto found =
-      std::lower_bound(ranges.begin(), ranges.end(), key,
-                       [](const NumberRange& r, const std::string& k) { return r.field < k; });
-  if (found == ranges.end() || found->field != key) return setting;
-  setting.min = found->low;
-  setting.max = found->high;
-  setting.above_min = found->open_low;
-  return setting;
-}
-
 /// Returns the length of the UTF-8 character at `at`, 0 where there is none.
 std::size_t character_length(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) {
@@ -119,7 +103,7 @@ class TextCheck {
     const bool written =
         value != 0 || (places != nullptr && places->GetLocation(&field, index).line >= 0);
     if (!written) return;  // whether a field may be left out is known to the component
-    const Setting setting = checked_setting(field);
+    const Setting setting = setting_of(field);
     if (is_allowed(value, setting)) return;
     fail(field, index, places,
          "is " + short_form(value) + ", must be a number in " + range_text(setting));

@@ -1,26 +1,12 @@
 // Checks of every value in a Protobuf text, whatever message the text holds.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>
 
 namespace handsel {
-
-/// The numbers that a field may have.
-struct NumberRange {
-  const char* field;     ///< "SparkSettings.publish_period": message and field
-  double low;            ///< smallest number allowed, in the unit of the schema
-  double high;           ///< largest number allowed, in the unit of the schema
-  bool open_low{false};  ///< `low` itself is refused
-};
-
-/// Returns the ranges of the fields without options that need one narrower than kLargestNumber,
-/// sorted by field.
-/// Fields whose component checks them against each other are not listed.
-std::span<const NumberRange> number_ranges();
 
 /// Throws ConfigError "file:line:key: ..." for the first number that is not finite or not in its
 /// range, for text that is not UTF-8 or longer than 4096 bytes, and for a map key that is there

@@ -23,7 +23,6 @@
 #include "common/config/schema/task_domain.pb.h"
 #include "common/config/schema/trajectory_controller.pb.h"
 #include "common/config/schema/trajectory_planner.pb.h"
-#include "common/config/text_check.hpp"
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/task.hpp"
@@ -138,20 +137,6 @@ TEST(TextProto, every_numeric_key_of_every_file_refuses_nan_inf_and_huge_values)
       EXPECT_THAT(message, HasSubstr(", must be a number in ")) << text;
     }
   }
-}
-
-TEST(TextProto, every_range_is_of_a_field_that_exists_and_the_ranges_are_sorted) {
-  const auto ranges = number_ranges();
-  for (const NumberRange& range : ranges) {
-    const std::string name = range.field, message = name.substr(0, name.find('.')), field = name.substr(name.find('.') + 1);
-    if (message.ends_with("Entry")) continue;  // of a map
-    const Descriptor* type = google::protobuf::DescriptorPool::generated_pool()->FindMessageTypeByName("handsel.config." + message);
-    ASSERT_NE(type, nullptr) << name;
-    EXPECT_NE(type->FindFieldByName(field), nullptr) << name;
-    EXPECT_LT(range.low, range.high) << name;
-  }
-  EXPECT_TRUE(std::is_sorted(ranges.begin(), ranges.end(),
-                             [](const NumberRange& a, const NumberRange& b) { return std::string(a.field) < b.field; }));
 }
 
 TEST(TextProto, a_number_out_of_its_range_is_refused_and_the_range_is_named) {
