@@ -9,9 +9,11 @@ namespace handsel {
 /// A path as a description writes it: "$NAME/rest" and "${NAME}/rest" begin with an environment
 /// variable's value, the others are relative to the description's folder. Throws MissingError when
 /// the variable is not set.
-std::filesystem::path described_path(const std::filesystem::path& description, const std::string& path);
+std::filesystem::path described_path(const std::filesystem::path& description,
+                                     const std::string& path);
 /// Returns a text with "/" or ending in ".txtpb" as described_path() does, any other unchanged: it
 /// is a name. Throws MissingError like described_path().
-std::string described_name(const std::filesystem::path& description, const std::string& name_or_path);
+std::string described_name(const std::filesystem::path& description,
+                           const std::string& name_or_path);
 
 }  // namespace handsel

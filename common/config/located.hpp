@@ -16,7 +16,8 @@ namespace handsel {
 class TextPlace {
  public:
   TextPlace() = default;
-  TextPlace(std::string file, const google::protobuf::TextFormat::ParseInfoTree* tree, const google::protobuf::Descriptor* type)
+  TextPlace(std::string file, const google::protobuf::TextFormat::ParseInfoTree* tree,
+            const google::protobuf::Descriptor* type)
       : file_(std::move(file)), tree_(tree), type_(type) {}
   /// The index-th message of a field of this one.
   TextPlace inside(const std::string& field, int index = 0) const;
@@ -31,7 +32,8 @@ class TextPlace {
 };
 
 /// Strict, as load_text_proto(); `name` stands for the file in errors.
-void parse_text_proto(const std::string& text, const std::string& name, google::protobuf::Message& out,
+void parse_text_proto(const std::string& text, const std::string& name,
+                      google::protobuf::Message& out,
                       google::protobuf::TextFormat::ParseInfoTree& places);
 /// Loads a file as load_text_proto() of resources.hpp does and writes the position of every value
 /// to `places`. Throws MissingError, ConfigError.

@@ -15,8 +15,9 @@ namespace handsel {
 std::filesystem::path resource_root();
 /// resource_root()/relative; throws MissingError naming it when it is not there.
 std::filesystem::path resource(const std::string& relative);
-/// Strict Protobuf text: unknown fields, wrong types and duplicates throw ConfigError
-/// "file:line:column: what".
+/// Reads strict Protobuf text. Fields that are left out get the default value of the schema.
+/// Unknown keys, wrong types, numbers out of range and duplicates throw ConfigError "file:line:key:
+/// what".
 void load_text_proto(const std::filesystem::path& file, google::protobuf::Message& out);
 /// "file:line" of the first line that contains `text` (e.g. a quoted name), or "file": says where a
 /// wrong value stands.

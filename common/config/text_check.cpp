@@ -1,11 +1,10 @@
 #include "common/config/text_check.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "common/base/errors.hpp"
+#include "common/config/setting.hpp"
 
 namespace handsel {
 namespace {
@@ -18,23 +17,11 @@ using Places = google::protobuf::TextFormat::ParseInfoTree;
 
 constexpr std::size_t kMaxText = 4096;  // [bytes] names, paths and sentences are far shorter
 
-std::string short_form(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-const NumberRange* range_of(const FieldDescriptor& field) {
-  const std::string key = field.containing_type()->name() + "." + field.name();
-  const auto ranges = number_ranges();
-  const auto found =
-      std::lower_bound(ranges.begin(), ranges.end(), key, [](const NumberRange& r, const std::string& k) { return r.field < k; });
-  return found != ranges.end() && found->field == key ? &*found : nullptr;
-}
-
 /// Returns the length of the UTF-8 character at `at`, 0 where there is none.
 std::size_t character_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(i < text.size() ? text[i] : 0); };
+  const auto byte = [&](std::size_t i) {
+    return static_cast<unsigned char>(i < text.size() ? text[i] : 0);
+  };
   const unsigned char first = byte(at);
   const std::size_t length = first < 0x80                    ? 1
                              : first >= 0xc2 && first < 0xe0 ? 2
@@ -64,37 +51,48 @@ class TextCheck {
     for (int i = 0; i < type.field_count(); ++i) {
       const FieldDescriptor& field = *type.field(i);
       if (field.is_map()) require_different_keys(message, field, places);
-      const int count = field.is_repeated() ? message.GetReflection()->FieldSize(message, &field) : 1;
+      const int count =
+          field.is_repeated() ? message.GetReflection()->FieldSize(message, &field) : 1;
       for (int k = 0; k < count; ++k) check(message, field, field.is_repeated() ? k : -1, places);
     }
   }
 
  private:
-  [[noreturn]] void fail(const FieldDescriptor& field, int index, const Places* places, const std::string& what) const {
+  [[noreturn]] void fail(const FieldDescriptor& field, int index, const Places* places,
+                         const std::string& what) const {
     int line = places != nullptr ? places->GetLocation(&field, index).line : -1;
-    if (line < 0 && index > 0 && places != nullptr) line = places->GetLocation(&field, 0).line;  // of a list in brackets
-    throw ConfigError(file_ + (line < 0 ? "" : ":" + std::to_string(line + 1)) + ":" + field.name() + ": " + what);
+    if (line < 0 && index > 0 && places != nullptr)
+      line = places->GetLocation(&field, 0).line;  // of a list in brackets
+    throw ConfigError(file_ + (line < 0 ? "" : ":" + std::to_string(line + 1)) + ":" +
+                      field.name() + ": " + what);
   }
 
-  void check(const Message& message, const FieldDescriptor& field, int index, const Places* places) const {
+  void check(const Message& message, const FieldDescriptor& field, int index,
+             const Places* places) const {
     const Reflection& get = *message.GetReflection();
     const auto value = [&](auto single, auto repeated) {
       return index < 0 ? (get.*single)(message, &field) : (get.*repeated)(message, &field, index);
     };
     switch (field.cpp_type()) {
       case FieldDescriptor::CPPTYPE_DOUBLE:
-        return number(value(&Reflection::GetDouble, &Reflection::GetRepeatedDouble), field, index, places);
+        return number(value(&Reflection::GetDouble, &Reflection::GetRepeatedDouble), field, index,
+                      places);
       case FieldDescriptor::CPPTYPE_FLOAT:
-        return number(value(&Reflection::GetFloat, &Reflection::GetRepeatedFloat), field, index, places);
+        return number(value(&Reflection::GetFloat, &Reflection::GetRepeatedFloat), field, index,
+                      places);
       case FieldDescriptor::CPPTYPE_INT32:
-        return number(value(&Reflection::GetInt32, &Reflection::GetRepeatedInt32), field, index, places);
+        return number(value(&Reflection::GetInt32, &Reflection::GetRepeatedInt32), field, index,
+                      places);
       case FieldDescriptor::CPPTYPE_UINT32:
-        return number(value(&Reflection::GetUInt32, &Reflection::GetRepeatedUInt32), field, index, places);
+        return number(value(&Reflection::GetUInt32, &Reflection::GetRepeatedUInt32), field, index,
+                      places);
       case FieldDescriptor::CPPTYPE_STRING:
-        return text(value(&Reflection::GetString, &Reflection::GetRepeatedString), field, index, places);
+        return text(value(&Reflection::GetString, &Reflection::GetRepeatedString), field, index,
+                    places);
       case FieldDescriptor::CPPTYPE_MESSAGE:
         if (index < 0 && !get.HasField(message, &field)) return;
-        return check(index < 0 ? get.GetMessage(message, &field) : get.GetRepeatedMessage(message, &field, index),
+        return check(index < 0 ? get.GetMessage(message, &field)
+                               : get.GetRepeatedMessage(message, &field, index),
                      places != nullptr ? places->GetTreeForNested(&field, index) : nullptr);
       default:
         return;
@@ -102,30 +100,36 @@ class TextCheck {
   }
 
   void number(double value, const FieldDescriptor& field, int index, const Places* places) const {
-    const bool written = value != 0 || (places != nullptr && places->GetLocation(&field, index).line >= 0);
+    const bool written =
+        value != 0 || (places != nullptr && places->GetLocation(&field, index).line >= 0);
     if (!written) return;  // whether a field may be left out is known to the component
-    const NumberRange* range = range_of(field);
-    const double low = range != nullptr ? range->low : -kLargestNumber, high = range != nullptr ? range->high : kLargestNumber;
-    const bool open = range != nullptr && range->open_low;
-    if (std::isfinite(value) && value <= high && (open ? value > low : value >= low)) return;
+    const Setting setting = setting_of(field);
+    if (is_allowed(value, setting)) return;
     fail(field, index, places,
-         "is " + short_form(value) + ", must be a number in " + (open ? "(" : "[") + short_form(low) + ", " + short_form(high) + "]");
+         "is " + short_form(value) + ", must be a number in " + range_text(setting));
   }
 
-  void text(const std::string& value, const FieldDescriptor& field, int index, const Places* places) const {
+  void text(const std::string& value, const FieldDescriptor& field, int index,
+            const Places* places) const {
     if (value.size() > kMaxText)
-      fail(field, index, places, "is " + std::to_string(value.size()) + " bytes long, must be at most " + std::to_string(kMaxText));
-    if (!is_utf8(value)) fail(field, index, places, "is no text in UTF-8: \"" + printable(value, 40) + "\"");
+      fail(field, index, places,
+           "is " + std::to_string(value.size()) + " bytes long, must be at most " +
+               std::to_string(kMaxText));
+    if (!is_utf8(value))
+      fail(field, index, places, "is no text in UTF-8: \"" + printable(value, 40) + "\"");
   }
 
-  void require_different_keys(const Message& message, const FieldDescriptor& field, const Places* places) const {
+  void require_different_keys(const Message& message, const FieldDescriptor& field,
+                              const Places* places) const {
     const FieldDescriptor& key = *field.message_type()->map_key();
     if (key.cpp_type() != FieldDescriptor::CPPTYPE_STRING) return;
     std::set<std::string> known;
     for (int i = 0; i < message.GetReflection()->FieldSize(message, &field); ++i) {
       const Message& entry = message.GetReflection()->GetRepeatedMessage(message, &field, i);
       const std::string name = entry.GetReflection()->GetString(entry, &key);
-      if (!known.insert(name).second) fail(field, i, places, "has the key \"" + printable(name, 60) + "\" twice; each may be there once");
+      if (!known.insert(name).second)
+        fail(field, i, places,
+             "has the key \"" + printable(name, 60) + "\" twice; each may be there once");
     }
   }
 
@@ -134,7 +138,9 @@ class TextCheck {
 
 }  // namespace
 
-void check_text(const Message& message, const Places& places, const std::string& file) { TextCheck(file).check(message, &places); }
+void check_text(const Message& message, const Places& places, const std::string& file) {
+  TextCheck(file).check(message, &places);
+}
 
 std::string printable(const std::string& text, std::size_t max_bytes) {
   std::string out = text.substr(0, max_bytes);

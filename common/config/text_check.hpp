@@ -1,7 +1,6 @@
 // Checks of every value in a Protobuf text, whatever message the text holds.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include <google/protobuf/message.h>
@@ -9,27 +8,11 @@
 
 namespace handsel {
 
-/// The numbers that a field may have.
-struct NumberRange {
-  const char* field;     ///< "SparkSettings.publish_period": message and field
-  double low;            ///< smallest number allowed, in the unit of the schema
-  double high;           ///< largest number allowed, in the unit of the schema
-  bool open_low{false};  ///< `low` itself is refused
-};
-
-/// Limit of the absolute value of a number that number_ranges() does not name. SI units: nothing
-/// here is larger.
-inline constexpr double kLargestNumber = 1e6;
-
-/// Returns the ranges of the fields that need one narrower than kLargestNumber, sorted by field.
-/// Fields whose component checks them against each other are not listed.
-std::span<const NumberRange> number_ranges();
-
 /// Throws ConfigError "file:line:key: ..." for the first number that is not finite or not in its
 /// range, for text that is not UTF-8 or longer than 4096 bytes, and for a map key that is there
 /// twice. `places` says where each value stands in `file`.
-void check_text(const google::protobuf::Message& message, const google::protobuf::TextFormat::ParseInfoTree& places,
-                const std::string& file);
+void check_text(const google::protobuf::Message& message,
+                const google::protobuf::TextFormat::ParseInfoTree& places, const std::string& file);
 
 /// Returns `text` cut to `max_bytes`, with a question mark for each byte that is not printable
 /// ASCII: file content for one line of an error.

@@ -21,7 +21,8 @@ std::string read_text_file(const fs::path& file, std::uintmax_t max_bytes) {
   if (!fs::is_regular_file(file, error)) throw ConfigError(file.string() + " is not a file");
   const std::uintmax_t size = fs::file_size(file, error);
   if (size > max_bytes)
-    throw ConfigError(file.string() + " has " + std::to_string(size >> 20) + " MB; it may have " + std::to_string(max_bytes >> 20) + " MB");
+    throw ConfigError(file.string() + " has " + std::to_string(size >> 20) + " MB; it may have " +
+                      std::to_string(max_bytes >> 20) + " MB");
   std::ifstream in(file, std::ios::binary);
   if (!in) throw ConfigError(file.string() + ": cannot be read; its permissions forbid it");
   std::ostringstream text;

@@ -1,20 +1,15 @@
 #include "common/cost/cost_settings.hpp"
 
-#include "common/base/errors.hpp"
-#include "common/config/resources.hpp"
-#include "common/config/schema/cost.pb.h"
+#include "common/config/settings_text.hpp"
 
 namespace handsel {
 
 CostSettings load_cost_settings(const std::filesystem::path& directory) {
-  config::HumanCostSettings file;
-  load_text_proto(directory / "cost.txtpb", file);
-  if (!(file.safety_radius() > 0) || !(file.visibility_cutoff() > 0))
-    throw ConfigError("cost.txtpb: safety_radius and visibility_cutoff must be > 0");
-  if (!(file.w_safety() >= 0 && file.w_visibility() >= 0 && file.w_comfort() >= 0 &&
-        file.w_safety() + file.w_visibility() + file.w_comfort() > 0))
-    throw ConfigError("cost.txtpb: the weights must be >= 0 and at least one > 0");
-  return {file.safety_radius(), file.visibility_cutoff(), file.w_safety(), file.w_visibility(), file.w_comfort()};
+  SettingsText text;
+  const CostSettings out = settings::read_human_cost_settings(directory / "cost.txtpb", &text);
+  if (!(out.w_safety + out.w_visibility + out.w_comfort > 0))
+    text.refuse("w_safety", "is 0, as are the other weights; at least one must be above 0");
+  return out;
 }
 
 }  // namespace handsel

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/config/settings/cost.hpp"
 #include "common/cost/batch_cost.hpp"
 #include "common/cost/cost_layers.hpp"
 #include "common/cost/person_frame.hpp"
@@ -15,12 +16,8 @@
 
 namespace handsel {
 
-struct CostSettings {
-  double safety_radius{1.0};      ///< R [m]
-  double visibility_cutoff{3.0};  ///< nothing beyond this distance of the eyes [m]
-  /// >= 0, not all 0; their sum is scaled to 1.
-  double w_safety{1.0}, w_visibility{0.3}, w_comfort{0.3};
-};
+/// Settings of the human-aware cost: cost.txtpb.
+using CostSettings = settings::HumanCostSettings;
 
 /// Returns 1 at contact, 0 from `radius` [m] on, falling exponentially in between (formula of
 /// section 4.1.2).

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/settings/attention.hpp"
 #include "common/messages/attention.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/task.hpp"
@@ -48,25 +49,8 @@ class Body {
   mutable std::vector<Pose> links_;
 };
 
-/// Numbers of the motor parts, all behaviours (units in the comments).
-struct MotorSettings {
-  double avoid_stop{0.06};           ///< nearest distance at which AVOID asks for 0 [m]
-  double avoid_slow{0.60};           ///< distance from which AVOID asks for less than 1 [m]
-  double avoid_contact_time{1.2};    ///< time to contact from which AVOID asks for less than 1 [s]
-  double partner_slow{0.40};         ///< avoid_slow for the partner of a handover [m]
-  double partner_contact_time{0.8};  ///< avoid_contact_time for the partner of a handover [s]
-  double avoid_recede{0.5};          ///< smallest factor while the trajectory leads away
-  double recoil_factor{-0.15};       ///< factor when nearer than avoid_stop and closing in
-  double recoil_speed{0.10};         ///< closing speed that counts as closing in [m/s]
-  double ease_distance{0.10};        ///< PICK and PLACE ease over this distance [m]
-  double ease_factor{0.4};           ///< to this factor
-  double hand_near{0.30};            ///< GIVE and RECEIVE slow when a hand is nearer [m]
-  double hand_factor{0.25};          ///< to this factor
-  double shift_limit{0.15};          ///< largest shift of the exchange point [m]
-  double lost_after{1.0};            ///< a person not seen for longer is not tracked [s]
-  double reach_near{0.6};            ///< a hand reaching for the held object counts nearer [m] ..
-  double reach_hold{0.2};            ///< .. for this long [s]
-};
+/// Numbers of the motor parts, all behaviours: attention.txtpb.
+using MotorSettings = settings::AttentionSettings::Motor;
 
 /// What a behaviour that is described, not programmed, can watch.
 enum class Input {

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <span>
 
-#include "common/config/located.hpp"
-#include "common/config/resources.hpp"
-#include "common/config/schema/attention.pb.h"
+#include "common/config/settings/attention.hpp"
+#include "common/config/settings_text.hpp"
 #include "common/messages/names.hpp"
 
 namespace handsel::attention {
@@ -31,40 +30,35 @@ void at(const std::string& place, const F& check) {
   }
 }
 
-BehaviourSettings behaviour_of(const config::AttentionBehaviour& b, const TextPlace& place) {
+BehaviourSettings behaviour_of(const settings::AttentionBehaviour& b, const TextPlace& place) {
   BehaviourSettings s;
-  s.name = b.name();
+  s.name = b.name;
   constexpr std::span<const char* const> kProgrammed(kBehaviourNames, static_cast<std::size_t>(Behaviour::watch));
-  if (b.name().empty() || b.name().size() > 32) throw ConfigError(place.of("name") + ": a name has 1 to 32 characters");
-  s.behaviour = b.kind() == config::BY_NAME ? one_of<Behaviour>(b.name(), kProgrammed, place.of("name"))
-                                            : static_cast<Behaviour>(static_cast<int>(b.kind()) - 1);
-  const ClockLaw law = b.law() == config::WEBER ? ClockLaw::weber : b.law() == config::FIXED ? ClockLaw::fixed : ClockLaw::linear;
-  s.clock = {law, b.p_min(), b.p_max(), b.near(), b.far(), b.weber_gain(), b.period()};
-  at(place.of("p_max"), [&] { AdaptiveClock(s.clock, {}, b.name()); });
-  for (int i = 0; i < b.released_when_size(); ++i)
-    at(place.of("released_when", i), [&] { s.conditions.push_back(parse_condition(b.released_when(i))); });
+  if (b.name.empty() || b.name.size() > 32) throw ConfigError(place.of("name") + ": a name has 1 to 32 characters");
+  s.behaviour = b.kind == settings::AttentionKind::by_name ? one_of<Behaviour>(b.name, kProgrammed, place.of("name"))
+                                                           : static_cast<Behaviour>(static_cast<int>(b.kind) - 1);
+  const ClockLaw law = b.law == settings::AttentionLaw::weber   ? ClockLaw::weber
+                       : b.law == settings::AttentionLaw::fixed ? ClockLaw::fixed
+                                                                : ClockLaw::linear;
+  s.clock = {law, b.p_min, b.p_max, b.near, b.far, b.weber_gain, b.period};
+  at(place.of("p_max"), [&] { AdaptiveClock(s.clock, {}, b.name); });
+  for (int i = 0; i < static_cast<int>(b.released_when.size()); ++i)
+    at(place.of("released_when", i), [&] { s.conditions.push_back(parse_condition(b.released_when[static_cast<std::size_t>(i)])); });
   if (s.behaviour != Behaviour::watch) {
-    if (!b.input().empty()) throw ConfigError(place.of("input") + ": only a behaviour of kind WATCH has an input of its own");
+    if (!b.input.empty()) throw ConfigError(place.of("input") + ": only a behaviour of kind WATCH has an input of its own");
     return s;
   }
-  s.watch = {one_of<Input>(b.input(), kInputNames, place.of("input")),
-             b.slow_from(),
-             b.slow_at(),
-             b.slow_factor(),
-             static_cast<GazeAt>(b.gaze()),
-             b.reason()};
-  if (b.slow_from() > 0 && !(b.slow_at() >= 0 && b.slow_at() < b.slow_from()))
+  s.watch = {
+      one_of<Input>(b.input, kInputNames, place.of("input")), b.slow_from, b.slow_at, b.slow_factor, static_cast<GazeAt>(b.gaze), b.reason};
+  if (b.slow_from > 0 && !(b.slow_at >= 0 && b.slow_at < b.slow_from))
     throw ConfigError(place.of("slow_at") + ": slow_at must be in [0, slow_from)");
-  if (b.slow_from() > 0 && !(b.slow_factor() >= 0 && b.slow_factor() <= 1))
-    throw ConfigError(place.of("slow_factor") + ": slow_factor must be in [0, 1]");
-  if (b.slow_from() > 0 && b.reason().empty()) throw ConfigError(place.of("name") + ": what slows the arm needs a reason");
+  if (b.slow_from > 0 && b.reason.empty()) throw ConfigError(place.of("name") + ": what slows the arm needs a reason");
   return s;
 }
 
-WorkSettings work_of(const config::AttentionWork& w, const TextPlace& place) {
-  if (!(w.p_min() > 0)) throw ConfigError(place.of("p_min") + ": p_min must be above 0 s");
-  if (!(w.p_max() >= w.p_min())) throw ConfigError(place.of("p_max") + ": p_max must not be below p_min");
-  return {one_of<Work>(w.name(), kWorkNames, place.of("name")), w.p_min(), w.p_max(), w.period(), {w.serves().begin(), w.serves().end()}};
+WorkSettings work_of(const settings::AttentionWork& w, const TextPlace& place) {
+  if (!(w.p_max >= w.p_min)) throw ConfigError(place.of("p_max") + ": p_max must not be below p_min");
+  return {one_of<Work>(w.name, kWorkNames, place.of("name")), w.p_min, w.p_max, w.period, w.serves};
 }
 
 /// Whether behaviours and works fit each other.
@@ -93,54 +87,40 @@ void check_together(const AttentionSettings& s, const TextPlace& root) {
                           s.works[i].serves[k] + "\" is not described");
 }
 
-double share(double value, double low, double high, const char* key, const std::filesystem::path& file) {
-  if (!(value >= low && value <= high))
-    throw ConfigError(locate(file, std::string(key) + ":") + ": " + key + " must be in [" + std::to_string(low) + ", " +
-                      std::to_string(high) + "]");
-  return value;
+/// Whether limits that belong together are in order.
+void check_order(const settings::AttentionSettings& read, const SettingsText& text) {
+  double inner = 0.0;
+  for (double limit : {read.contact_zone, read.danger_zone, read.interaction_zone, read.social_zone}) {
+    if (!(limit > inner)) text.refuse("contact_zone", "the zones must grow: contact, danger, interaction, social");
+    inner = limit;
+  }
+  constexpr double kMinWidth = 1e-6;  // [m]
+  const MotorSettings& m = read.motor;
+  if (!(m.avoid_slow >= m.avoid_stop + kMinWidth)) text.refuse("avoid_slow", "must be above avoid_stop");
+  if (!(m.partner_slow >= m.avoid_stop + kMinWidth)) text.refuse("partner_slow", "must be above avoid_stop");
 }
 
 }  // namespace
 
 AttentionSettings load_settings(const std::filesystem::path& file) {
-  config::AttentionSettings read;
-  google::protobuf::TextFormat::ParseInfoTree tree;
-  load_text_proto(file, read, tree);
+  SettingsText text;
+  const settings::AttentionSettings read = settings::read_attention_settings(file, &text);
+  check_order(read, text);
   AttentionSettings s;
-  s.off = read.off();
-  s.tick = share(read.tick(), 0.001, 0.1, "tick", file);
-  s.gaze_dwell = share(read.gaze_dwell(), 0, 60, "gaze_dwell", file);
-  s.gaze_advantage = share(read.gaze_advantage(), 0, 1, "gaze_advantage", file);
-  s.near_cost_gain = share(read.near_cost_gain(), 1, 100, "near_cost_gain", file);
-  s.zones.limits = {read.contact_zone(), read.danger_zone(), read.interaction_zone(), read.social_zone()};
-  double inner = 0.0;
-  for (double limit : s.zones.limits) {
-    if (!(limit > inner)) throw ConfigError(locate(file, "contact_zone:") + ": the zones must grow: contact, danger, interaction, social");
-    inner = limit;
-  }
-  s.zones.margin = share(read.zone_margin(), 0, 1, "zone_margin", file);
-  s.zones.dwell = share(read.zone_dwell(), 0, 60, "zone_dwell", file);
-  MotorSettings& m = s.motor;
-  m.avoid_stop = share(read.avoid_stop(), 0, 10, "avoid_stop", file);
-  m.avoid_slow = share(read.avoid_slow(), m.avoid_stop + 1e-6, 10, "avoid_slow", file);
-  m.avoid_contact_time = share(read.avoid_contact_time(), 1e-3, 10, "avoid_contact_time", file);
-  m.partner_slow = share(read.partner_slow(), m.avoid_stop + 1e-6, 10, "partner_slow", file);
-  m.partner_contact_time = share(read.partner_contact_time(), 1e-3, 10, "partner_contact_time", file);
-  m.avoid_recede = share(read.avoid_recede(), 0, 1, "avoid_recede", file);
-  m.recoil_factor = share(read.recoil_factor(), -1, 0, "recoil_factor", file);
-  m.recoil_speed = share(read.recoil_speed(), 0, 10, "recoil_speed", file);
-  m.ease_distance = share(read.ease_distance(), 1e-3, 10, "ease_distance", file);
-  m.ease_factor = share(read.ease_factor(), 0, 1, "ease_factor", file);
-  m.hand_near = share(read.hand_near(), 1e-3, 10, "hand_near", file);
-  m.hand_factor = share(read.hand_factor(), 0, 1, "hand_factor", file);
-  m.shift_limit = share(read.shift_limit(), 0, 10, "shift_limit", file);
-  m.lost_after = share(read.lost_after(), 0, 60, "lost_after", file);
-  m.reach_near = share(read.reach_near(), 1e-3, 10, "reach_near", file);
-  m.reach_hold = share(read.reach_hold(), 0, 10, "reach_hold", file);
-  const TextPlace root(file.string(), &tree, config::AttentionSettings::descriptor());
-  for (int i = 0; i < read.behaviours_size(); ++i) s.behaviours.push_back(behaviour_of(read.behaviours(i), root.inside("behaviours", i)));
-  for (int i = 0; i < read.works_size(); ++i) s.works.push_back(work_of(read.works(i), root.inside("works", i)));
-  check_together(s, root);
+  s.off = read.off;
+  s.tick = read.tick;
+  s.gaze_dwell = read.gaze_dwell;
+  s.gaze_advantage = read.gaze_advantage;
+  s.near_cost_gain = read.near_cost_gain;
+  s.zones.limits = {read.contact_zone, read.danger_zone, read.interaction_zone, read.social_zone};
+  s.zones.margin = read.zone_margin;
+  s.zones.dwell = read.zone_dwell;
+  s.motor = read.motor;
+  int place = 0;
+  for (const auto& b : read.behaviours) s.behaviours.push_back(behaviour_of(b, text.root().inside("behaviours", place++)));
+  place = 0;
+  for (const auto& w : read.works) s.works.push_back(work_of(w, text.root().inside("works", place++)));
+  check_together(s, text.root());
   return s;
 }
 

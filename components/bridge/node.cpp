@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "common/config/resources.hpp"
-#include "common/config/schema/bridge.pb.h"
+#include "common/config/settings/bridge.hpp"
 #include "common/messages/system.hpp"
 #include "components/bridge/catalogue.hpp"
 
@@ -17,7 +17,7 @@ constexpr Duration kRetry = std::chrono::seconds(5);
 constexpr Duration kClock = std::chrono::milliseconds(100);
 constexpr Duration kGraphPeriod = std::chrono::seconds(1);
 
-std::uint16_t port_of(const config::BridgeSettings& settings) {
+std::uint16_t port_of(const settings::BridgeSettings& settings) {
   if (const char* text = std::getenv("HANDSEL_WEB_PORT"); text && *text) {
     const std::string value = text;
     std::uint16_t port = 0;
@@ -26,18 +26,7 @@ std::uint16_t port_of(const config::BridgeSettings& settings) {
       throw ConfigError("HANDSEL_WEB_PORT is \"" + value + "\"; it must be a port, 0..65535");
     return port;
   }
-  if (settings.port() > 65535) throw ConfigError("bridge.txtpb: port is " + std::to_string(settings.port()) + "; it must be 0..65535");
-  return static_cast<std::uint16_t>(settings.port());
-}
-
-config::BridgeSettings read_settings(const std::filesystem::path& folder) {
-  config::BridgeSettings settings;
-  load_text_proto(folder / "bridge.txtpb", settings);
-  if (!(settings.rate() > 0.0 && settings.rate() <= 120.0))
-    throw ConfigError("bridge.txtpb: rate is " + std::to_string(settings.rate()) + "; it must be in (0, 120] Hz");
-  if (settings.max_clients() == 0 || settings.max_clients() > 64)
-    throw ConfigError("bridge.txtpb: max_clients is " + std::to_string(settings.max_clients()) + "; it must be 1..64");
-  return settings;
+  return static_cast<std::uint16_t>(settings.port);
 }
 
 }  // namespace
@@ -48,11 +37,11 @@ Node::Node(Bus& bus, const NodeContext& context)
       site_(find_web_folder(), resource_root()),
       readers_(topics().size()),
       drawing_(context.robot, context.objects) {
-  const config::BridgeSettings settings = read_settings(context.settings);
+  const auto settings = settings::read_bridge_settings(context.settings / "bridge.txtpb");
   settings_.port = port_of(settings);
   if (const char* address = std::getenv("HANDSEL_WEB_ADDRESS"); address && *address) settings_.address = address;
-  settings_.max_clients = settings.max_clients();
-  settings_.allowed_origins.assign(settings.allowed_origins().begin(), settings.allowed_origins().end());
+  settings_.max_clients = settings.max_clients;
+  settings_.allowed_origins = settings.allowed_origins;
 
   const SystemFacts facts{.scenario = context.scenario.stem(),
                           .domain = raw_ ? raw_->domain() : 0,
@@ -67,7 +56,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       {.period = kGraphPeriod});
   start_server();
   bus_.every(kRetry, [this](TimePoint) { start_server(); });
-  bus_.every(from_seconds(1.0 / settings.rate()), [this](TimePoint) { publish_samples(); });
+  bus_.every(from_seconds(1.0 / settings.rate), [this](TimePoint) { publish_samples(); });
   bus_.every(kClock, [this](TimePoint) {
     if (!server_ || !server_->any_client()) return;
     server_->set_time(bus_.stamp_now());

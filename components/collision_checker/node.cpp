@@ -1,7 +1,7 @@
 #include "components/collision_checker/node.hpp"
 
-#include "common/config/resources.hpp"
-#include "common/config/schema/collision_checker.pb.h"
+#include "common/config/settings/collision_checker.hpp"
+#include "common/config/settings_text.hpp"
 #include "common/cost/cost_settings.hpp"
 
 namespace handsel::collision_checker {
@@ -11,17 +11,15 @@ constexpr int kTicks = 4;                // of the shortest period: periods betw
 constexpr std::size_t kMaxQueries = 16;  // that wait; each may hold 4096 states
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
-config::CollisionCheckerSettings load(const NodeContext& context) {
-  config::CollisionCheckerSettings s;
-  load_text_proto(context.settings / "collision_checker.txtpb", s);
-  for (double positive : {s.period(), s.longest_period(), s.horizon(), s.least_speed(), s.spacing(), s.max_age(), s.check_time()})
-    if (!(positive > 0)) throw ConfigError("collision_checker.txtpb: every setting must be > 0");
-  if (s.longest_period() < s.period()) throw ConfigError("collision_checker.txtpb: longest_period must not be below period");
-  if (s.least_speed() > 1) throw ConfigError("collision_checker.txtpb: least_speed must be at most 1");
+settings::CollisionCheckerSettings load(const NodeContext& context) {
+  SettingsText text;
+  const auto file = context.settings / "collision_checker.txtpb";
+  const auto s = settings::read_collision_checker_settings(file, &text);
+  if (s.longest_period < s.period) text.refuse("longest_period", "must not be below period");
   return s;
 }
 
-ForecastSettings core_settings(const config::CollisionCheckerSettings& s) { return {s.horizon(), s.least_speed(), s.spacing()}; }
+ForecastSettings core_settings(const settings::CollisionCheckerSettings& s) { return {s.horizon, s.least_speed, s.spacing}; }
 
 }  // namespace
 
@@ -30,12 +28,12 @@ Node::Node(Bus& bus, const NodeContext& context)
       robot_(context.robot),
       forecaster_(*context.robot, context.objects, load_cost_settings(context.settings), core_settings(load(context))),
       query_world_(*context.robot, context.objects),
-      pace_(load(context).period(), load(context).longest_period(), load(context).period() / kTicks),
+      pace_(load(context).period, load(context).longest_period, load(context).period / kTicks),
       forecast_out_(bus.advertise<TrajectoryForecast>()),
       verdict_out_(bus.advertise<StateVerdict>()) {
-  const config::CollisionCheckerSettings settings = load(context);
-  check_time_ = settings.check_time();
-  max_age_ = from_seconds(settings.max_age());
+  const settings::CollisionCheckerSettings settings = load(context);
+  check_time_ = settings.check_time;
+  max_age_ = from_seconds(settings.max_age);
   bus.subscribe<ActiveTrajectory>([this](const ActiveTrajectory& active, const Receipt&) {
     if (active.trajectory != active_.trajectory) news_ = true;
     active_ = active;
@@ -57,7 +55,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.forecast_period, r.arrival); });
   bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
-  bus.every(from_seconds(settings.period() / kTicks), [this](TimePoint now) { forecast(now); });
+  bus.every(from_seconds(settings.period / kTicks), [this](TimePoint now) { forecast(now); });
 }
 
 void Node::forecast(TimePoint now) {

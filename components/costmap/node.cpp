@@ -1,7 +1,7 @@
 #include "components/costmap/node.hpp"
 
-#include "common/config/resources.hpp"
-#include "common/config/schema/costmap.pb.h"
+#include "common/config/settings/costmap.hpp"
+#include "common/config/settings_text.hpp"
 #include "common/cost/cost_settings.hpp"
 
 namespace handsel::costmap {
@@ -9,17 +9,12 @@ namespace {
 
 constexpr Duration kStale = std::chrono::seconds(1);
 
-config::CostmapSettings load(const NodeContext& context) {
-  config::CostmapSettings s;
-  load_text_proto(context.settings / "costmap.txtpb", s);
-  for (double positive : {s.period(), s.resolution(), s.reach(), s.moved(), s.turned(), s.repeat(), s.cell_time()})
-    if (!(positive > 0)) throw ConfigError("costmap.txtpb: every setting but clearance must be > 0");
-  if (s.clearance() < 0) throw ConfigError("costmap.txtpb: clearance must be >= 0");
-  if (s.reach() / s.resolution() > 49)
-    throw ConfigError("costmap.txtpb: reach / resolution must be at most 49, else the map outgrows its message");
-  if (s.longest_period() < s.period() || s.longest_period() > 0.4)
-    throw ConfigError("costmap.txtpb: longest_period must be from period to 0.4, readers leave out layers older than a second");
-  if (s.repeat() > 0.5) throw ConfigError("costmap.txtpb: repeat must be at most 0.5, readers leave out layers older than a second");
+settings::CostmapSettings load(const NodeContext& context) {
+  SettingsText text;
+  const auto s = settings::read_costmap_settings(context.settings / "costmap.txtpb", &text);
+  if (s.reach / s.resolution > 49) text.refuse("reach", "reach / resolution must be at most 49, else the map outgrows its message");
+  if (s.longest_period < s.period)
+    text.refuse("longest_period", "must be from period to 0.4, readers leave out layers older than a second");
   return s;
 }
 
@@ -27,17 +22,17 @@ config::CostmapSettings load(const NodeContext& context) {
 
 Node::Node(Bus& bus, const NodeContext& context)
     : bus_(bus),
-      repeat_(from_seconds(load(context).repeat())),
-      cell_time_(load(context).cell_time()),
-      maker_({load(context).resolution(), load(context).reach(), load(context).clearance(), load_cost_settings(context.settings)}),
-      watch_(load(context).moved(), load(context).turned()),
-      pace_(load(context).period(), load(context).longest_period(), load(context).period()),
+      repeat_(from_seconds(load(context).repeat)),
+      cell_time_(load(context).cell_time),
+      maker_({load(context).resolution, load(context).reach, load(context).clearance, load_cost_settings(context.settings)}),
+      watch_(load(context).moved, load(context).turned),
+      pace_(load(context).period, load(context).longest_period, load(context).period),
       map_out_(bus.advertise<Costmap>()) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene; });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
   bus.subscribe<AttentionAdvice>(
       [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.cost_map_period, r.arrival); });
-  bus.every(from_seconds(load(context).period()), [this](TimePoint now) { step(now); });
+  bus.every(from_seconds(load(context).period), [this](TimePoint now) { step(now); });
 }
 
 void Node::step(TimePoint now) {

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/resources.hpp"
-#include "common/config/schema/path_planner.pb.h"
+#include "common/config/settings/path_planner.hpp"
 #include "common/cost/cost_settings.hpp"
 #include "components/path_planner/request.hpp"
 
@@ -14,46 +13,31 @@ namespace {
 constexpr const char* kCancelled = "cancelled on request";
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
 
-config::PathPlannerSettings load(const NodeContext& context) {
-  config::PathPlannerSettings s;
-  load_text_proto(context.settings / "path_planner.txtpb", s);
-  for (double positive : {s.step(), s.verify_step(), s.connect_range(), s.transition_range(), s.initial_temperature(), s.search_share(),
-                          s.cost_step(), s.longest_edge(), s.check_time(), s.longest_time(), s.max_scene_age(), s.roam()})
-    if (!(positive > 0)) throw ConfigError("path_planner.txtpb: every step, range, time, share, the temperature and roam must be > 0");
-  if (s.search_share() > 1 || s.length_weight() < 0 || s.smoothing_rounds() < 0 || s.patience() <= 0)
-    throw ConfigError("path_planner.txtpb: search_share must be at most 1, length_weight and smoothing_rounds >= 0, patience > 0");
-  if (s.live_gain() < 0 || s.live_gain() >= 1 || s.live_rounds() < 0 || s.live_tries() < 0 || s.live_margin() < 0 ||
-      s.live_turning_margin() < 0)
-    throw ConfigError("path_planner.txtpb: live_rounds, live_tries and the margins must be >= 0, live_gain in [0, 1)");
-  if (s.head_room() < 0) throw ConfigError("path_planner.txtpb: head_room must be >= 0");
-  return s;
-}
-
-Settings core_settings(const config::PathPlannerSettings& s) {
+Settings core_settings(const settings::PathPlannerSettings& s) {
   Settings out;
-  out.step = s.step();
-  out.verify_step = s.verify_step();
-  out.connect_range = s.connect_range();
-  out.transition_range = s.transition_range();
-  out.initial_temperature = s.initial_temperature();
-  out.search_share = s.search_share();
-  out.cost_step = s.cost_step();
-  out.length_weight = s.length_weight();
-  out.smoothing_rounds = s.smoothing_rounds();
-  out.patience = s.patience();
-  out.longest_edge = s.longest_edge();
+  out.step = s.step;
+  out.verify_step = s.verify_step;
+  out.connect_range = s.connect_range;
+  out.transition_range = s.transition_range;
+  out.initial_temperature = s.initial_temperature;
+  out.search_share = s.search_share;
+  out.cost_step = s.cost_step;
+  out.length_weight = s.length_weight;
+  out.smoothing_rounds = s.smoothing_rounds;
+  out.patience = s.patience;
+  out.longest_edge = s.longest_edge;
   return out;
 }
 
-SolverSettings solver_settings(const config::PathPlannerSettings& s) {
+SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
   SolverSettings out;
   out.search = core_settings(s);
-  out.live.least_gain = s.live_gain();
-  out.live.rounds = s.live_rounds();
-  out.live.tries = s.live_tries();
-  out.live_margins = {s.live_margin(), s.live_turning_margin()};
-  out.roam = s.roam();
-  out.head_room = s.head_room();
+  out.live.least_gain = s.live_gain;
+  out.live.rounds = s.live_rounds;
+  out.live.tries = s.live_tries;
+  out.live_margins = {s.live_margin, s.live_turning_margin};
+  out.roam = s.roam;
+  out.head_room = s.head_room;
   return out;
 }
 
@@ -64,11 +48,11 @@ std::optional<RobotModel> mobile_of(const NodeContext& context) {
 
 }  // namespace
 
-Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, load(context)) {}
+Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, settings::read_path_planner_settings(context.settings / "path_planner.txtpb")) {}
 
-Node::Node(Bus& bus, const NodeContext& context, const config::PathPlannerSettings& file)
+Node::Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSettings& file)
     : bus_(bus),
-      timing_{file.check_time(), file.longest_time(), from_seconds(file.max_scene_age())},
+      timing_{file.check_time, file.longest_time, from_seconds(file.max_scene_age)},
       reply_out_(bus.advertise<PathReply>()),
       solver_(context.robot, mobile_of(context), context.objects,
               load_cost_settings(context.settings), solver_settings(file)) {

@@ -29,7 +29,7 @@ class Node {
   const std::array<std::uint64_t, 5>& live_outcomes() const { return live_outcomes_; }
 
  private:
-  Node(Bus& bus, const NodeContext& context, const config::PathPlannerSettings& file);
+  Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSettings& file);
   struct Timing {
     double check_time{}, max_time{};
     Duration max_scene_age{};

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "common/config/schema/ros2_lane.pb.h"
+#include "common/config/settings/ros2_lane.hpp"
 #include "components/ros2_lane/robot_joints.hpp"
 #include "components/ros2_lane/tf_tree.hpp"
 
@@ -14,7 +14,7 @@ namespace handsel::ros2_lane {
 class JointInput {
  public:
   /// `robot` must outlive this.
-  JointInput(const RobotModel& robot, const config::Ros2LaneSettings& settings);
+  JointInput(const RobotModel& robot, const settings::Ros2LaneSettings& settings);
 
   /// Sets where the base is when no base frame is named, world frame.
   void set_base(const Pose& T_world_base) { T_world_base_ = T_world_base; }
@@ -26,7 +26,7 @@ class JointInput {
   std::string trouble(TimePoint now) const;
 
  private:
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   JointGatherer joints_;
   Pose T_world_base_{Pose::Identity()};
   bool received_{false};

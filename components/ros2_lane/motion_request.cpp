@@ -84,7 +84,7 @@ std::string fill_query(const TrajectoryRequest& request, const Group& arm, doubl
 
 std::string make_motion_request(const ros2::JointTrajectory& wanted, const RobotModel& robot,
                                 const ActiveTrajectory& active,
-                                const config::Ros2LaneSettings& settings, MotionRequest& out) {
+                                const settings::Ros2LaneSettings& settings, MotionRequest& out) {
   const Group& arm = robot.require_group("arm");
   std::vector<std::size_t> place;
   if (std::string why = find_joints(wanted, robot, arm, place); !why.empty()) return why;
@@ -94,11 +94,11 @@ std::string make_motion_request(const ros2::JointTrajectory& wanted, const Robot
   out.request.attachment = active.attachment;
   if (!out.request.attachment.object.empty())
     out.request.allowed_contacts = {out.request.attachment.object};
-  if (std::string why = fill_path(wanted, robot, place, settings.start_tolerance(), out.request);
+  if (std::string why = fill_path(wanted, robot, place, settings.start_tolerance, out.request);
       !why.empty())
     return why;
   out.min_duration = wanted.points.back().time_from_start;
-  return fill_query(out.request, arm, settings.check_step(), out.query);
+  return fill_query(out.request, arm, settings.check_step, out.query);
 }
 
 }  // namespace handsel::ros2_lane

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/config/schema/ros2_lane.pb.h"
+#include "common/config/settings/ros2_lane.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/ros2.hpp"
@@ -22,6 +22,6 @@ struct MotionRequest {
 /// Returns an empty text, or why the motion cannot be done; `out` is then not complete.
 std::string make_motion_request(const ros2::JointTrajectory& wanted, const RobotModel& robot,
                                 const ActiveTrajectory& active,
-                                const config::Ros2LaneSettings& settings, MotionRequest& out);
+                                const settings::Ros2LaneSettings& settings, MotionRequest& out);
 
 }  // namespace handsel::ros2_lane

@@ -9,30 +9,17 @@ namespace {
 
 constexpr Duration kStep = std::chrono::milliseconds(10);
 
-config::Ros2LaneSettings load(const NodeContext& context) {
-  config::Ros2LaneSettings s;
-  load_text_proto(context.settings / "ros2_lane.txtpb", s);
-  const auto within = [](double value, double max, const char* key) {
-    if (!(value > 0 && value <= max))
-      throw ConfigError(std::string("ros2_lane.txtpb: ") + key + " must be above 0 and at most " +
-                        std::to_string(static_cast<int>(max)));
-  };
-  within(s.people_rate(), 200, "people_rate");
-  within(s.people_age(), 10, "people_age");
-  within(s.objects_rate(), 200, "objects_rate");
-  within(s.joint_age(), 10, "joint_age");
-  within(s.start_tolerance(), 1, "start_tolerance");
-  within(s.check_step(), 1, "check_step");
-  within(s.joint_states_rate(), 500, "joint_states_rate");
-  within(s.tf_rate(), 200, "tf_rate");
-  if (s.world_frame().empty()) throw ConfigError("ros2_lane.txtpb: world_frame is empty, must name the frame of TF that is our world");
-  if (s.tf().empty() && (s.people() || s.objects_size() > 0 || s.tf_out()))
-    throw ConfigError("ros2_lane.txtpb: people, objects and tf_out need `tf`, the name of TF's topic");
-  if (s.people() && s.people_source().empty()) throw ConfigError("ros2_lane.txtpb: people_source is empty, a source needs a name");
-  if (s.objects_size() > 0 && s.objects_source().empty())
-    throw ConfigError("ros2_lane.txtpb: objects_source is empty, a source needs a name");
-  if (!s.robot_in().empty() && s.robot_in() == s.joint_states_out())
-    throw ConfigError("ros2_lane.txtpb: robot_in and joint_states_out are the same topic");
+settings::Ros2LaneSettings load(const NodeContext& context) {
+  SettingsText text;
+  const auto s = settings::read_ros2_lane_settings(context.settings / "ros2_lane.txtpb", &text);
+  if (s.world_frame.empty()) text.refuse("world_frame", "is empty, must name the frame of TF that is our world");
+  if (s.tf.empty() && (s.people || !s.objects.empty() || s.tf_out))
+    text.refuse("tf", "is empty, but people, objects and tf_out need the name of TF's topic");
+  if (s.people && s.people_source.empty()) text.refuse("people_source", "is empty, a source needs a name");
+  if (!s.objects.empty() && s.objects_source.empty())
+    text.refuse("objects_source", "is empty, a source needs a name");
+  if (!s.robot_in.empty() && s.robot_in == s.joint_states_out)
+    text.refuse("robot_in", "robot_in and joint_states_out are the same topic");
   return s;
 }
 
@@ -57,23 +44,23 @@ Node::Node(Bus& bus, const NodeContext& context)
 
 void Node::open_people_and_objects() {
   topics_.read<ros2::Transforms>(
-      settings_.tf(), Profile::goal,
+      settings_.tf, Profile::goal,
       [this](const ros2::Transforms& m, const Receipt& r) { on(m, r.arrival, false); });
   topics_.read<ros2::Transforms>(
-      settings_.tf_static(), Profile::state,
+      settings_.tf_static, Profile::state,
       [this](const ros2::Transforms& m, const Receipt& r) { on(m, r.arrival, true); });
-  if (settings_.people()) {
+  if (settings_.people) {
     human_out_ = bus_.advertise<HumanObservation>();
     topics_.read<ros2::Ids>(
-        settings_.tracked(), Profile::sensor,
+        settings_.tracked, Profile::sensor,
         [this](const ros2::Ids& m, const Receipt& r) { people_.on(m, r.arrival); });
-    bus_.every(from_seconds(1 / settings_.people_rate()), [this](TimePoint now) {
+    bus_.every(from_seconds(1 / settings_.people_rate), [this](TimePoint now) {
       if (const auto seen = people_.observe(tree_, now)) human_out_->publish(*seen);
     });
   }
-  if (settings_.objects_size() > 0) {
+  if (!settings_.objects.empty()) {
     object_out_ = bus_.advertise<ObjectObservation>();
-    bus_.every(from_seconds(1 / settings_.objects_rate()), [this](TimePoint now) {
+    bus_.every(from_seconds(1 / settings_.objects_rate), [this](TimePoint now) {
       if (const auto seen = objects_.observe(tree_, now)) object_out_->publish(*seen);
     });
   }
@@ -88,14 +75,14 @@ void Node::on(const ros2::Transforms& message, TimePoint arrival, bool is_static
 }
 
 void Node::open_robot(const NodeContext& context) {
-  if (settings_.robot_in().empty()) return;
+  if (settings_.robot_in.empty()) return;
   if (!context.scenario.empty()) {
     config::Scenario scenario;
     load_text_proto(context.scenario, scenario);
     joints_.set_base(to_pose(scenario.base()));
   }
   robot_out_ = bus_.advertise<RobotState>();
-  topics_.read<ros2::JointState>(settings_.robot_in(), Profile::sensor,
+  topics_.read<ros2::JointState>(settings_.robot_in, Profile::sensor,
                                  [this](const ros2::JointState& m, const Receipt& r) {
                                    if (const auto state = joints_.on(m, r.arrival, tree_))
                                      robot_out_->publish(*state);
@@ -118,21 +105,21 @@ void Node::open_trajectories() {
 }
 
 void Node::open_outputs() {
-  if (settings_.joint_states_out().empty() && !settings_.tf_out()) return;
+  if (settings_.joint_states_out.empty() && !settings_.tf_out) return;
   bus_.subscribe<RobotState>(
       [this](const RobotState& m, const Receipt&) { output_.on(m); },
-      {from_seconds(1 / std::max(settings_.joint_states_rate(), settings_.tf_rate()))});
-  if (!settings_.joint_states_out().empty()) {
-    joints_out_ = topics_.write<ros2::JointState>(settings_.joint_states_out(), Profile::goal);
-    bus_.every(from_seconds(1 / settings_.joint_states_rate()), [this](TimePoint) {
+      {from_seconds(1 / std::max(settings_.joint_states_rate, settings_.tf_rate))});
+  if (!settings_.joint_states_out.empty()) {
+    joints_out_ = topics_.write<ros2::JointState>(settings_.joint_states_out, Profile::goal);
+    bus_.every(from_seconds(1 / settings_.joint_states_rate), [this](TimePoint) {
       if (const auto joints = output_.joints()) joints_out_->publish(*joints);
     });
   }
-  if (settings_.tf_out()) {
-    frames_out_ = topics_.write<ros2::Transforms>(settings_.tf(), Profile::goal);
+  if (settings_.tf_out) {
+    frames_out_ = topics_.write<ros2::Transforms>(settings_.tf, Profile::goal);
     conflicts_.set_own(output_.link_parents());
     bus_.subscribe<Scene>([this](const Scene& m, const Receipt&) { output_.on(m); });
-    bus_.every(from_seconds(1 / settings_.tf_rate()), [this](TimePoint) {
+    bus_.every(from_seconds(1 / settings_.tf_rate), [this](TimePoint) {
       if (const ros2::Transforms out = output_.frames(); !out.transforms.empty())
         frames_out_->publish(out);
     });

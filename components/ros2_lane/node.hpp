@@ -31,7 +31,7 @@ class Node {
   void on(const ros2::Transforms&, TimePoint arrival, bool is_static);
 
   Bus& bus_;
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   RosTopics topics_;
   TfTree tree_;

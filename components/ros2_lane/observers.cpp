@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "common/model/description/description_parts.hpp"
 #include "common/model/human/human_body.hpp"
 
 namespace handsel::ros2_lane {
@@ -11,6 +10,8 @@ namespace {
 constexpr std::size_t kMostBodies = 256;  // as an observation holds; SPARK tracks the nearest
 constexpr std::size_t kFewestJoints = 3;  // frames of robots may be called alike: "head_tilt" alone is no body
 constexpr double kListAge = 2.0;          // [s] a list of tracked bodies counts
+
+Vector3 corner(const settings::Vec3& p) { return {p.x, p.y, p.z}; }
 
 }  // namespace
 
@@ -36,9 +37,9 @@ void PeopleObserver::on(const ros2::Ids& ids, TimePoint arrival) {
 
 std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, TimePoint now) {
   HumanObservation out;
-  out.source = settings_.people_source();
-  out.coverage = {to_vector(settings_.coverage_low()), to_vector(settings_.coverage_high())};
-  const Duration age = from_seconds(settings_.people_age());
+  out.source = settings_.people_source;
+  out.coverage = {corner(settings_.coverage_low), corner(settings_.coverage_high)};
+  const Duration age = from_seconds(settings_.people_age);
   const bool listed = tracked_ && to_seconds(now - tracked_at_) <= kListAge;
   for (auto body = bodies_.begin(); body != bodies_.end();) {
     const auto& [id, joints] = *body;
@@ -46,7 +47,7 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
     person.body = id;
     bool fresh = false;
     for (const std::string& joint : joints) {
-      const auto place = tree.find(joint + "_" + id, settings_.world_frame());
+      const auto place = tree.find(joint + "_" + id, settings_.world_frame);
       if (!place || now - place->arrival > age) continue;
       fresh = true;
       const bool shoulders = joint == "torso";  // of ROS4HRI
@@ -69,13 +70,13 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
 
 std::optional<ObjectObservation> ObjectsObserver::observe(const TfTree& tree, TimePoint now) const {
   ObjectObservation out;
-  out.source = settings_.objects_source();
-  for (const config::ObjectFrame& frame : settings_.objects()) {
-    const auto place = tree.find(frame.frame(), settings_.world_frame());
-    if (!place || now - place->arrival > from_seconds(settings_.people_age())) continue;
+  out.source = settings_.objects_source;
+  for (const settings::ObjectFrame& frame : settings_.objects) {
+    const auto place = tree.find(frame.frame, settings_.world_frame);
+    if (!place || now - place->arrival > from_seconds(settings_.people_age)) continue;
     ObservedObject object;
-    object.id = frame.id().empty() ? frame.frame() : frame.id();
-    object.model = frame.model();
+    object.id = frame.id.empty() ? frame.frame : frame.id;
+    object.model = frame.model;
     object.T_world_object = place->T_root_frame;
     object.confidence = 1;
     out.objects.push_back(std::move(object));

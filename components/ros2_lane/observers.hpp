@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/schema/ros2_lane.pb.h"
+#include "common/config/settings/ros2_lane.hpp"
 #include "common/messages/perception.hpp"
 #include "components/ros2_lane/tf_tree.hpp"
 
@@ -25,7 +25,7 @@ std::optional<BodyFrame> body_frame(const std::string& frame);
 /// Bodies are those with frames lately; where a list of tracked ids has come, those on it.
 class PeopleObserver {
  public:
-  explicit PeopleObserver(const config::Ros2LaneSettings& settings) : settings_(settings) {}
+  explicit PeopleObserver(const settings::Ros2LaneSettings& settings) : settings_(settings) {}
 
   /// Notes that a joint of a body has a frame; others, and bodies beyond 256, are left out.
   void on(const ros2::Transform&);
@@ -36,7 +36,7 @@ class PeopleObserver {
   std::optional<HumanObservation> observe(const TfTree& tree, TimePoint now);
 
  private:
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   std::map<std::string, std::set<std::string>> bodies_;  // id -> joints that have a frame
   std::optional<std::set<std::string>> tracked_;
   TimePoint tracked_at_{};
@@ -45,13 +45,13 @@ class PeopleObserver {
 
 class ObjectsObserver {
  public:
-  explicit ObjectsObserver(const config::Ros2LaneSettings& settings) : settings_(settings) {}
+  explicit ObjectsObserver(const settings::Ros2LaneSettings& settings) : settings_(settings) {}
   /// Returns the objects of the settings whose frame came within people_age, in the world frame;
   /// nullopt when there are none.
   std::optional<ObjectObservation> observe(const TfTree& tree, TimePoint now) const;
 
  private:
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
 };
 
 }  // namespace handsel::ros2_lane

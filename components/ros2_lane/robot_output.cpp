@@ -15,11 +15,11 @@ std::optional<ros2::JointState> RobotOutput::joints() const {
 
 ros2::Transforms RobotOutput::frames() const {
   ros2::Transforms out;
-  if (state_) add_links(robot_, *state_, settings_.world_frame(), out.transforms);
+  if (state_) add_links(robot_, *state_, settings_.world_frame, out.transforms);
   if (scene_)
     for (const SceneObject& object : scene_->objects)
-      out.transforms.push_back({scene_->stamp, settings_.world_frame(),
-                                settings_.object_prefix() + object.id, object.T_world_object});
+      out.transforms.push_back({scene_->stamp, settings_.world_frame,
+                                settings_.object_prefix + object.id, object.T_world_object});
   return out;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/config/schema/ros2_lane.pb.h"
+#include "common/config/settings/ros2_lane.hpp"
 #include "common/messages/robot.hpp"
 #include "common/messages/ros2.hpp"
 #include "common/messages/world.hpp"
@@ -17,7 +17,7 @@ namespace handsel::ros2_lane {
 class RobotOutput {
  public:
   /// `robot` must outlive this.
-  RobotOutput(const RobotModel& robot, const config::Ros2LaneSettings& settings)
+  RobotOutput(const RobotModel& robot, const settings::Ros2LaneSettings& settings)
       : robot_(robot), settings_(settings) {}
 
   /// Takes the newest state; that of another robot is left out.
@@ -33,7 +33,7 @@ class RobotOutput {
 
  private:
   const RobotModel& robot_;
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   std::optional<RobotState> state_;
   std::optional<Scene> scene_;
 };

@@ -12,7 +12,7 @@ constexpr double kMinSpeedScale = 0.02;  // of the comfort velocities
 
 }  // namespace
 
-TrajectoryExecutor::TrajectoryExecutor(const config::Ros2LaneSettings& settings,
+TrajectoryExecutor::TrajectoryExecutor(const settings::Ros2LaneSettings& settings,
                                        std::shared_ptr<const RobotModel> robot,
                                        std::uint64_t client)
     : settings_(settings),

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/schema/ros2_lane.pb.h"
+#include "common/config/settings/ros2_lane.hpp"
 #include "common/messages/execution.hpp"
 #include "common/messages/ros2.hpp"
 #include "common/messages/task.hpp"
@@ -34,7 +34,7 @@ struct TrajectoryOutbox {
 class TrajectoryExecutor {
  public:
   /// `client`: unique over the system and its restarts, grows.
-  TrajectoryExecutor(const config::Ros2LaneSettings& settings,
+  TrajectoryExecutor(const settings::Ros2LaneSettings& settings,
                      std::shared_ptr<const RobotModel> robot, std::uint64_t client);
 
   /// Begins the motion asked for, or refuses it with a sentence in `out`; without points stops the
@@ -63,7 +63,7 @@ class TrajectoryExecutor {
   void hand_over(TrajectoryOutbox& out);
   void follow(TrajectoryOutbox& out);
 
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   std::shared_ptr<const RobotModel> robot_;
   const Group& arm_;
   std::uint64_t client_, number_{0}, commands_;

@@ -5,7 +5,7 @@
 namespace handsel::ros2_lane {
 
 TrajectoryLink::TrajectoryLink(Bus& bus, RosTopics& topics,
-                               const config::Ros2LaneSettings& settings,
+                               const settings::Ros2LaneSettings& settings,
                                std::shared_ptr<const RobotModel> robot, std::uint64_t client)
     : bus_(bus),
       topics_(topics),
@@ -13,11 +13,11 @@ TrajectoryLink::TrajectoryLink(Bus& bus, RosTopics& topics,
       executor_(settings, std::move(robot), client) {}
 
 void TrajectoryLink::open() {
-  if (settings_.trajectory_in().empty()) return;
+  if (settings_.trajectory_in.empty()) return;
   query_out_ = bus_.advertise<StateQuery>();
   request_out_ = bus_.advertise<TrajectoryRequest>();
-  if (!settings_.trajectory_result().empty())
-    result_out_ = topics_.write<ros2::Text>(settings_.trajectory_result(), Profile::goal);
+  if (!settings_.trajectory_result.empty())
+    result_out_ = topics_.write<ros2::Text>(settings_.trajectory_result, Profile::goal);
   bus_.subscribe<ActionStatus>([this](const ActionStatus& m, const Receipt&) { executor_.on(m); });
   bus_.subscribe<ExecutionStatus>(
       [this](const ExecutionStatus& m, const Receipt&) { executor_.on(m); });
@@ -26,7 +26,7 @@ void TrajectoryLink::open() {
   bus_.subscribe<StateVerdict>([this](const StateVerdict& m, const Receipt&) { executor_.on(m); });
   bus_.subscribe<TrajectoryReply>(
       [this](const TrajectoryReply& m, const Receipt&) { executor_.on(m); });
-  topics_.read<ros2::JointTrajectory>(settings_.trajectory_in(), Profile::goal,
+  topics_.read<ros2::JointTrajectory>(settings_.trajectory_in, Profile::goal,
                                       [this](const ros2::JointTrajectory& m, const Receipt& r) {
                                         TrajectoryOutbox out;
                                         executor_.on(m, r.arrival, out);

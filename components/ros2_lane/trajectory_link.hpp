@@ -14,7 +14,7 @@ namespace handsel::ros2_lane {
 class TrajectoryLink {
  public:
   /// `bus` and `topics` must outlive this; `client` as for TrajectoryExecutor.
-  TrajectoryLink(Bus& bus, RosTopics& topics, const config::Ros2LaneSettings& settings,
+  TrajectoryLink(Bus& bus, RosTopics& topics, const settings::Ros2LaneSettings& settings,
                  std::shared_ptr<const RobotModel> robot, std::uint64_t client);
 
   /// Subscribes and advertises; nothing where the settings name no topic of trajectories.
@@ -29,7 +29,7 @@ class TrajectoryLink {
 
   Bus& bus_;
   RosTopics& topics_;
-  config::Ros2LaneSettings settings_;
+  settings::Ros2LaneSettings settings_;
   TrajectoryExecutor executor_;
   RecentReport refusal_;
   std::unique_ptr<Publisher<StateQuery>> query_out_;

@@ -3,35 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/resources.hpp"
-#include "common/config/schema/trajectory_planner.pb.h"
+#include "common/config/settings/trajectory_planner.hpp"
 #include "common/cost/cost_settings.hpp"
 #include "common/model/platform.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
-
-config::TrajectoryPlannerSettings load(const NodeContext& context) {
-  config::TrajectoryPlannerSettings s;
-  load_text_proto(context.settings / "trajectory_planner.txtpb", s);
-  for (const auto& [key, value] : {std::pair{"corner_step", s.corner_step()},
-                                   {"cost_step", s.cost_step()},
-                                   {"max_scene_age", s.max_scene_age()},
-                                   {"check_time", s.check_time()},
-                                   {"concern_radius", s.concern_radius()},
-                                   {"approach_speed", s.approach_speed()},
-                                   {"unseen_angle", s.unseen_angle()},
-                                   {"tool_speed", s.tool_speed()},
-                                   {"tool_turn_speed", s.tool_turn_speed()}})
-    if (!(value > 0)) throw ConfigError(std::string("trajectory_planner.txtpb: ") + key + " must be > 0");
-  for (const auto& [key, value] : {std::pair{"least_speed_factor", s.least_speed_factor()},
-                                   {"approach_factor", s.approach_factor()},
-                                   {"unseen_factor", s.unseen_factor()}})
-    if (!(value > 0 && value <= 1)) throw ConfigError(std::string("trajectory_planner.txtpb: ") + key + " must be in (0, 1]");
-  if (!(s.allowed_excess() >= 0 && s.allowed_excess() <= 0.1))
-    throw ConfigError("trajectory_planner.txtpb: allowed_excess must be in [0, 0.1]");
-  return s;
-}
 
 constexpr double kLevel = 0.02;  // a platform that leans more does not stand level [rad]
 constexpr Duration kLayerWatch = std::chrono::milliseconds(200);
@@ -48,20 +25,20 @@ Node::Node(Bus& bus, const NodeContext& context)
       world_(*context.robot, context.objects),
       cost_(*context.robot, weights_) {
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
-  const config::TrajectoryPlannerSettings file = load(context);
-  settings_.corner_step = file.corner_step();
-  settings_.speed = {file.cost_step(),       file.least_speed_factor(), file.concern_radius(), file.approach_speed(),
-                     file.approach_factor(), file.unseen_angle(),       file.unseen_factor()};
-  settings_.tool.allowed_excess = file.allowed_excess();
+  const auto file = settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
+  settings_.corner_step = file.corner_step;
+  settings_.speed = {file.cost_step,       file.least_speed_factor, file.concern_radius, file.approach_speed,
+                     file.approach_factor, file.unseen_angle,       file.unseen_factor};
+  settings_.tool.allowed_excess = file.allowed_excess;
   const auto sped = [](RateBounds& bounds, double velocity) {
     const double share = velocity / bounds.velocity;
     bounds = {velocity, share * bounds.acceleration, share * bounds.jerk};
   };
-  sped(settings_.tool.translation, file.tool_speed());
-  sped(settings_.tool.rotation, file.tool_turn_speed());
-  sped(settings_.tool.elbow, file.tool_turn_speed());
-  max_scene_age_ = from_seconds(file.max_scene_age());
-  check_time_ = from_seconds(file.check_time());
+  sped(settings_.tool.translation, file.tool_speed);
+  sped(settings_.tool.rotation, file.tool_turn_speed);
+  sped(settings_.tool.elbow, file.tool_turn_speed);
+  max_scene_age_ = from_seconds(file.max_scene_age);
+  check_time_ = from_seconds(file.check_time);
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(

@@ -2,77 +2,66 @@
 
 #include <algorithm>
 
-#include "common/config/resources.hpp"
-#include "common/config/schema/driver.pb.h"
-#include "common/config/schema/trajectory_controller.pb.h"
+#include "common/config/settings/driver.hpp"
+#include "common/config/settings/trajectory_controller.hpp"
+#include "common/config/settings_text.hpp"
 
 namespace handsel::drivers {
 
 namespace {
 
-class File {
- public:
-  File(const std::filesystem::path& file, google::protobuf::Message& out) : file_(file) { load_text_proto(file, out); }
-  double in(double value, const char* key, double low, double high) const {
-    if (value >= low && value <= high) return value;
-    fail(key, "must be given, in [" + std::to_string(low) + ", " + std::to_string(high) + "]");
-  }
-  [[noreturn]] void fail(const char* key, const std::string& what) const {
-    throw ConfigError(locate(file_, std::string(key) + ":") + ": " + key + " " + what);
-  }
-
- private:
-  std::filesystem::path file_;
-};
-
-constexpr double kTiny = 1e-6;
-
-Place read_common(const std::filesystem::path& folder, const File& file, const RobotModel& robot, const config::DriverCommon& in,
+Place read_common(const std::filesystem::path& folder, const RobotModel& robot, const settings::DriverCommon& in, const TextPlace& place,
                   DriverSettings& out) {
-  out.dry_run = in.dry_run();
-  out.watch.max_ahead = file.in(in.wire_jitter(), "wire_jitter", 0.0, 0.1);
-  out.fade_fraction = file.in(in.fade_share(), "fade_share", 0.01, 1.0);
-  out.watch.min_stop = file.in(in.min_stop(), "min_stop", 0.1, 60.0);
-  config::TrajectoryControllerSettings controller;
-  out.watch.period = File(folder / "trajectory_controller.txtpb", controller).in(controller.period(), "period", kTiny, 0.02);
-  out.watch.max_gap = file.in(in.max_setpoint_gap(), "max_setpoint_gap", 0.001, 1.0);
-  out.T_world_base = Eigen::Translation3d(in.base_x(), in.base_y(), in.base_z()) * Eigen::AngleAxisd(in.base_yaw(), Vector3::UnitZ());
-  const Group* group = robot.group(in.group());
-  if (group == nullptr) file.fail("group", "names \"" + in.group() + "\", which robot " + robot.name() + " does not have");
-  return {static_cast<int>(file.in(in.port(), "port", 1, 65535)), group->axes};
+  const auto controller = settings::read_trajectory_controller_settings(folder / "trajectory_controller.txtpb");
+  out.dry_run = in.dry_run;
+  out.watch.max_ahead = in.wire_jitter;
+  out.fade_fraction = in.fade_share;
+  out.watch.min_stop = in.min_stop;
+  out.watch.period = controller.period;
+  out.watch.max_gap = in.max_setpoint_gap;
+  out.T_world_base = Eigen::Translation3d(in.base_x, in.base_y, in.base_z) * Eigen::AngleAxisd(in.base_yaw, Vector3::UnitZ());
+  const Group* group = robot.group(in.group);
+  if (group == nullptr)
+    throw ConfigError(place.of("group") + ": names \"" + in.group + "\", which robot " + robot.name() + " does not have");
+  return {in.port, group->axes};
+}
+
+void read_gripper(const settings::GripperSettings& in, const RobotModel& robot, const TextPlace& place, GripperSettings& out) {
+  constexpr double kMinTravel = 1e-6;  // [m or rad]
+  const auto refuse = [&](const char* key, const std::string& sentence) { throw ConfigError(place.of(key) + ": " + sentence); };
+  const auto it = std::find_if(robot.axes().begin(), robot.axes().end(), [&](const Axis& a) { return a.name == in.axis; });
+  if (it == robot.axes().end()) refuse("axis", "names \"" + in.axis + "\", which robot " + robot.name() + " does not have");
+  if (!(std::abs(in.open - in.closed) > kMinTravel)) refuse("open", "must differ from closed");
+  if (!(in.closed_width <= in.open_width - kMinTravel)) refuse("closed_width", "must be below open_width");
+  if (!(in.most_force >= in.least_force)) refuse("most_force", "must be at least least_force");
+  out.axis = static_cast<int>(it - robot.axes().begin());
+  out.open = in.open;
+  out.closed = in.closed;
+  out.open_width = in.open_width;
+  out.closed_width = in.closed_width;
+  out.speed = in.speed;
+  out.stiffness = in.stiffness;
+  out.min_force = in.least_force;
+  out.max_force = in.most_force;
 }
 
 }  // namespace
 
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, PositionSettings& out) {
-  config::PositionArmSettings in;
-  const File file(folder / "position_arm.txtpb", in);
-  out.cycle = file.in(in.cycle(), "cycle", 0.001, 0.01);
-  return read_common(folder, file, robot, in.common(), out.common);
+  SettingsText text;
+  const auto in = settings::read_position_arm_settings(folder / "position_arm.txtpb", &text);
+  out.cycle = in.cycle;
+  return read_common(folder, robot, in.common, text.root().inside("common"), out.common);
 }
 
 Place load_settings(const std::filesystem::path& folder, const RobotModel& robot, ReflexSettings& out) {
-  config::ReflexArmSettings in;
-  const File file(folder / "reflex_arm.txtpb", in);
-  out.joint_deceleration = file.in(in.joint_deceleration(), "joint_deceleration", kTiny, 1000.0);
-  out.limit_ratio = file.in(in.limit_share(), "limit_share", 0.1, 1.0);
-  out.lost_cycles = static_cast<int>(file.in(in.lost_cycles(), "lost_cycles", 1, 1000));
-  if (in.has_gripper()) {
-    const config::GripperSettings& g = in.gripper();
-    const auto it = std::find_if(robot.axes().begin(), robot.axes().end(), [&](const Axis& a) { return a.name == g.axis(); });
-    if (it == robot.axes().end()) file.fail("axis", "names \"" + g.axis() + "\", which robot " + robot.name() + " does not have");
-    out.gripper.axis = static_cast<int>(it - robot.axes().begin());
-    out.gripper.open = g.open();
-    out.gripper.closed = g.closed();
-    if (!(std::abs(g.open() - g.closed()) > kTiny)) file.fail("open", "must differ from closed");
-    out.gripper.open_width = file.in(g.open_width(), "open_width", kTiny, 1.0);
-    out.gripper.closed_width = file.in(g.closed_width(), "closed_width", 0.0, out.gripper.open_width - kTiny);
-    out.gripper.speed = file.in(g.speed(), "speed", kTiny, 1.0);
-    out.gripper.stiffness = file.in(g.stiffness(), "stiffness", kTiny, 1e6);
-    out.gripper.min_force = file.in(g.least_force(), "least_force", 0.0, 1000.0);
-    out.gripper.max_force = file.in(g.most_force(), "most_force", out.gripper.min_force, 1000.0);
-  }
-  return read_common(folder, file, robot, in.common(), out.common);
+  SettingsText text;
+  const auto in = settings::read_reflex_arm_settings(folder / "reflex_arm.txtpb", &text);
+  out.joint_deceleration = in.joint_deceleration;
+  out.limit_ratio = in.limit_share;
+  out.lost_cycles = in.lost_cycles;
+  if (in.gripper) read_gripper(*in.gripper, robot, text.root().inside("gripper"), out.gripper);
+  return read_common(folder, robot, in.common, text.root().inside("common"), out.common);
 }
 
 }  // namespace handsel::drivers

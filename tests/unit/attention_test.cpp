@@ -35,6 +35,9 @@ void move(Person& p, const Vector3& by, const Vector3& velocity) {
 
 AttentionSettings settings(ClockLaw law = ClockLaw::linear) {
   AttentionSettings s;
+  s.motor.partner_slow = 0.40;
+  s.motor.hand_near = 0.30;
+  s.motor.hand_factor = 0.25;
   const auto add = [&](Behaviour b, double p_min, double p_max, double near, double far) {
     s.behaviours.push_back({b, {law, p_min, p_max, near, far, 1.0}});
   };

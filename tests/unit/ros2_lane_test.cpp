@@ -304,9 +304,9 @@ class Executor : public testing::Test {
   Executor() {
     setenv("HANDSEL_HOME", HANDSEL_SOURCE_DIR "/deploy", 1);
     robot = load_context("jido").robot;
-    config::Ros2LaneSettings settings;
-    settings.set_start_tolerance(0.05);
-    settings.set_check_step(0.05);
+    settings::Ros2LaneSettings settings;
+    settings.start_tolerance = 0.05;
+    settings.check_step = 0.05;
     executor.emplace(settings, robot, 1000);
     active.robot = robot->name();
     active.position = robot->rest_configuration();

@@ -54,7 +54,6 @@ void add_components(BadFiles& table) {
       .key("human_period", "0", "is 0, must be")
       .key("joint_noise", "-1", "is -1, must be")
       .key("lost_speed", "1e400", "is inf, must be")
-      .text("empty", "", "publish_period")
       .text("unknown_key", "speed: 1\n", "spark.txtpb:1")
       .text("binary", std::string("\0\377\1", 3), "spark.txtpb:1")
       .missing();
@@ -68,8 +67,8 @@ void add_components(BadFiles& table) {
   Settings(table, "trajectory_controller", "trajectory_controller.txtpb")
       .key("period", "nan", "is nan, must be")
       .key("late_limit", "1.5", "Expected integer")
-      .key("recoil_limit", "2", "recoil_limit must be given, in [0")
-      .text("empty", "", "period must be given")
+      .key("recoil_limit", "2", "is 2, must be a number in [0, 1]")
+      .text("empty", "", "view: must be given")
       .missing();
   Settings(table, "path_planner", "path_planner.txtpb")
       .key("step", "inf", "is inf, must be")
@@ -95,7 +94,7 @@ void add_components(BadFiles& table) {
   Settings(table, "attention", "attention.txtpb")
       .key("tick", "nan", "is nan, must be")
       .key("contact_zone", "9", "the zones must grow")
-      .key("gaze_advantage", "1.01", "gaze_advantage must be in [0");
+      .key("gaze_advantage", "1.01", "is 1.01, must be a number in [0, 1]");
   Settings(table, "bridge", "bridge.txtpb")
       .key("port", "70000", "is 70000, must be")
       .key("rate", "nan", "is nan, must be")
@@ -104,7 +103,7 @@ void add_components(BadFiles& table) {
       .key("step", "1", "is 1, must be")
       .key("position_noise", "nan", "is nan, must be")
       .key("solver_iterations", "2000000000", "is 2e+09, must be");
-  Settings(table, "ros2_lane", "ros2_lane.txtpb").key("people_rate", "nan", "is nan, must be").key("tf_rate", "900", "tf_rate must be");
+  Settings(table, "ros2_lane", "ros2_lane.txtpb").key("people_rate", "nan", "is nan, must be").key("tf_rate", "900", "is 900, must be");
   Settings(table, "position_arm", "position_arm.txtpb").key("cycle", "nan", "is nan, must be");
   Settings(table, "reflex_arm", "reflex_arm.txtpb").key("joint_deceleration", "inf", "is inf, must be");
 }
@@ -122,7 +121,7 @@ void add_companions(BadFiles& table) {
   Settings(table, "spark", "people.txtpb")
       .text("height_nan", "people { id: \"a\" height: nan }\n", "people.txtpb:1:height: is nan")
       .text("person_twice", "people { id: \"a\" }\npeople { id: \"a\" }\n", "two profiles")
-      .text("giant", "people { id: \"a\" height: 17 }\n", "must be 0 (as it is seen) or in");
+      .text("giant", "people { id: \"a\" height: 17 }\n", "is 17, must be a number in [0, 2.5]");
   Settings(table, "supervisor", "tasks.txtpb")
       .text("tasks_binary", std::string("\1\2\3", 3), "tasks.txtpb:1")
       .text("cost_nan", "tasks { name: \"t\" methods { cost: nan } }\n", "tasks.txtpb:1:cost: is nan")

@@ -129,10 +129,9 @@ TEST(LauncherSettings, are_read_and_each_bad_value_is_refused_with_file_line_and
   const std::vector<std::string> keys{"hung_after",    "silent_job_after", "start_patience",
                                       "first_backoff", "longest_backoff",  "stable_after"};
   for (const std::string& wrong : keys) {
-    for (const std::string value : {"nan", "inf", "-1", "0", "1e9", ""}) {
+    for (const std::string value : {"nan", "inf", "-1", "0", "1e9"}) {
       std::string text;
-      for (const std::string& key : keys)
-        if (key != wrong || !value.empty()) text += key + ": " + (key == wrong ? value : "5.0") + "\n";
+      for (const std::string& key : keys) text += key + ": " + (key == wrong ? value : "5.0") + "\n";
       std::ofstream(file) << text;
       try {
         load_launcher_settings(file);

@@ -1,0 +1,103 @@
+#include "common/config/parse_error.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <regex>
+#include <vector>
+
+#include "common/config/text_check.hpp"
+
+namespace handsel {
+namespace {
+
+constexpr std::size_t kMaxKey = 60;         // [bytes] shown of a key
+constexpr std::size_t kMaxSentence = 300;   // [bytes] the parser quotes a wrong word whole
+constexpr std::size_t kMaxLookBack = 1000;  // [bytes] searched for the key before a wrong value
+
+/// Returns how many letters must be changed, added or left out between two words.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t replaced = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({replaced, diagonal + 1, row[k] + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_key(const std::string& key, const google::protobuf::Descriptor& type) {
+  std::string nearest;
+  std::size_t least = std::string::npos;
+  for (int i = 0; i < type.field_count(); ++i) {
+    const std::size_t distance = edit_distance(key, type.field(i)->name());
+    if (distance >= least) continue;
+    least = distance;
+    nearest = type.field(i)->name();
+  }
+  return nearest;
+}
+
+std::string line_of(const std::string& text, int line) {
+  std::size_t begin = 0;
+  for (int i = 0; i < line && begin != std::string::npos; ++i) {
+    begin = text.find('\n', begin);
+    if (begin != std::string::npos) ++begin;
+  }
+  if (begin == std::string::npos) return {};
+  return text.substr(begin, text.find('\n', begin) - begin);
+}
+
+/// Returns the key that a wrong value belongs to; empty: not known.
+std::string key_before(const std::string& line, std::size_t column) {
+  const std::size_t end = std::min(column, line.size());
+  const std::size_t begin = end > kMaxLookBack ? end - kMaxLookBack : 0;
+  static const std::regex last_key(R"(([A-Za-z_]\w*)\s*:?[^A-Za-z_]*$)");
+  std::smatch match;
+  const std::string before = line.substr(begin, end - begin);
+  if (!std::regex_search(before, match, last_key)) return {};
+  return match[1];
+}
+
+/// Returns the word in quotation marks after `before`; empty: there is none.
+std::string quoted(const std::string& message, const std::string& before) {
+  const std::size_t at = message.find(before + "\"");
+  if (at == std::string::npos) return {};
+  const std::size_t begin = at + before.size() + 1;
+  return message.substr(begin, message.find('"', begin) - begin);
+}
+
+}  // namespace
+
+void FirstError::AddError(int line, google::protobuf::io::ColumnNumber column,
+                          const std::string& message) {
+  if (!message_.empty()) return;
+  line_ = line;
+  column_ = column;
+  message_ = message;
+}
+
+std::string FirstError::explain(const std::string& text,
+                                const google::protobuf::Descriptor& root) const {
+  const std::string sentence = printable(message_, kMaxSentence);
+  if (line_ < 0) return " " + sentence;
+  const std::string line = std::to_string(line_ + 1) + ":";
+  if (const std::string key = quoted(message_, "has no field named "); !key.empty()) {
+    const std::string shown = printable(key, kMaxKey);
+    const auto* type =
+        root.file()->pool()->FindMessageTypeByName(quoted(message_, "Message type "));
+    if (type == nullptr || type->field_count() == 0) return line + shown + ": is no key here";
+    return line + shown + ": is no key of " + type->name() + "; the nearest is \"" +
+           nearest_key(shown, *type) + "\"";
+  }
+  std::string key = quoted(message_, "field ");
+  if (key.empty()) key = key_before(line_of(text, line_), static_cast<std::size_t>(column_));
+  if (key.empty()) return line + std::to_string(column_ + 1) + ": " + sentence;
+  return line + printable(key, kMaxKey) + ": " + sentence;
+}
+
+}  // namespace handsel
