@@ -244,7 +244,7 @@ struct SimWorld::Impl {
 
     people->volumes(tool_state(hands.front()).T_world_body.translation(), person_volumes);
     near = separations.separation(*robot, person_volumes);
-    least_separation = std::min(least_separation, near.distance);
+    min_separation = std::min(min_separation, near.distance);
     if (near.link >= 0 && near.distance < 0.5) {
       const Vector3 n = (near.on_person - near.on_robot).stableNormalized();
       const Vector3 v = robot->point_velocity(robot->body_of(near.link), near.on_robot) - near.person_velocity;
@@ -489,7 +489,7 @@ struct SimWorld::Impl {
   SeparationOracle separations;
   std::unique_ptr<HandoverOracle> handover;
   TrueSeparation near{std::numeric_limits<double>::infinity(), -1, Vector3::Zero(), Vector3::Zero(), Vector3::Zero()};
-  double least_separation{std::numeric_limits<double>::infinity()};
+  double min_separation{std::numeric_limits<double>::infinity()};
   PeakSpeed closing;
   std::uint64_t collisions{0}, ssm_violations{0};
   std::string last_collision;
@@ -581,13 +581,13 @@ void SimWorld::ground_truth(GroundTruth& out) const {
     out.constraint_time = w.constraint_time;
   }
   out.separation = w.near.distance;
-  out.least_separation = w.least_separation;
+  out.min_separation = w.min_separation;
   out.ssm_violations = w.ssm_violations;
   out.peak_closing_speed = w.closing.peak();
   out.contact_force = w.hands.front().measured.largest_contact();
-  out.limit_share_velocity = w.limits.ratio_velocity();
-  out.limit_share_acceleration = w.limits.ratio_acceleration();
-  out.limit_share_jerk = w.limits.ratio_jerk();
+  out.limit_ratio_velocity = w.limits.ratio_velocity();
+  out.limit_ratio_acceleration = w.limits.ratio_acceleration();
+  out.limit_ratio_jerk = w.limits.ratio_jerk();
   out.limit_violations = w.limits.violations();
   out.self_or_scene_collisions = w.collisions;
   out.commanders = w.limits.writers();

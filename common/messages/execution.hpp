@@ -131,7 +131,7 @@ struct ExecutionStatus {
   std::string reason;                         ///< of the last refusal, or of slowing, one sentence
   std::uint64_t cycles{}, late_cycles{};      ///< control cycles; later than one period
   /// Largest |.| sent so far / guard limit.
-  double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};
+  double limit_ratio_velocity{}, limit_ratio_acceleration{}, limit_ratio_jerk{};
   double separation{1e9};  ///< to the nearest person, without exempt parts [m]; 1e9: nobody
   /// Required by speed and separation monitoring there at the present speed [m].
   double separation_limit{};

@@ -69,11 +69,11 @@ inline constexpr const char* kActionPhaseTexts[] = {
     "choosing the exchange point", "choosing a place", "looking for the object",
     "looking ahead to the exchange", "waiting for the scene",
     "waiting for somebody to come within reach", "watching for an offer",
-    "waiting for somebody to let go", "planning", "approach", "approach with the other hand",
+    "waiting for release", "planning", "approach", "approach with the other hand",
     "reaching the object", "opening the hand", "opening the other hand", "grasp", "lift",
-    "carry", "carry to the other hand", "offer", "put down", "put back", "letting go",
-    "letting go with the first hand", "retreat", "backing off", "stepping back", "drawing back",
-    "making room", "to rest"};
+    "carry", "carry to the other hand", "offer", "put down", "put back", "release",
+    "release with the first hand", "retreat", "backing off", "stepping back", "retreat from a person",
+    "clear the offer area", "to rest"};
 inline constexpr const char* kActionFailureNames[] = {
     "none", "other", "no_answer", "timed_out", "not_permitted", "nothing_grasped", "left_behind",
     "not_visible", "not_taken", "cancelled"};

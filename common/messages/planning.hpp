@@ -60,7 +60,7 @@ struct PathRequest {
   bool upright{};    ///< `upright_axis` keeps a bounded angle to up everywhere on the path
   /// Unit vector, tool frame; received as +x where `upright` is false.
   Vector3 upright_axis{Vector3::UnitZ()};
-  double most_tilt{};     ///< largest angle of that axis to up, [0, 3.1416] [rad]
+  double max_tilt{};     ///< largest angle of that axis to up, [0, 3.1416] [rad]
   Attachment attachment;  ///< what the hand holds on the path
   /// Scene objects the hand may touch (the one to be grasped), and people whose hands and forearms
   /// are no obstacle because the exchange with them is engaged. The same meaning wherever this
@@ -130,7 +130,7 @@ struct TrajectoryRequest {
   std::vector<std::uint32_t> also;         ///< robot axes that are active besides the arm (hand, head)
   bool upright{};                          ///< as in PathRequest
   Vector3 upright_axis{Vector3::UnitZ()};  ///< unit, tool frame
-  double most_tilt{};                      ///< largest angle of that axis to up, [0, 3.1416] [rad]
+  double max_tilt{};                      ///< largest angle of that axis to up, [0, 3.1416] [rad]
   /// Arm whose tip is rigidly joined to the group's (two hands on one object); empty: none.
   std::string follower{};
   Pose T_tip_follower{Pose::Identity()};  ///< tip of the follower in the frame of the group's tip
@@ -199,7 +199,7 @@ struct GraspRequest {
   /// The object is to be put down again: the grasp must be reachable at `T_world_goal` too.
   bool has_goal{};
   Pose T_world_goal{Pose::Identity()};  ///< pose of the object at the end
-  double least_visible{};               ///< lower bound of Grasp::visible, [0, 1]
+  double min_visible{};               ///< lower bound of Grasp::visible, [0, 1]
   bool move_platform{};                 ///< platform poses are searched when no grasp is within reach
 };
 

@@ -144,12 +144,12 @@ struct GroundTruth {
   bool handover_done{};  ///< lifted >= 0.10, contact >= 0.2, alone >= 1
   /// Robot to any person [m]; exempt: the exchanging forearm and hand while engaged.
   double separation{};
-  double least_separation{};       ///< smallest `separation` so far [m]; infinity: nobody was there
+  double min_separation{};       ///< smallest `separation` so far [m]; infinity: nobody was there
   std::uint64_t ssm_violations{};  ///< steps with a higher speed toward a person than SSM allows
   double peak_closing_speed{};     ///< of robot and person within 0.5 m [m/s]
   double contact_force{};          ///< largest robot-person contact force so far [N]
   /// Largest |.| of the received set-points so far / limit.
-  double limit_share_velocity{}, limit_share_acceleration{}, limit_share_jerk{};
+  double limit_ratio_velocity{}, limit_ratio_acceleration{}, limit_ratio_jerk{};
   std::uint64_t limit_violations{};          ///< set-points beyond the guard limits so far
   std::uint64_t self_or_scene_collisions{};  ///< steps with an unintended robot contact
   std::uint64_t commanders{};                ///< distinct writers of JointCommand seen

@@ -125,13 +125,13 @@ enum class ActionPhase : std::uint8_t {
   offer,
   put_down,
   put_back,
-  letting_go,
-  letting_go_first_hand,
+  release,
+  release_first_hand,
   retreat,
   backing_off,    ///< after a grasp that failed
   stepping_back,  ///< a giver has approached
-  drawing_back,   ///< a person is too near
-  making_room,    ///< for an offer
+  retreat_from_person,   ///< a person is too near
+  clear_offer_area,    ///< for an offer
   to_rest,
 };
 
@@ -162,7 +162,7 @@ struct ActionStatus {
   bool exchange_engaged{};                  ///< the exchanging forearm and hand are exempt from separation
   Vector3 exchange_point{Vector3::Zero()};  ///< world, valid while kind is give or receive [m]
   /// Until the object changes hands, as foreseen [s].
-  double time_to_exchange{std::numeric_limits<double>::infinity()};
+  double time_to_handover{std::numeric_limits<double>::infinity()};
   ActionFailure failure{};  ///< of a state failed or cancelled
   std::string reason;       ///< of a failure, one sentence
   Refusals refusals;        ///< grasps, paths and places discarded during the action

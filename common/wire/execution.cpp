@@ -74,9 +74,9 @@ void describe(WireIo& io, ExecutionStatus& m, handsel_ExecutionStatus& w) {
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.integer("cycles", m.cycles, w.cycles);
   io.integer("late_cycles", m.late_cycles, w.late_cycles);
-  io.number("limit_share_velocity", m.limit_share_velocity, w.limit_share_velocity, kLimitRatio);
-  io.number("limit_share_acceleration", m.limit_share_acceleration, w.limit_share_acceleration, kLimitRatio);
-  io.number("limit_share_jerk", m.limit_share_jerk, w.limit_share_jerk, kLimitRatio);
+  io.number("limit_ratio_velocity", m.limit_ratio_velocity, w.limit_ratio_velocity, kLimitRatio);
+  io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration, kLimitRatio);
+  io.number("limit_ratio_jerk", m.limit_ratio_jerk, w.limit_ratio_jerk, kLimitRatio);
   io.horizon("separation", m.separation, w.separation, -1e4);
   io.number("separation_limit", m.separation_limit, w.separation_limit, {0, 1e4});
   io.point("nearest_on_robot", m.nearest_on_robot, w.nearest_on_robot);

@@ -60,7 +60,7 @@ void describe(WireIo& io, PathRequest& m, handsel_PathRequest& w) {
   io.vector("also_goal", m.also_goal, w.also_goal, kCoordinate);
   io.flag("upright", m.upright, w.upright);
   io.direction("upright_axis", m.upright_axis, w.upright_axis, m.upright);
-  io.number("most_tilt", m.most_tilt, w.most_tilt, kTurn);
+  io.number("max_tilt", m.max_tilt, w.max_tilt, kTurn);
   io.part("attachment", m.attachment, w.attachment);
   describe_contacts(io, m.allowed_contacts, w.allowed_contacts);
   io.choice("planner", m.planner, w.planner, kPlanners);
@@ -111,7 +111,7 @@ void describe(WireIo& io, TrajectoryRequest& m, handsel_TrajectoryRequest& w) {
   io.indices("also", m.also, w.also, kMaxAxes, kMaxAxes - 1);
   io.flag("upright", m.upright, w.upright);
   io.direction("upright_axis", m.upright_axis, w.upright_axis, m.upright);
-  io.number("most_tilt", m.most_tilt, w.most_tilt, kTurn);
+  io.number("max_tilt", m.max_tilt, w.max_tilt, kTurn);
   io.text("follower", m.follower, w.follower, Text::maybe_empty);
   io.pose("T_tip_follower", m.T_tip_follower, w.T_tip_follower);
   io.check(equally_wide(m.nodes), "nodes", "have different numbers of axes");
@@ -141,7 +141,7 @@ void describe(WireIo& io, GraspRequest& m, handsel_GraspRequest& w) {
   io.text("group", m.group, w.group, Text::maybe_empty);
   io.flag("has_goal", m.has_goal, w.has_goal);
   io.pose("T_world_goal", m.T_world_goal, w.T_world_goal);
-  io.number("least_visible", m.least_visible, w.least_visible, {0, 1});
+  io.number("min_visible", m.min_visible, w.min_visible, {0, 1});
   io.flag("move_platform", m.move_platform, w.move_platform);
 }
 

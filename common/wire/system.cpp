@@ -99,13 +99,13 @@ void describe(WireIo& io, GroundTruth& m, handsel_GroundTruth& w) {
   io.flag("dropped", m.dropped, w.dropped);
   io.flag("handover_done", m.handover_done, w.handover_done);
   io.horizon("separation", m.separation, w.separation, -1e4);
-  io.horizon("least_separation", m.least_separation, w.least_separation, -1e4);
+  io.horizon("min_separation", m.min_separation, w.min_separation, -1e4);
   io.integer("ssm_violations", m.ssm_violations, w.ssm_violations);
   io.number("peak_closing_speed", m.peak_closing_speed, w.peak_closing_speed, kCoordinate);
   io.number("contact_force", m.contact_force, w.contact_force, {0, 1e9});
-  io.number("limit_share_velocity", m.limit_share_velocity, w.limit_share_velocity, kLimitRatio);
-  io.number("limit_share_acceleration", m.limit_share_acceleration, w.limit_share_acceleration, kLimitRatio);
-  io.number("limit_share_jerk", m.limit_share_jerk, w.limit_share_jerk, kLimitRatio);
+  io.number("limit_ratio_velocity", m.limit_ratio_velocity, w.limit_ratio_velocity, kLimitRatio);
+  io.number("limit_ratio_acceleration", m.limit_ratio_acceleration, w.limit_ratio_acceleration, kLimitRatio);
+  io.number("limit_ratio_jerk", m.limit_ratio_jerk, w.limit_ratio_jerk, kLimitRatio);
   io.integer("limit_violations", m.limit_violations, w.limit_violations);
   io.integer("self_or_scene_collisions", m.self_or_scene_collisions, w.self_or_scene_collisions);
   io.integer("commanders", m.commanders, w.commanders);

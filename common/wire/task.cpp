@@ -71,7 +71,7 @@ void describe(WireIo& io, ActionStatus& m, handsel_ActionStatus& w) {
   io.flag("holding", m.holding, w.holding);
   io.flag("exchange_engaged", m.exchange_engaged, w.exchange_engaged);
   io.point("exchange_point", m.exchange_point, w.exchange_point);
-  io.horizon("time_to_exchange", m.time_to_exchange, w.time_to_exchange, 0);
+  io.horizon("time_to_handover", m.time_to_handover, w.time_to_handover, 0);
   io.choice("failure", m.failure, w.failure, kActionFailureNames);
   io.text("reason", m.reason, w.reason, Text::sentence);
   io.list("refusals", m.refusals, w.refusals, 256, true);

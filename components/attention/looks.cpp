@@ -48,11 +48,11 @@ double urgency(double distance, double closing) {
 
 double ramp(double x, double low, double high) { return std::clamp((x - low) / (high - low), 0.0, 1.0); }
 
-bool exchanges_with(const World& w, const std::string& person) {
+bool in_handover_with(const World& w, const std::string& person) {
   return (doing(w, ActionKind::give) || doing(w, ActionKind::receive)) && (w.action->human.empty() || w.action->human == person);
 }
 
-SeparationExemption exchange_exception(const World& w) {
+SeparationExemption handover_exemption(const World& w) {
   SeparationExemption exception;
   if (!w.action || !w.action->exchange_engaged) return exception;
   exception.person = w.action->human;

@@ -31,10 +31,10 @@ struct NearHand {
 NearHand nearest_hand(const Person& person, const Vector3& p);
 
 /// Is this the person whom the robot hands something to or takes something from?
-bool exchanges_with(const World& w, const std::string& person);
+bool in_handover_with(const World& w, const std::string& person);
 /// Returns the person whose forearms and hands are exempt from separation while the handover is
 /// engaged; empty otherwise.
-SeparationExemption exchange_exception(const World& w);
+SeparationExemption handover_exemption(const World& w);
 /// Returns the stimulus for a distance [m] and a closing speed [m/s]: the distance, or the time to
 /// contact times the reference speed 0.5 m/s when that is less [m], >= 0.
 double urgency(double distance, double closing);

@@ -94,7 +94,7 @@ class Avoid : public Schema {
     factor_ = 1.0;
     near_ = false;
     if (!w.people || w.people->people.empty() || !robot_known(w, body_)) return kInfinity;
-    const SeparationExemption exception = exchange_exception(w);
+    const SeparationExemption exception = handover_exemption(w);
     const ActiveTrajectory& active = *w.active;
     const Separation s = body_.separation_at(active.position, active.T_world_base, *w.people, exception);
     near_ = zone_.update(s.distance, now) <= Zone::interaction;
@@ -106,7 +106,7 @@ class Avoid : public Schema {
       stimulus = std::min(stimulus, std::max(0.0, w.forecast->clearance));
     if (!near_) return stimulus;
 
-    const bool partner = exchanges_with(w, s.person);
+    const bool partner = in_handover_with(w, s.person);
     const double contact_time = partner ? motor_.partner_contact_time : motor_.avoid_contact_time;
     factor_ = ramp(s.distance, motor_.avoid_stop, partner ? motor_.partner_slow : motor_.avoid_slow);
     reason_ = "a person is near";

@@ -7,7 +7,7 @@ namespace handsel::attention {
 
 double Watch::perceive(const World& world, TimePoint now) {
   gaze_.reset();
-  input_ = look(world, now);
+  input_ = sample(world, now);
   known_ = std::isfinite(input_);
   return known_ ? std::max(0.0, input_) : kInfinity;
 }
@@ -17,7 +17,7 @@ double Watch::speed_factor() const {
   return settings_.slow_factor + (1.0 - settings_.slow_factor) * ramp(input_, settings_.slow_at, settings_.slow_from);
 }
 
-double Watch::look(const World& w, TimePoint now) {
+double Watch::sample(const World& w, TimePoint now) {
   if (!robot_known(w, body_)) return kInfinity;
   const ActiveTrajectory& active = *w.active;
   const Vector3 p_grasp = body_.grasp_point(active.position, active.T_world_base);
@@ -39,7 +39,7 @@ double Watch::look(const World& w, TimePoint now) {
     case Input::human_distance:
       return !w.people || w.people->people.empty()
                  ? kInfinity
-                 : body_.separation_at(active.position, active.T_world_base, *w.people, exchange_exception(w)).distance;
+                 : body_.separation_at(active.position, active.T_world_base, *w.people, handover_exemption(w)).distance;
     case Input::hand_distance:
       return hand.distance;
     case Input::object_distance:

@@ -17,7 +17,7 @@ class Watch : public Schema {
   std::optional<Vector3> gaze() const override { return gaze_; }
 
  private:
-  double look(const World& world, TimePoint now);
+  double sample(const World& world, TimePoint now);
 
   const Body& body_;
   MotorSettings motor_;

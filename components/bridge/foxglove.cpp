@@ -235,7 +235,7 @@ void Viewer::send_graph(const Graph& before, const Graph& now) {
 void Viewer::fetch(const std::string& uri, std::uint32_t request) {
   Asset asset;
   if (outbox_.control_bytes() > kMaxAssetBytes) {
-    asset.reason = "too many assets are on their way to you";
+    asset.reason = "too many assets are being sent to this client";
   } else {
     asset = hub_.fetch(uri);
   }

@@ -56,8 +56,8 @@ void Forecaster::set_people(const HumanState& people) {
       Hand& known = hands_.emplace_back();
       for (const BodyCapsule& capsule : body_capsules(person))
         if (capsule.part == part) known.radius = capsule.radius;
-      known.way.push_back({0, joint->position, 0});
-      known.way.insert(known.way.end(), hand.ahead.begin(), hand.ahead.end());
+      known.motion.push_back({0, joint->position, 0});
+      known.motion.insert(known.motion.end(), hand.ahead.begin(), hand.ahead.end());
     }
   rest_known_ = false;
 }
@@ -113,12 +113,12 @@ double Forecaster::distance_to_ball(const Vector3& centre, double radius) const 
   return least;
 }
 
-void Forecaster::look(const Vector& q, double ahead, TrajectoryForecast& forecast) {
+void Forecaster::sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast) {
   forecast.clearance = std::min(forecast.clearance, world_.distance_to_people(q));
   if (!hands_.empty()) robot_.forward(q, links_);
   for (const Hand& hand : hands_) {
-    const auto next = std::find_if(hand.way.begin(), hand.way.end(), [&](const HandAhead& h) { return h.time > ahead; });
-    if (next == hand.way.begin() || next == hand.way.end()) continue;
+    const auto next = std::find_if(hand.motion.begin(), hand.motion.end(), [&](const HandAhead& h) { return h.time > ahead; });
+    if (next == hand.motion.begin() || next == hand.motion.end()) continue;
     const HandAhead& before = *std::prev(next);
     const double share = (ahead - before.time) / (next->time - before.time);
     const Vector3 expected = (1 - share) * before.position + share * next->position;
@@ -147,7 +147,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     if (!stood) {
       if (!same(attachment_, active.attachment) || allowed_ != active.allowed_contacts) remember_for(active);
       rest_ = forecast;
-      look(active.position, 0, rest_);
+      sample_at(active.position, 0, rest_);
       rest_position_ = active.position;
       rest_known_ = true;
     }
@@ -156,14 +156,14 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   }
   remember_for(active);
   rest_known_ = false;
-  const double speed = std::max(std::abs(active.speed_factor), settings_.least_speed);
+  const double speed = std::max(std::abs(active.speed_factor), settings_.min_speed);
   const double reach = speed * settings_.horizon, spacing = settings_.spacing;
   const auto index_at = [&](double t) { return static_cast<long>(std::clamp(t, 0.0, duration) / spacing); };
   const long last_index = static_cast<long>(std::ceil(duration / spacing));
   // States lie on a fixed grid of the trajectory's own time; the first is the one about to be reached, then on in the sense of motion.
   const long first = backward ? index_at(active.time) : std::min(last_index, index_at(active.time) + 1);
   const long end = backward ? index_at(active.time - reach) : std::min(last_index, index_at(active.time + reach) + 1);
-  look(active.position, 0, forecast);
+  sample_at(active.position, 0, forecast);
   Vector q = active.position;
   for (long k = first;; k += backward ? -1 : 1) {
     const double t = std::min(duration, static_cast<double>(k) * spacing);
@@ -171,7 +171,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
     for (std::size_t i = 0; i < active.axes.size(); ++i) q[active.axes[i]] = sample_.position[static_cast<Eigen::Index>(i)];
     CollisionVerdict verdict = scene_verdict(static_cast<std::size_t>(k), q);
     if (verdict.free) verdict = world_.check_people(q);
-    look(q, std::max(0.0, std::abs(t - active.time) / speed), forecast);
+    sample_at(q, std::max(0.0, std::abs(t - active.time) / speed), forecast);
     if (!verdict.free) {
       forecast.collides = true;
       forecast.time_to_collision = std::max(0.0, std::abs(t - active.time) / speed);
@@ -183,7 +183,7 @@ TrajectoryForecast Forecaster::forecast(const ActiveTrajectory& active) {
   return forecast;
 }
 
-StateVerdict judge(const RobotModel& robot, CollisionWorld& world, const StateQuery& query) {
+StateVerdict check_states(const RobotModel& robot, CollisionWorld& world, const StateQuery& query) {
   StateVerdict verdict;
   verdict.id = query.id;
   verdict.clearance = kInfinity;

@@ -15,9 +15,9 @@ namespace handsel::collision_checker {
 
 /// Range and sampling of a forecast.
 struct ForecastSettings {
-  double horizon{1.5};       ///< time ahead that is checked, at present speed [s]
-  double least_speed{0.25};  ///< speed factor assumed for a slower or held trajectory
-  double spacing{0.05};      ///< of states, in time of the trajectory [s]
+  double horizon{1.5};     ///< time ahead that is checked, at present speed [s]
+  double min_speed{0.25};  ///< speed factor assumed for a slower or held trajectory
+  double spacing{0.05};    ///< of states, in time of the trajectory [s]
 };
 
 /// Torso, head, upper arms and legs of people count as contact; their forearms and hands only lower
@@ -46,7 +46,7 @@ class Forecaster {
   enum class Memory : char { unknown, free, collides };
   bool fits(const ActiveTrajectory& active) const;
   void remember_for(const ActiveTrajectory& active);
-  void look(const Vector& q, double ahead, TrajectoryForecast& forecast);
+  void sample_at(const Vector& q, double ahead, TrajectoryForecast& forecast);
   double distance_to_ball(const Vector3& centre, double radius) const;
   CollisionVerdict scene_verdict(std::size_t index, const Vector& q);
 
@@ -67,7 +67,7 @@ class Forecaster {
   MotionState3 sample_;
   struct Hand {
     double radius{};
-    std::vector<HandAhead> way;  // from now on
+    std::vector<HandAhead> motion;  // from now on
   };
   std::vector<Hand> hands_;
   std::vector<LinkCapsule> capsules_;
@@ -79,6 +79,6 @@ class Forecaster {
 };
 
 /// Checks the states of a query in order. `clearance` is over the free ones.
-StateVerdict judge(const RobotModel& robot, CollisionWorld& world, const StateQuery& query);
+StateVerdict check_states(const RobotModel& robot, CollisionWorld& world, const StateQuery& query);
 
 }  // namespace handsel::collision_checker

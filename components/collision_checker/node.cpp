@@ -15,11 +15,11 @@ settings::CollisionCheckerSettings load(const NodeContext& context) {
   SettingsText text;
   const auto file = context.settings / "collision_checker.txtpb";
   const auto s = settings::read_collision_checker_settings(file, &text);
-  if (s.longest_period < s.period) text.refuse("longest_period", "must not be below period");
+  if (s.max_period < s.period) text.refuse("max_period", "must not be below period");
   return s;
 }
 
-ForecastSettings core_settings(const settings::CollisionCheckerSettings& s) { return {s.horizon, s.least_speed, s.spacing}; }
+ForecastSettings core_settings(const settings::CollisionCheckerSettings& s) { return {s.horizon, s.min_speed, s.spacing}; }
 
 }  // namespace
 
@@ -28,7 +28,7 @@ Node::Node(Bus& bus, const NodeContext& context)
       robot_(context.robot),
       forecaster_(*context.robot, context.objects, load_cost_settings(context.settings), core_settings(load(context))),
       query_world_(*context.robot, context.objects),
-      pace_(load(context).period, load(context).longest_period, load(context).period / kTicks),
+      advised_period_(load(context).period, load(context).max_period, load(context).period / kTicks),
       forecast_out_(bus.advertise<TrajectoryForecast>()),
       verdict_out_(bus.advertise<StateVerdict>()) {
   const settings::CollisionCheckerSettings settings = load(context);
@@ -52,14 +52,14 @@ Node::Node(Bus& bus, const NodeContext& context)
     forecaster_.set_layers(layers_.at(receipt.arrival));
   });
   bus.subscribe<AttentionAdvice>(
-      [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.forecast_period, r.arrival); });
+      [this](const AttentionAdvice& advice, const Receipt& r) { advised_period_.advise(advice.forecast_period, r.arrival); });
   bus.every(kLayerWatch, [this](TimePoint now) { forecaster_.set_layers(layers_.at(now)); });
   bus.subscribe<StateQuery>([this](const StateQuery& query, const Receipt&) { answer(query); });
   bus.every(from_seconds(settings.period / kTicks), [this](TimePoint now) { forecast(now); });
 }
 
 void Node::forecast(TimePoint now) {
-  if (!news_ && !pace_.due(now)) return;
+  if (!news_ && !advised_period_.due(now)) return;
   const std::string missing = bus_.lag<ActiveTrajectory>() > max_age_ ? "no current ActiveTrajectory: no forecast"
                               : bus_.lag<Scene>() > max_age_          ? "no current Scene: no forecast"
                               : bus_.lag<HumanState>() > max_age_     ? "no current HumanState: no forecast"
@@ -70,7 +70,7 @@ void Node::forecast(TimePoint now) {
   if (scene_waits_) forecaster_.set_scene(*scene_);
   if (people_wait_) forecaster_.set_people(*people_);
   scene_waits_ = people_wait_ = false;
-  pace_.done(now);
+  advised_period_.done(now);
   forecast_out_->publish(forecaster_.forecast(active_));
 }
 
@@ -99,7 +99,7 @@ void Node::answer(const StateQuery& query) {
         query_world_.set_scene(*work->scene);
         query_world_.set_people(*work->people);
         const std::uint64_t before = query_world_.checks();
-        work->verdict = judge(*robot_, query_world_, work->query);
+        work->verdict = check_states(*robot_, query_world_, work->query);
         return from_seconds(check_time_ * static_cast<double>(query_world_.checks() - before));
       },
       [this, work] {

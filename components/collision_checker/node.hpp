@@ -29,7 +29,7 @@ class Node {
   std::size_t queries_waiting_{0};
   Forecaster forecaster_;
   CollisionWorld query_world_;  // used by jobs only, which run one after the other
-  AdvisedPeriod pace_;
+  AdvisedPeriod advised_period_;
   bool news_{true};  // another trajectory, or another scene: not to be waited with
   std::unique_ptr<Publisher<TrajectoryForecast>> forecast_out_;
   std::unique_ptr<Publisher<StateVerdict>> verdict_out_;

@@ -6,7 +6,7 @@
 
 namespace handsel::costmap::detail {
 
-constexpr int kLongestRow = 128;
+constexpr int kMaxRow = 128;
 
 /// The person and the settings, lengths in m, frame of the grid's first point.
 struct RowPerson {

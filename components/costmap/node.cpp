@@ -13,8 +13,7 @@ settings::CostmapSettings load(const NodeContext& context) {
   SettingsText text;
   const auto s = settings::read_costmap_settings(context.settings / "costmap.txtpb", &text);
   if (s.reach / s.resolution > 49) text.refuse("reach", "reach / resolution must be at most 49, else the map outgrows its message");
-  if (s.longest_period < s.period)
-    text.refuse("longest_period", "must be from period to 0.4, readers leave out layers older than a second");
+  if (s.max_period < s.period) text.refuse("max_period", "must be from period to 0.4, readers leave out layers older than a second");
   return s;
 }
 
@@ -26,20 +25,20 @@ Node::Node(Bus& bus, const NodeContext& context)
       cell_time_(load(context).cell_time),
       maker_({load(context).resolution, load(context).reach, load(context).clearance, load_cost_settings(context.settings)}),
       watch_(load(context).moved, load(context).turned),
-      pace_(load(context).period, load(context).longest_period, load(context).period),
+      advised_period_(load(context).period, load(context).max_period, load(context).period),
       map_out_(bus.advertise<Costmap>()) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = scene; });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = people; });
   bus.subscribe<AttentionAdvice>(
-      [this](const AttentionAdvice& advice, const Receipt& r) { pace_.advise(advice.cost_map_period, r.arrival); });
+      [this](const AttentionAdvice& advice, const Receipt& r) { advised_period_.advise(advice.cost_map_period, r.arrival); });
   bus.every(from_seconds(load(context).period), [this](TimePoint now) { step(now); });
 }
 
 void Node::step(TimePoint now) {
   const bool current = scene_ && bus_.lag<Scene>() < kStale && bus_.lag<HumanState>() < kStale;
   bus_.set_degraded(current ? "" : "no current Scene or HumanState: no cost map");
-  if (!current || making_ || !pace_.due(now)) return;
-  pace_.done(now);
+  if (!current || making_ || !advised_period_.due(now)) return;
+  advised_period_.done(now);
   const Person* person = nearest_person(people_, scene_->T_world_base.translation());
   if (person == nullptr) {
     made_ = nullptr;

@@ -27,7 +27,7 @@ class Node {
   double cell_time_{};
   MapMaker maker_;  // used by jobs only
   Watch watch_;
-  AdvisedPeriod pace_;
+  AdvisedPeriod advised_period_;
   std::unique_ptr<Publisher<Costmap>> map_out_;
   std::optional<Scene> scene_;
   HumanState people_;

@@ -8,7 +8,7 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/node_context.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 
 namespace handsel::grasp_planner {
 
@@ -18,10 +18,10 @@ inline constexpr Duration kReadList = std::chrono::milliseconds(5);
 /// Makes lists in jobs, once for each model.
 class ListPreparation {
  public:
-  /// `books`: of each hand, used by jobs only; the first is the hand whose transfers are made.
+  /// `caches`: of each hand, used by jobs only; the first is the hand whose transfers are made.
   /// `transfers`: nullptr: none are made. `bus` must outlive this object.
-  ListPreparation(Bus& bus, ObjectLibrary objects, std::vector<std::shared_ptr<GraspBook>> books,
-                  std::shared_ptr<TransferBook> transfers);
+  ListPreparation(Bus& bus, ObjectLibrary objects, std::vector<std::shared_ptr<GraspCache>> caches,
+                  std::shared_ptr<TransferCache> transfers);
 
   /// Makes the lists of the models that are new in the scene. A model that cannot be grasped by any
   /// hand makes the component degraded.
@@ -33,8 +33,8 @@ class ListPreparation {
 
   Bus& bus_;
   ObjectLibrary objects_;
-  std::vector<std::shared_ptr<GraspBook>> books_;
-  std::shared_ptr<TransferBook> transfers_;
+  std::vector<std::shared_ptr<GraspCache>> caches_;
+  std::shared_ptr<TransferCache> transfers_;
   std::set<std::string> prepared_;  // models whose lists were asked for
 };
 

@@ -29,7 +29,7 @@ config::GraspPlannerSettings load_settings(const std::filesystem::path& folder) 
 
 GraspStore store_of(const config::GraspPlannerSettings& text) { return GraspStore(text.store() ? default_store() : ""); }
 
-std::shared_ptr<const HandGeometry> load_kit(const RobotModel& robot) {
+std::shared_ptr<const HandGeometry> load_hand_geometry(const RobotModel& robot) {
   if (robot.hand().empty()) throw ConfigError("robot " + robot.name() + " names no hand; the grasp planner needs one");
   return std::make_shared<const HandGeometry>(HandModel::load(hand_description(robot.hand())));
 }
@@ -40,18 +40,18 @@ std::shared_ptr<const RobotModel> mobile(const RobotModel& robot, const std::fil
   return model ? std::make_shared<const RobotModel>(std::move(*model)) : nullptr;
 }
 
-std::vector<ArmBook> load_arms(const RobotModel& robot, const std::filesystem::path& description,
-                               const std::shared_ptr<const HandGeometry>& kit, const std::shared_ptr<GraspBook>& book,
-                               const GraspListSettings& settings, const GraspStore& store) {
-  std::vector<ArmBook> arms;
+std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem::path& description,
+                                 const std::shared_ptr<const HandGeometry>& hand_geometry, const std::shared_ptr<GraspCache>& cache,
+                                 const GraspListSettings& settings, const GraspStore& store) {
+  std::vector<ArmGrasps> arms;
   if (description.empty()) return arms;
   for (const Manipulator& m : manipulators(description, robot)) {
     if (arms.empty()) {
-      arms.push_back({m, kit, book});
+      arms.push_back({m, hand_geometry, cache});
       continue;
     }
     const auto other = std::make_shared<const HandGeometry>(HandModel::load(hand_description(m.hand)));
-    arms.push_back({m, other, std::make_shared<GraspBook>(other, settings, store)});
+    arms.push_back({m, other, std::make_shared<GraspCache>(other, settings, store)});
   }
   return arms;
 }
@@ -69,11 +69,11 @@ double positive(const char* key, double value) {
   return value;
 }
 
-std::shared_ptr<TransferBook> transfer_book(const config::GraspPlannerSettings& text, const std::shared_ptr<const HandGeometry>& robot,
-                                            const GraspStore& store) {
+std::shared_ptr<TransferCache> make_transfer_cache(const config::GraspPlannerSettings& text,
+                                                   const std::shared_ptr<const HandGeometry>& robot, const GraspStore& store) {
   if (text.taker().empty()) return nullptr;
   const auto taker = std::make_shared<const HandGeometry>(HandModel::load(hand_description(text.taker())));
-  return std::make_shared<TransferBook>(robot, taker, taker_settings(text), store);
+  return std::make_shared<TransferCache>(robot, taker, taker_settings(text), store);
 }
 
 GraspListSettings list_settings(const config::GraspPlannerSettings& t, std::uint64_t seed) {
@@ -81,7 +81,7 @@ GraspListSettings list_settings(const config::GraspPlannerSettings& t, std::uint
   s.positions = static_cast<std::uint32_t>(positive("positions", t.positions()));
   s.spacing = positive("spacing", t.spacing());
   s.orientations = static_cast<std::uint32_t>(positive("orientations", t.orientations()));
-  s.step_share = positive("step_share", t.step_share());
+  s.step_fraction = positive("step_fraction", t.step_fraction());
   if (t.cone_edges() < 6) throw ConfigError("grasp_planner.txtpb: cone_edges must be at least 6");
   s.cone_edges = static_cast<int>(t.cone_edges());
   s.full_epsilon = positive("full_epsilon", t.full_epsilon());
@@ -113,10 +113,10 @@ ChoiceSettings choice_settings(const config::GraspPlannerSettings& t) {
   s.support_gap = positive("support_gap", t.support_gap());
   s.reach_budget = static_cast<std::uint32_t>(positive("reach_budget", t.reach_budget()));
   s.rank_quality = t.rank_quality();
-  s.rank_posture = t.rank_posture();
+  s.rank_configuration = t.rank_configuration();
   s.rank_contacts = t.rank_contacts();
   s.rank_room = t.rank_room();
-  s.rank_exchange = t.rank_exchange();
+  s.rank_handover = t.rank_handover();
   s.rank_partner = t.rank_partner();
   s.rank_transfer = t.rank_transfer();
   s.rank_sturdy = t.rank_sturdy();

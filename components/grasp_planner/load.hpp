@@ -7,7 +7,7 @@
 
 #include "common/config/schema/grasp_planner.pb.h"
 #include "components/grasp_planner/choice/grasp_choice.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "components/grasp_planner/regrasp/regrasp_desk.hpp"
 
 namespace handsel::grasp_planner {
@@ -27,16 +27,16 @@ config::GraspPlannerSettings load_settings(const std::filesystem::path& folder);
 /// Returns the store of lists on disk; one that keeps nothing when the settings say so.
 GraspStore store_of(const config::GraspPlannerSettings& text);
 /// Returns the geometry of the robot's hand. ConfigError when the robot names no hand.
-std::shared_ptr<const HandGeometry> load_kit(const RobotModel& robot);
+std::shared_ptr<const HandGeometry> load_hand_geometry(const RobotModel& robot);
 /// Returns the robot of a description on its platform; nullptr: it has none.
 std::shared_ptr<const RobotModel> mobile(const RobotModel& robot, const std::filesystem::path& description);
 /// Returns the arms of the robot's description; the first has the geometry and the lists that are
 /// there already.
-std::vector<ArmBook> load_arms(const RobotModel& robot, const std::filesystem::path& description,
-                               const std::shared_ptr<const HandGeometry>& kit, const std::shared_ptr<GraspBook>& book,
-                               const GraspListSettings& settings, const GraspStore& store);
+std::vector<ArmGrasps> load_arms(const RobotModel& robot, const std::filesystem::path& description,
+                                 const std::shared_ptr<const HandGeometry>& hand_geometry, const std::shared_ptr<GraspCache>& cache,
+                                 const GraspListSettings& settings, const GraspStore& store);
 /// Returns the transfers from the robot's hand to that of a person; nullptr: no such hand is known.
-std::shared_ptr<TransferBook> transfer_book(const config::GraspPlannerSettings& text, const std::shared_ptr<const HandGeometry>& robot,
-                                            const GraspStore& store);
+std::shared_ptr<TransferCache> make_transfer_cache(const config::GraspPlannerSettings& text,
+                                                   const std::shared_ptr<const HandGeometry>& robot, const GraspStore& store);
 
 }  // namespace handsel::grasp_planner

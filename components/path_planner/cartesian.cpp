@@ -220,7 +220,7 @@ std::vector<Vector> other_branch(const PlanningModels& models, const CartesianPr
 /// Returns why the problem makes no sense, or an empty text.
 std::string contradiction(const RobotModel& robot, const CartesianProblem& problem) {
   if (problem.start.size() != robot.dof() || !problem.start.allFinite())
-    return "the start is not a posture of all axes";
+    return "the start is not a configuration of all axes";
   if (problem.also_goal.size() != static_cast<Eigen::Index>(problem.also.size()))
     return "the further axes and their goals do not match";
   if (!problem.T_root_goal.matrix().allFinite()) return "the goal pose is not finite";
@@ -315,9 +315,9 @@ class CartesianPlanning {
         goals_[branch].push_back({problem_.T_root_goal, elbow, q});
       }
     }
-    if (!reachable) return "no posture of the arm has the tool at the goal";
+    if (!reachable) return "no configuration of the arm has the tool at the goal";
     if (goals_.size() == 1 && goals_[0].empty())
-      return "every posture at the goal is in collision, the first: " + touched.first +
+      return "every configuration at the goal is in collision, the first: " + touched.first +
              " touches " + touched.second;
     std::stable_sort(goals_.begin() + 1, goals_.end(), [&](const auto& a, const auto& b) {
       return arm.bends(problem_.start, a[0].q) < arm.bends(problem_.start, b[0].q);

@@ -17,7 +17,7 @@ bool drives(const std::string& group) { return group == kPlatformGroup || group 
 
 void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Problem& problem) {
   const std::vector<int>& platform = mobile.require_group(kPlatformGroup).axes;
-  problem.driving = Driving{{platform[0], platform[1], platform[2]}, &cost};
+  problem.platform_motion = PlatformMotion{{platform[0], platform[1], platform[2]}, &cost};
   if (problem.start.size() != mobile.dof()) return;
   const auto n = static_cast<Eigen::Index>(problem.axes.size());
   Vector lower(n), upper(n);
@@ -38,8 +38,8 @@ void drive(const RobotModel& mobile, const NavigationCost& cost, double roam, Pr
   problem.room = {lower, upper};
 }
 
-PoseGoals reach_driving(const RobotModel& mobile, CollisionWorld& world, const std::vector<PoseGoal>& poses, const Vector& q_start,
-                        std::uint64_t seed, int each) {
+PoseGoals reach_with_platform(const RobotModel& mobile, CollisionWorld& world, const std::vector<PoseGoal>& poses, const Vector& q_start,
+                              std::uint64_t seed, int each) {
   PoseGoals found;
   Random random(seed);
   const Group& whole = mobile.require_group(kWholeRobotGroup);

@@ -6,7 +6,8 @@
 
 namespace handsel::path_planner {
 
-double keep_off_heads(CollisionWorld& world, const HumanState& people, double room, const Vector& start, const std::vector<Vector>& goals) {
+double keep_clear_of_heads(CollisionWorld& world, const HumanState& people, double room, const Vector& start,
+                           const std::vector<Vector>& goals) {
   constexpr int kParts = 6;
   for (int part = room > 0 ? kParts : 0; part > 0; --part) {
     const double kept = room * part / kParts;

@@ -41,12 +41,12 @@ std::vector<Vector> cut(const std::vector<Vector>& path, double longest) {
 
 class Live {
  public:
-  Live(SearchSpace& space, const Problem& problem, const Settings& settings, const LiveSettings& live)
+  Live(SearchSpace& space, const Problem& problem, const Settings& settings, const ReplanSettings& live)
       : space_(space), problem_(problem), settings_(settings), live_(live), random_(problem.seed) {}
 
   /// nullopt: nothing of the path can be saved.
-  std::optional<LiveResult> run(std::vector<Vector> rest) {
-    LiveResult out;
+  std::optional<ReplanResult> run(std::vector<Vector> rest) {
+    ReplanResult out;
     std::size_t goal = goal_of(rest.back());
     bool other_goal = false;
     if (goal == problem_.goals.size() || !space_.free(rest.back())) {
@@ -79,9 +79,9 @@ class Live {
     }
     out.after = price(space_, path);
     if (was_blocked || other_goal) {
-      out.outcome = other_goal ? LiveOutcome::replanned : LiveOutcome::repaired;
-    } else if (out.after < out.before * (1 - live_.least_gain)) {
-      out.outcome = LiveOutcome::improved;
+      out.outcome = other_goal ? ReplanOutcome::replanned : ReplanOutcome::repaired;
+    } else if (out.after < out.before * (1 - live_.min_gain)) {
+      out.outcome = ReplanOutcome::improved;
     } else {
       path = as_it_was;
       out.after = out.before;
@@ -107,8 +107,7 @@ class Live {
     while (reachable < nodes.size() && space_.motion_free(nodes[reachable - 1], nodes[reachable])) ++reachable;
     double least = kInfinite;
     std::vector<double> so_far(reachable, 0.0);
-    for (std::size_t k = 1; k < reachable; ++k)
-      so_far[k] = so_far[k - 1] + space_.costs().price(nodes[k - 1], nodes[k]);
+    for (std::size_t k = 1; k < reachable; ++k) so_far[k] = so_far[k - 1] + space_.costs().price(nodes[k - 1], nodes[k]);
     std::size_t leave = 0;
     for (std::size_t i = 0; i < problem_.goals.size(); ++i) {
       const Vector& q = problem_.goals[i];
@@ -188,15 +187,12 @@ class Live {
         Vector q = center + toward * (far / std::max(far, toward.norm()));
         q = q.cwiseMax(space_.lower()).cwiseMin(space_.upper());
         if (!space_.free(q)) continue;
-        const double cost =
-            found > 0 ? space_.costs().price(path[from], q) + space_.costs().price(q, path[to])
-                      : 0.0;
+        const double cost = found > 0 ? space_.costs().price(path[from], q) + space_.costs().price(q, path[to]) : 0.0;
         if (cost >= least || !space_.motion_free(path[from], q) || !space_.motion_free(q, path[to])) continue;
         best.assign(path.begin(), path.begin() + static_cast<long>(from) + 1);
         best.push_back(q);
         best.insert(best.end(), path.begin() + static_cast<long>(to), path.end());
-        least = found > 0 ? cost
-                          : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
+        least = found > 0 ? cost : space_.costs().price(path[from], q) + space_.costs().price(q, path[to]);
         ++found;
       }
       if (best.empty()) return false;
@@ -255,8 +251,7 @@ class Live {
     const double now = price(space_, path);
     double allowed = std::max(kDropLoss * now, kDropGain * (before - now));
     for (std::size_t i = 1; i + 1 < path.size();) {
-      const double loss = space_.costs().price(path[i - 1], path[i + 1]) -
-                          space_.costs().price(path[i - 1], path[i]) -
+      const double loss = space_.costs().price(path[i - 1], path[i + 1]) - space_.costs().price(path[i - 1], path[i]) -
                           space_.costs().price(path[i], path[i + 1]);
       if (loss <= 0.5 * allowed && space_.motion_free(path[i - 1], path[i + 1])) {
         allowed -= std::max(0.0, loss);
@@ -285,31 +280,30 @@ class Live {
   SearchSpace& space_;
   const Problem& problem_;
   const Settings& settings_;
-  const LiveSettings& live_;
+  const ReplanSettings& live_;
   Random random_;
 };
 
 }  // namespace
 
-const char* name(LiveOutcome outcome) {
+const char* name(ReplanOutcome outcome) {
   switch (outcome) {
-    case LiveOutcome::kept:
+    case ReplanOutcome::kept:
       return "kept";
-    case LiveOutcome::improved:
+    case ReplanOutcome::improved:
       return "improved";
-    case LiveOutcome::repaired:
+    case ReplanOutcome::repaired:
       return "repaired";
-    case LiveOutcome::replanned:
+    case ReplanOutcome::replanned:
       return "replanned";
     default:
       return "blocked";
   }
 }
 
-LiveResult continue_path(const PlanningModels& models, const Problem& problem,
-                         const std::vector<Vector>& running, const Settings& settings,
-                         const LiveSettings& live, const Hooks& hooks) {
-  LiveResult out;
+ReplanResult continue_path(const PlanningModels& models, const Problem& problem, const std::vector<Vector>& running,
+                           const Settings& settings, const ReplanSettings& live, const Hooks& hooks) {
+  ReplanResult out;
   const auto& [robot, world, cost] = models;
   Settings quick = settings;
   quick.smoothing_rounds = live.rounds / 3;
@@ -333,18 +327,18 @@ LiveResult continue_path(const PlanningModels& models, const Problem& problem,
     }
     spent = space.checks();
   }
-  out.outcome = LiveOutcome::blocked;
+  out.outcome = ReplanOutcome::blocked;
   out.before = kInfinite;
   if (sound && problem.budget > 0 && spent >= problem.budget) {
     out.result.checks = spent;
-    out.result.reason = "no way on was found within " + std::to_string(problem.budget) + " checks";
+    out.result.reason = "no path onward was found within " + std::to_string(problem.budget) + " checks";
     return out;
   }
   Problem anew = problem;
   anew.budget -= std::min(anew.budget, spent);
   out.result = plan(robot, world, cost, anew, quick, hooks);
   out.result.checks += spent;
-  if (out.result.solved) out.outcome = LiveOutcome::replanned;
+  if (out.result.solved) out.outcome = ReplanOutcome::replanned;
   return out;
 }
 

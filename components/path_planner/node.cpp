@@ -20,22 +20,22 @@ Settings core_settings(const settings::PathPlannerSettings& s) {
   out.connect_range = s.connect_range;
   out.transition_range = s.transition_range;
   out.initial_temperature = s.initial_temperature;
-  out.search_share = s.search_share;
+  out.search_fraction = s.search_fraction;
   out.cost_step = s.cost_step;
   out.length_weight = s.length_weight;
   out.smoothing_rounds = s.smoothing_rounds;
-  out.patience = s.patience;
-  out.longest_edge = s.longest_edge;
+  out.max_idle_rounds = s.max_idle_rounds;
+  out.max_edge = s.max_edge;
   return out;
 }
 
 SolverSettings solver_settings(const settings::PathPlannerSettings& s) {
   SolverSettings out;
   out.search = core_settings(s);
-  out.live.least_gain = s.live_gain;
+  out.live.min_gain = s.live_gain;
   out.live.rounds = s.live_rounds;
   out.live.tries = s.live_tries;
-  out.live_margins = {s.live_margin, s.live_turning_margin};
+  out.replan_margins = {s.live_margin, s.live_turning_margin};
   out.roam = s.roam;
   out.head_room = s.head_room;
   return out;
@@ -48,14 +48,14 @@ std::optional<RobotModel> mobile_of(const NodeContext& context) {
 
 }  // namespace
 
-Node::Node(Bus& bus, const NodeContext& context) : Node(bus, context, settings::read_path_planner_settings(context.settings / "path_planner.txtpb")) {}
+Node::Node(Bus& bus, const NodeContext& context)
+    : Node(bus, context, settings::read_path_planner_settings(context.settings / "path_planner.txtpb")) {}
 
 Node::Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSettings& file)
     : bus_(bus),
-      timing_{file.check_time, file.longest_time, from_seconds(file.max_scene_age)},
+      timing_{file.check_time, file.max_time, from_seconds(file.max_scene_age)},
       reply_out_(bus.advertise<PathReply>()),
-      solver_(context.robot, mobile_of(context), context.objects,
-              load_cost_settings(context.settings), solver_settings(file)) {
+      solver_(context.robot, mobile_of(context), context.objects, load_cost_settings(context.settings), solver_settings(file)) {
   bus.subscribe<Scene>([this](const Scene& scene, const Receipt&) { scene_ = std::make_shared<Scene>(scene); });
   bus.subscribe<HumanState>([this](const HumanState& people, const Receipt&) { people_ = std::make_shared<HumanState>(people); });
   bus.subscribe<Costmap>(
@@ -121,13 +121,11 @@ void Node::start(const PathRequest& request) {
   task->layers = layers_.at(bus_.now());
   const double time = std::clamp(request.time_limit, 0.0, timing_.max_time);
   task->problem.budget = static_cast<std::uint64_t>(std::llround(time / timing_.check_time));
-  const auto compute = [&solver = solver_, check_time = timing_.check_time,
-                        task](const CancelToken& token) {
+  const auto compute = [&solver = solver_, check_time = timing_.check_time, task](const CancelToken& token) {
     solver.solve(*task, {[&token] { return token.cancelled(); }, {}});
     return from_seconds(check_time * static_cast<double>(task->result.checks));
   };
-  running_[request.id.client].emplace(request.id.number,
-                                      bus_.run_job(compute, [this, task] { answer(*task); }));
+  running_[request.id.client].emplace(request.id.number, bus_.run_job(compute, [this, task] { answer(*task); }));
 }
 
 void Node::answer(const PlanningTask& task) {
@@ -137,12 +135,10 @@ void Node::answer(const PlanningTask& task) {
   if (of_client.empty()) running_.erase(id.client);
   if (requests_.answer(id) != nullptr) return;  // cancelled
   PathReply reply = reply_of(id, task.result);
-  if (!reply.solved && task.result.cancelled && requests_.superseded(id))
-    reply.reason = "superseded by a newer request of the same client";
+  if (!reply.solved && task.result.cancelled && requests_.superseded(id)) reply.reason = "superseded by a newer request of the same client";
   if (!task.request.running.empty()) {
-    ++live_outcomes_[static_cast<std::size_t>(task.outcome)];
-    reply.outcome = static_cast<PathOutcome>(static_cast<int>(task.outcome) +
-                                             static_cast<int>(PathOutcome::kept));
+    ++replan_outcomes_[static_cast<std::size_t>(task.outcome)];
+    reply.outcome = static_cast<PathOutcome>(static_cast<int>(task.outcome) + static_cast<int>(PathOutcome::kept));
   } else if (!reply.solved) {
     reply.outcome = PathOutcome::blocked;
   }
@@ -164,8 +160,6 @@ void Node::refuse(const RequestId& id, const std::string& reason) {
 }
 
 /// The answer is not remembered: the same request may be made again.
-void Node::refuse_once(const RequestId& id, const std::string& reason) {
-  reply_out_->publish(refusal(id, reason));
-}
+void Node::refuse_once(const RequestId& id, const std::string& reason) { reply_out_->publish(refusal(id, reason)); }
 
 }  // namespace handsel::path_planner

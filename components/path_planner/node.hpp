@@ -25,8 +25,8 @@ class Node {
  public:
   Node(Bus& bus, const NodeContext& context);
 
-  /// Returns how many requests to continue along a running path ended in each LiveOutcome.
-  const std::array<std::uint64_t, 5>& live_outcomes() const { return live_outcomes_; }
+  /// Returns how many requests to continue along a running path ended in each ReplanOutcome.
+  const std::array<std::uint64_t, 5>& replan_outcomes() const { return replan_outcomes_; }
 
  private:
   Node(Bus& bus, const NodeContext& context, const settings::PathPlannerSettings& file);
@@ -45,15 +45,14 @@ class Node {
 
   Bus& bus_;
   Timing timing_;
-  std::array<std::uint64_t, 5> live_outcomes_{};
+  std::array<std::uint64_t, 5> replan_outcomes_{};
   std::unique_ptr<Publisher<PathReply>> reply_out_;
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const HumanState> people_;
   CostLayers layers_;
   RequestQueue<PathReply> requests_{Newer::replaces};
-  std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>>
-      running_;    ///< By client and number.
-  Solver solver_;  ///< Solves in jobs only, which run one after the other.
+  std::map<std::uint64_t, std::map<std::uint64_t, CancelToken>> running_;  ///< By client and number.
+  Solver solver_;                                                          ///< Solves in jobs only, which run one after the other.
 };
 
 }  // namespace handsel::path_planner

@@ -200,7 +200,7 @@ class Planning {
       bool heeds_cost = people;
       if (!asked && people)
         space_.limit(space_.checks() +
-                     static_cast<std::uint64_t>(settings_.search_share * static_cast<double>(most_ - std::min(most_, space_.checks()))));
+                     static_cast<std::uint64_t>(settings_.search_fraction * static_cast<double>(most_ - std::min(most_, space_.checks()))));
       found = search_restarting(kind, heeds_cost, seed);
       space_.limit(most_);
       if (found.path.empty() && !asked && people && !space_.exhausted() && direct.empty()) {

@@ -44,8 +44,8 @@ PoseGoals reach(const RobotModel& robot, const Group& group, const std::vector<P
   }
   if (poses.empty()) found.reason = "no goal was given";
   if (found.goals.empty() && !poses.empty())
-    found.reason = (poses.size() == 1 ? std::string("no posture of the group \"")
-                                      : "of the " + std::to_string(poses.size()) + " goals none is reached by a posture of the group \"") +
+    found.reason = (poses.size() == 1 ? std::string("no configuration of the group \"")
+                                      : "of the " + std::to_string(poses.size()) + " goals none is reached by a configuration of the group \"") +
                    group.name + (poses.size() == 1 ? "\" reaches the goal" : "\"");
   return found;
 }

@@ -22,13 +22,13 @@ struct Settings {
   double transition_range{0.3};       ///< longest edge of T-RRT and BiT-RRT [rad]
   double initial_temperature{0.002};  ///< of the transition test, in units of cost
   /// Of the budget for the first planner; the rest is for RRT-Connect when it finds nothing.
-  double search_share{0.7};
+  double search_fraction{0.7};
   double cost_step{0.1};       ///< spacing of cost samples along a motion [rad]
   double length_weight{0.05};  ///< cost of a radian where no person is concerned
   int smoothing_rounds{120};   ///< shortcuts and perturbations tried
-  int patience{40};            ///< stop smoothing after this many in a row without gain
+  int max_idle_rounds{40};     ///< stop smoothing after this many in a row without gain
   /// l_max: a perturbation replaces at most this much of the path to either side [rad].
-  double longest_edge{0.6};
+  double max_edge{0.6};
 };
 
 /// What is held stays upright: an axis of the tool frame within an angle of up.
@@ -36,13 +36,13 @@ struct Upright {
   /// Axis in the tool frame that is to point up, of any length.
   Vector3 axis_tool{Vector3::UnitZ()};
   Vector3 up_root{Vector3::UnitZ()};  ///< up in the frame of the robot's root link
-  double most{};                      ///< [rad], in (0, pi)
+  double max_angle{};                 ///< [rad], in (0, pi)
 };
 
 /// The platform is among the axes that are planned for: which they are (x, y, heading), and what
 /// people think of it where it drives. What they think of the arm counts where axes of the arm are
 /// planned for, too; the worse of the two.
-struct Driving {
+struct PlatformMotion {
   std::array<int, 3> axes{};  ///< robot axes of x, y [m] and heading [rad]
   /// Of the platform in the world; never null, must outlive the problem.
   const NavigationCost* cost{};
@@ -62,7 +62,7 @@ struct Problem {
   std::uint64_t budget{100000};                     ///< states that may be checked
   std::optional<Upright> upright{};                 ///< holds everywhere on the path
   bool straight{};                                  ///< only the line from start to goals[0], checked
-  std::optional<Driving> driving{};                 ///< when axes of the platform are planned for
+  std::optional<PlatformMotion> platform_motion{};  ///< when axes of the platform are planned for
   std::optional<std::pair<Vector, Vector>> room{};  ///< `axes` stay within these, too
 };
 

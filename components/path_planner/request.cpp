@@ -20,9 +20,9 @@ std::string of_also(const RobotModel& robot, const Group& group, const PathReque
 }
 
 std::string of_cartesian(const PathRequest& request) {
-  if (!request.goals.empty()) return "goals are given as postures, but a path in the Cartesian space leads to a pose";
+  if (!request.goals.empty()) return "goals are given as configurations, but a path in the Cartesian space leads to a pose";
   if (request.straight) return "a straight line of the joints is asked for, but in the Cartesian space";
-  if (!request.running.empty()) return "the request goes on along a path of the joints, but in the Cartesian space";
+  if (!request.running.empty()) return "the request continues along a path of the joints, but in the Cartesian space";
   if (request.group != "arm") return "the Cartesian space is that of the group \"arm\", not of \"" + request.group + "\"";
   if (request.planner != PlannerKind::automatic) return "the Cartesian space has one planner: leave the choice to it";
   if (request.upright) return "what is held is kept upright in the joint space only";
@@ -39,7 +39,7 @@ std::string contradiction(const RobotModel& robot, const PathRequest& request) {
   if (request.start.size() != robot.dof())
     return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(robot.dof());
   if (request.goals.empty() && request.poses.empty()) return "no goal was given";
-  if (!request.goals.empty() && !request.poses.empty()) return "goals are given as postures and as poses: only one kind can be meant";
+  if (!request.goals.empty() && !request.poses.empty()) return "goals are given as configurations and as poses: only one kind can be meant";
   for (const Vector& goal : request.goals)
     if (goal.size() != static_cast<Eigen::Index>(group->axes.size()))
       return "a goal has " + std::to_string(goal.size()) + " axes, the group \"" + group->name + "\" has " +
@@ -51,10 +51,10 @@ std::string contradiction(const RobotModel& robot, const PathRequest& request) {
   if (!request.poses.empty() && group->tip < 0) return "the group \"" + group->name + "\" has no tip that a pose could be meant for";
   if (!request.poses.empty() && request.group == kPlatformGroup)
     return "the platform has no tip that a pose could be meant for: its goals are x, y, heading";
-  if (!request.running.empty() && request.straight) return "the request goes on along a path, but asks for a straight line";
-  if (!request.running.empty() && !request.poses.empty()) return "the request goes on along a path of the joints, but its goal is a pose";
+  if (!request.running.empty() && request.straight) return "the request continues along a path, but asks for a straight line";
+  if (!request.running.empty() && !request.poses.empty()) return "the request continues along a path of the joints, but its goal is a pose";
   if (request.upright && robot.tool_link() < 0) return "what is held is to stay upright, but the robot has no tool frame";
-  if (request.upright && !(request.most_tilt > 0)) return "what is held is to stay upright, but no angle it may lean over is left";
+  if (request.upright && !(request.max_tilt > 0)) return "what is held is to stay upright, but no angle it may lean over is left";
   if (!(request.time_limit > 0)) return "the time limit is zero";
   if (request.space == PlanSpace::cartesian) {
     if (std::string why = of_cartesian(request); !why.empty()) return why;
@@ -79,7 +79,7 @@ Problem problem_of(const RobotModel& robot, const PathRequest& request, const Po
   problem.seed = request.seed;
   problem.straight = request.straight;
   if (request.upright)
-    problem.upright = Upright{request.upright_axis, T_world_root.linear().transpose() * Vector3::UnitZ(), request.most_tilt};
+    problem.upright = Upright{request.upright_axis, T_world_root.linear().transpose() * Vector3::UnitZ(), request.max_tilt};
   return problem;
 }
 

@@ -17,11 +17,11 @@
 namespace handsel::path_planner {
 
 struct SolverSettings {
-  Settings search;       ///< Of every search.
-  LiveSettings live;     ///< Of requests to continue along a running path.
-  Margins live_margins;  ///< Clearance that a running path keeps to obstacles [m].
-  double roam{};         ///< How far the platform may drive around start and goals [m].
-  double head_room{};    ///< Clearance to heads that paths between configurations keep [m].
+  Settings search;         ///< Of every search.
+  ReplanSettings live;     ///< Of requests to continue along a running path.
+  Margins replan_margins;  ///< Clearance that a running path keeps to obstacles [m].
+  double roam{};           ///< How far the platform may drive around start and goals [m].
+  double head_room{};      ///< Clearance to heads that paths between configurations keep [m].
 };
 
 /// One request with what was known when it came.
@@ -32,7 +32,7 @@ struct PlanningTask {
   std::shared_ptr<const Scene> scene;        ///< Never null.
   std::shared_ptr<const HumanState> people;  ///< Never null.
   LayersNow layers;                          ///< Cost layers.
-  LiveOutcome outcome{};                     ///< Result: of a request to continue.
+  ReplanOutcome outcome{};                   ///< Result: of a request to continue.
   Result result;                             ///< Result.
 };
 
@@ -40,8 +40,8 @@ struct PlanningTask {
 class Solver {
  public:
   /// `mobile`: the robot on its platform, or nothing.
-  Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile,
-         const ObjectLibrary& objects, const CostSettings& weights, const SolverSettings& settings);
+  Solver(std::shared_ptr<const RobotModel> robot, std::optional<RobotModel> mobile, const ObjectLibrary& objects,
+         const CostSettings& weights, const SolverSettings& settings);
 
   /// Returns whether the request is for the robot on its platform.
   bool drives_platform(const PathRequest& request) const;
@@ -70,10 +70,9 @@ class Solver {
   Selected select(const PathRequest& request);
   void set_world(const Selected& selected, PlanningTask& task);
   void solve_once(const Selected& selected, PlanningTask& task, const Hooks& hooks);
-  double make_head_room(const Selected& selected, const PlanningTask& task) const;
+  double keep_head_clearance(const Selected& selected, const PlanningTask& task) const;
   Result plan_new(const Selected& selected, PlanningTask& task, const Hooks& hooks);
-  Result plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses,
-                       PlanningTask& task, const Hooks& hooks);
+  Result plan_to_poses(const Selected& selected, const std::vector<PoseGoal>& poses, PlanningTask& task, const Hooks& hooks);
 
   std::shared_ptr<const RobotModel> robot_;
   std::optional<RobotModel> on_platform_;

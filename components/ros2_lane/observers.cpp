@@ -63,8 +63,8 @@ std::optional<HumanObservation> PeopleObserver::observe(const TfTree& tree, Time
     ++body;
   }
   if (out.people.empty() && !(listed && tracked_->empty())) return std::nullopt;
-  if (!out.people.empty() && out.stamp <= told_) return std::nullopt;
-  told_ = std::max(told_, out.stamp);
+  if (!out.people.empty() && out.stamp <= reported_) return std::nullopt;
+  reported_ = std::max(reported_, out.stamp);
   return out;
 }
 

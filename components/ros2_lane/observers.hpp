@@ -40,7 +40,7 @@ class PeopleObserver {
   std::map<std::string, std::set<std::string>> bodies_;  // id -> joints that have a frame
   std::optional<std::set<std::string>> tracked_;
   TimePoint tracked_at_{};
-  Stamp told_{0};
+  Stamp reported_{0};
 };
 
 class ObjectsObserver {

@@ -17,7 +17,7 @@ void RobotActivity::on(const ActiveTrajectory& active, TimePoint arrival) {
 
 std::string RobotActivity::why_not_ready(const Group& arm, TimePoint now) const {
   if (!active_ || !execution_ || to_seconds(now - active_at_) > kSilent)
-    return "the trajectory controller is not heard";
+    return "no message of the trajectory controller arrives";
   if (action_ && action_->state == ActionState::running) return "a task runs; cancel it first";
   for (const int axis : arm.axes)
     if (std::abs(active_->velocity[axis]) > kAtRest) return "the arm is in motion";

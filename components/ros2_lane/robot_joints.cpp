@@ -36,7 +36,7 @@ void JointGatherer::on(const ros2::JointState& message, TimePoint arrival) {
   for (std::size_t i = 0; i < message.names.size(); ++i) {
     const auto axis = std::find_if(robot_.axes().begin(), robot_.axes().end(), [&](const Axis& a) { return a.name == message.names[i]; });
     if (axis == robot_.axes().end()) continue;
-    Told& told = axes_[static_cast<std::size_t>(axis - robot_.axes().begin())];
+    Reported& told = axes_[static_cast<std::size_t>(axis - robot_.axes().begin())];
     const double position = message.position[static_cast<Eigen::Index>(i)];
     const double dt = to_seconds(message.stamp != 0 ? Duration(message.stamp - told.stamp)
                                  : told.arrival     ? arrival - *told.arrival

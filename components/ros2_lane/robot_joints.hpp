@@ -32,14 +32,14 @@ class JointGatherer {
   std::string missing(TimePoint now) const;
 
  private:
-  struct Told {
+  struct Reported {
     double position{}, velocity{};
     Stamp stamp{};
     std::optional<TimePoint> arrival;
   };
   const RobotModel& robot_;
   Duration max_age_;
-  std::vector<Told> axes_;
+  std::vector<Reported> axes_;
   std::uint64_t sequence_{0};
   Stamp stamp_{0};
 };

@@ -31,7 +31,7 @@ class TfTree {
     TimePoint arrival{};
     bool is_static{};
   };
-  bool make_room(TimePoint now);
+  bool evict_oldest(TimePoint now);
   std::map<std::string, Frame> frames_;  // by child
   std::optional<TimePoint> swept_;
 };

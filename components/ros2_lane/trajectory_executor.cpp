@@ -116,7 +116,7 @@ void TrajectoryExecutor::step(TimePoint now, TrajectoryOutbox& out) {
 void TrajectoryExecutor::ask(TrajectoryOutbox& out) {
   const auto hit = std::find(verdict_->free.begin(), verdict_->free.end(), 0);
   if (hit != verdict_->free.end() || verdict_->free.size() != query_.states.size())
-    return refuse("the way is not free: " + verdict_->reason, out);
+    return refuse("the path is not free: " + verdict_->reason, out);
   request_.id = {client_, ++number_};
   phase_ = Phase::timing;
   fresh_ = true;

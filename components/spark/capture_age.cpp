@@ -15,8 +15,8 @@ SourceClock clock_of(const config::SparkSettings& settings, const std::string& s
   return clock;
 }
 
-CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double least_latency, const SourceClock& clock) {
-  const double at_least = std::max(0.0, relative) + least_latency;
+CaptureAge capture_age(Stamp stamp, Stamp arrival, double relative, double min_latency, const SourceClock& clock) {
+  const double at_least = std::max(0.0, relative) + min_latency;
   if (stamp == 0) {
     if (!clock.assumed_latency) return {at_least, "gives no capture stamps, and no assumed_latency is set for it in spark.txtpb"};
     return {std::max(at_least, *clock.assumed_latency), ""};

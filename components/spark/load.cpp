@@ -17,9 +17,9 @@ config::SparkSettings load_settings(const std::filesystem::path& folder) {
   if (settings.publish_period() <= 0 || settings.human_period() <= 0)
     throw ConfigError("spark.txtpb: publish_period and human_period must be > 0");
   if (!(settings.news_period() > 0) ||
-      settings.longest_period() < std::max(settings.human_period(), settings.publish_period()))
+      settings.max_period() < std::max(settings.human_period(), settings.publish_period()))
     throw ConfigError(
-        "spark.txtpb: news_period must be > 0 and longest_period not below human_period and "
+        "spark.txtpb: news_period must be > 0 and max_period not below human_period and "
         "publish_period");
   if (!(settings.max_view_age() > 0)) throw ConfigError("spark.txtpb: max_view_age must be > 0");
   std::set<std::string> clocks;

@@ -18,10 +18,10 @@ Node::Node(Bus& bus, const NodeContext& context, const config::Scenario& place)
       tracker_(settings_, eyes_),
       scene_(settings_, context.robot, context.objects, boxes_of(place)),
       facts_(settings_, context.robot, context.objects),
-      facts_period_(settings_.human_period(), settings_.longest_period(), settings_.human_period()),
-      scene_period_(settings_.publish_period(), settings_.longest_period(),
+      facts_period_(settings_.human_period(), settings_.max_period(), settings_.human_period()),
+      scene_period_(settings_.publish_period(), settings_.max_period(),
                     settings_.human_period()),
-      news_period_(settings_.news_period(), settings_.longest_period(), settings_.news_period()),
+      news_period_(settings_.news_period(), settings_.max_period(), settings_.news_period()),
       human_out_(bus.advertise<HumanState>()),
       scene_out_(bus.advertise<Scene>()),
       facts_out_(bus.advertise<Facts>()),
@@ -67,7 +67,7 @@ void Node::observe(const HumanObservation& observation, const Receipt& receipt) 
   calibration_.to_world(there);
   const Stamp arrival = bus_.stamp_now() - (bus_.now() - receipt.arrival).count();
   const CaptureAge captured =
-      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.least_latency(), clock_of(settings_, observation.source));
+      capture_age(observation.stamp, arrival, to_seconds(receipt.age), settings_.min_latency(), clock_of(settings_, observation.source));
   const TimePoint seen = receipt.arrival - from_seconds(captured.age);
   if (!captured.unknown.empty()) {
     tracker_.refuse(there, captured.unknown, receipt.arrival);

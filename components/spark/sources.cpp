@@ -11,7 +11,7 @@ bool contains(const Coverage& box, const Vector3& p, double margin) {
   return (p.array() >= box.low.array() + m).all() && (p.array() <= box.high.array() - m).all();
 }
 
-std::string why_not_live(const Source& source, TimePoint now, double max_age) {
+std::string why_not_active(const Source& source, TimePoint now, double max_age) {
   const double age = source.age(now);
   if (age <= max_age) return "";
   if (!source.unknown_age.empty()) return source.unknown_age;
@@ -23,14 +23,12 @@ std::string why_not_live(const Source& source, TimePoint now, double max_age) {
   return text;
 }
 
-std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
-                                 double max_age) {
+std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now, double max_age) {
   constexpr double kMaxAge = 1e9;  // HumanState has room for [s]
   std::vector<SourceView> out;
   for (const auto& [name, source] : sources) {
-    const std::string why = why_not_live(source, now, max_age);
-    out.push_back({name, source.coverage.low, source.coverage.high,
-                   std::clamp(source.age(now), 0.0, kMaxAge), why.empty(), why});
+    const std::string why = why_not_active(source, now, max_age);
+    out.push_back({name, source.coverage.low, source.coverage.high, std::clamp(source.age(now), 0.0, kMaxAge), why.empty(), why});
   }
   return out;
 }

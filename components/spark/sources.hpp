@@ -41,11 +41,10 @@ struct Source {
 
 /// Returns why the source is not live now, one sentence without its name; empty: it is. `max_age`:
 /// of its newest new picture [s].
-std::string why_not_live(const Source& source, TimePoint now, double max_age);
+std::string why_not_active(const Source& source, TimePoint now, double max_age);
 
-/// Returns what every source observes now; `max_age` as for why_not_live().
-std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now,
-                                 double max_age);
+/// Returns what every source observes now; `max_age` as for why_not_active().
+std::vector<SourceView> views_of(const std::map<std::string, Source>& sources, TimePoint now, double max_age);
 
 /// Whether the point is inside, kept away from the sides by `margin` [m]; people move over the
 /// floor: the margin is horizontal.

@@ -177,7 +177,7 @@ void Controller::supervise(TimePoint now, bool late) noexcept {
   const bool here = lookahead_.step(lookahead_inputs(now), cycles_);
   const GuardVerdict& guard = lookahead_.verdict();
   const std::uint64_t trajectory = arm_.queue().current().id;
-  if (here && lookahead_.nearest().exchange_clear) inputs_.people.end_exemption();
+  if (here && lookahead_.nearest().handover_clear) inputs_.people.end_exemption();
   supervisor_.update({inputs_, set_points_, groups_.arm(), guard, arm_.active(), trajectory,
                       cost_factor(speed_settings(settings_), inputs_, trajectory), contact_.contact(), compliance_.moving(),
                       output_check_.take_limit_violation(), output_check_.shows_unproven(), output_check_.blind(), late},

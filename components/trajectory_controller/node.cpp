@@ -55,7 +55,7 @@ void Node::tick(TimePoint now) {
     command_out_->publish(command_);
   }
   late_before_ = late;
-  if (const StatusKey key = core_.status_key(); now >= next_status_ || !(key == told_)) {
+  if (const StatusKey key = core_.status_key(); now >= next_status_ || !(key == reported_)) {
     ExecutionStatus status = core_.status();
     if (has_second_writer()) status.causes |= bit(Cause::second_writer);
     status_out_->publish(status);
@@ -64,7 +64,7 @@ void Node::tick(TimePoint now) {
       blind_ = blind;
       next_reason_ = now + kReasonPeriod;
     }
-    told_ = key;
+    reported_ = key;
     next_status_ = now + kReportPeriod - from_seconds(0.5 * settings_.period);
   }
   if (now >= next_active_) {

@@ -35,7 +35,7 @@ class Node {
   std::uint64_t robot_writer_{};  // of the last RobotState; 0: none yet
   std::uint64_t late_before_{};
   JointCommand command_;
-  StatusKey told_;
+  StatusKey reported_;
   TimePoint next_active_{}, next_status_{}, next_reason_{};
   // A source of people has published. Before that, its absence does not make the process degraded.
   bool watched_{};

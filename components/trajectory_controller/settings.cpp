@@ -97,8 +97,8 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.guard.uncertainty_human = g.uncertainty_human;
   s.guard.uncertainty_robot = g.uncertainty_robot;
   s.guard.uncovered_factor = g.uncovered_factor;
-  s.guard.exchange_speed = g.exchange_speed;
-  s.guard.exchange_range = g.exchange_range;
+  s.guard.handover_speed = g.handover_speed;
+  s.guard.handover_range = g.handover_range;
   s.guard.stop_persistence = g.stop_persistence;
 
   s.proof = read_stop_proof(in.stop_proof, text);
@@ -108,7 +108,7 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.view.max_view_age = v.max_view_age;
   s.view.margin = v.margin;
   s.view.ahead_margin = v.ahead_margin;
-  s.view.edge_factor = v.edge_factor;
+  s.view.boundary_factor = v.boundary_factor;
   s.view.floor = v.floor;
 
   const auto& c = in.contact;
@@ -117,26 +117,26 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.contact.usual_time = c.usual_time;
   s.contact.follow_torque = c.follow_torque;
   s.contact.max_usual = c.max_usual;
-  s.contact.exchange_torque = c.exchange_torque;
+  s.contact.handover_torque = c.handover_torque;
   s.contact.clamp_time = c.clamp_time;
   s.contact.yield_torque = c.yield_torque;
   s.contact.yield_time = c.yield_time;
 
   const auto& h = in.hand;
   s.hand.grasp_speed = h.grasp_speed;
-  s.hand.closing_least = h.closing_least;
+  s.hand.min_closing = h.min_closing;
   s.hand.touch_effort = h.touch_effort;
   s.hand.touch_time = h.touch_time;
   s.hand.seek_speed = h.seek_speed;
   s.hand.seek_travel = h.seek_travel;
-  s.hand.squeeze_effort = h.squeeze_effort;
-  s.hand.squeeze_time = h.squeeze_time;
+  s.hand.grip_effort = h.grip_effort;
+  s.hand.grip_rise_time = h.grip_rise_time;
   s.hand.settle_time = h.settle_time;
-  s.hand.least_contacts = h.least_contacts;
-  s.hand.least_push = h.least_push;
+  s.hand.min_contacts = h.min_contacts;
+  s.hand.min_push = h.min_push;
   s.hand.lost_payload = h.lost_payload;
   s.hand.lost_time = h.lost_time;
-  s.hand.loosen_share = h.loosen_share;
+  s.hand.loosen_fraction = h.loosen_fraction;
   s.hand.yield_effort = h.yield_effort;
   s.hand.yield_speed = h.yield_speed;
   s.hand.person_range = h.person_range;
@@ -147,10 +147,10 @@ ControllerSettings load_settings(const std::filesystem::path& file) {
   s.hand.pull.hold_time = h.pull_hold;
   s.hand.pull.impulse = h.pull_impulse;
   s.hand.pull.commit_time = h.pull_commit;
-  s.hand.pull.slack_share = h.slack_share;
+  s.hand.pull.slack_fraction = h.slack_fraction;
   s.hand.pull.slack_time = h.slack_time;
   s.hand.pull.lost_time = h.load_back;
-  s.hand.pull.patience = h.release_patience;
+  s.hand.pull.timeout = h.release_timeout;
   s.hand.pull.direction_cosine = h.pull_cosine;
   s.hand.pull.away_cosine = h.pull_away_cosine;
 

@@ -220,7 +220,7 @@ class CartesianPlanning {
     if (!request_.level) return true;
     const HeldLevel& level = *request_.level;
     const double c = (T.linear() * level.axis_tool.normalized()).dot(level.up_root.normalized());
-    return std::acos(std::clamp(c, -1.0, 1.0)) <= level.most;
+    return std::acos(std::clamp(c, -1.0, 1.0)) <= level.bound;
   }
 
   /// 0 in the middle of every joint's range, growing steeply toward its ends.
@@ -235,26 +235,26 @@ class CartesianPlanning {
 
   /// The posture at the end of a leg, on the branch of its beginning; nullopt where joints meet a limit or jump.
   std::optional<ik::Axes> along_leg(std::size_t leg, double elbow_from, double elbow_to, const ik::Axes& from,
-                                    std::vector<SpeedAlong::Look>* looks = nullptr) const {
+                                    std::vector<SpeedAlong::SpeedSample>* samples = nullptr) const {
     const Node &a = motion_.path.nodes_[leg], &b = motion_.path.nodes_[leg + 1];
     const Vector step = b.active - a.active;
     const double far = std::max({kMetre * step.head<3>().norm(), step.segment<3>(3).norm(), std::abs(elbow_to - elbow_from)});
     const int parts = std::max(1, static_cast<int>(std::ceil(far / kProbe)));
     ik::Axes q = from;
-    const auto look = [&](double share) {
-      if (looks == nullptr) return;
-      looks->push_back(request_.people->at(whole(q, a.active.tail(a.active.size() - kElbow) + share * step.tail(step.size() - kElbow))));
-      looks->back().at = share;
+    const auto look = [&](double factor) {
+      if (samples == nullptr) return;
+      samples->push_back(request_.people->at(whole(q, a.active.tail(a.active.size() - kElbow) + factor * step.tail(step.size() - kElbow))));
+      samples->back().at = factor;
     };
     look(0);
     for (int k = 1; k <= parts; ++k) {
-      const double share = static_cast<double>(k) / parts;
-      const Vector active = a.active + share * step;
+      const double factor = static_cast<double>(k) / parts;
+      const Vector active = a.active + factor * step;
       const Pose T = for_arm(motion_.path.pose_at(active, leg), active.tail(active.size() - kElbow));
-      const auto next = arm_->nearest(T, elbow_from + share * (elbow_to - elbow_from), q);
+      const auto next = arm_->nearest(T, elbow_from + factor * (elbow_to - elbow_from), q);
       if (!next || (*next - q).lpNorm<Eigen::Infinity>() > 4 * settings_.largest_step) return std::nullopt;
       q = *next;
-      look(share);
+      look(factor);
     }
     return q;
   }
@@ -318,8 +318,8 @@ class CartesianPlanning {
     }
     const std::string name = of_node(given_[k]);
     if (!reach) return name + " is out of reach of the arm";
-    if (!inside) return "no posture inside the joint limits has the tool at " + name;
-    return "no way leads to " + name + " without a joint limit or a change of branch (a stretched shoulder, elbow or wrist) between";
+    if (!inside) return "no configuration inside the joint limits has the tool at " + name;
+    return "no path leads to " + name + " without a joint limit or a change of branch (a stretched shoulder, elbow or wrist) between";
   }
 
   KinematicLimits active_limits() const {
@@ -350,17 +350,17 @@ class CartesianPlanning {
     ik::Axes q = RobotModel::part(request_.start, group_);
     postures_.push_back(q);
     for (std::size_t k = 1; k < path.nodes_.size(); ++k) {
-      std::vector<SpeedAlong::Look> looks;
+      std::vector<SpeedAlong::SpeedSample> samples;
       const auto next = along_leg(k - 1, path.nodes_[k - 1].active[kTool], path.nodes_[k].active[kTool], q,
-                                  request_.people != nullptr ? &looks : nullptr);
+                                  request_.people != nullptr ? &samples : nullptr);
       if (!next) {
         end_before(given_[k], why_no_way(k));
         return false;
       }
       postures_.push_back(q = *next);
-      if (looks.empty()) continue;
-      motion_.speeds.push_back(SpeedAlong::zones(looks));
-      for (const SpeedAlong::Look& look : looks) motion_.cost = std::max(motion_.cost, std::clamp(look.cost, 0.0, 1.0));
+      if (samples.empty()) continue;
+      motion_.speeds.push_back(SpeedAlong::zones(samples));
+      for (const SpeedAlong::SpeedSample& look : samples) motion_.cost = std::max(motion_.cost, std::clamp(look.cost, 0.0, 1.0));
     }
     std::vector<Vector> line;
     for (const Node& node : path.nodes_) line.push_back(node.active);
@@ -404,7 +404,7 @@ class CartesianPlanning {
     };
     std::vector<Run> runs;
     std::vector<Vector> low, high;
-    const auto judge = [&]() -> std::optional<std::size_t> {
+    const auto check = [&]() -> std::optional<std::size_t> {
       const int count = static_cast<int>(runs.size());
       const std::uint32_t unclear = count > 0 ? world_.unclear_boxes(low.data(), high.data(), count) : 0;
       for (int i = 0; i < count; ++i) {
@@ -419,21 +419,21 @@ class CartesianPlanning {
       return std::nullopt;
     };
     for (std::size_t begin = 0; begin < postures.size();) {
-      Vector least = postures[begin], most = least;
+      Vector least = postures[begin], bound = least;
       std::size_t end = begin;
       while (end + 1 < postures.size()) {
-        const Vector lower = least.cwiseMin(postures[end + 1]), upper = most.cwiseMax(postures[end + 1]);
+        const Vector lower = least.cwiseMin(postures[end + 1]), upper = bound.cwiseMax(postures[end + 1]);
         if (end > begin && (upper - lower).maxCoeff() > settings_.collision_step) break;
         least = lower;
-        most = upper;
+        bound = upper;
         ++end;
       }
       runs.push_back({begin, end});
       low.push_back(least);
-      high.push_back(most);
+      high.push_back(bound);
       begin = end > begin && end + 1 < postures.size() ? end : postures.size();
       if (runs.size() < CollisionWorld::kMaxBoxes && begin < postures.size()) continue;
-      if (const auto touching = judge()) return *touching;
+      if (const auto touching = check()) return *touching;
     }
     return postures.size();
   }
@@ -485,8 +485,8 @@ class CartesianPlanning {
     const Vector begin = corner.at(0).position, end = corner.at(corner.duration()).position;
     const auto off = [&](const Vector& x, std::size_t leg) {
       const Vector along = nodes[leg + 1].active - nodes[leg].active;
-      const double share = std::clamp((x - nodes[leg].active).dot(along) / std::max(along.squaredNorm(), 1e-18), 0.0, 1.0);
-      return (x - nodes[leg].active - share * along).norm();
+      const double factor = std::clamp((x - nodes[leg].active).dot(along) / std::max(along.squaredNorm(), 1e-18), 0.0, 1.0);
+      return (x - nodes[leg].active - factor * along).norm();
     };
     std::size_t best = 0;
     double least = 1e-5;
@@ -528,11 +528,11 @@ class CartesianPlanning {
       const Vector also = state.position.tail(state.position.size() - kElbow);
       times_.push_back(t);
       if (!upright(T)) {
-        why = "on the way to " + of_node(ahead(t)) + " what is held leans over too far";
+        why = "on the path to " + of_node(ahead(t)) + " what is held leans over too far";
       } else if (!advance(T, state.position[kTool], also, q)) {
         why = why_stopped(ahead(t), T, state.position[kTool], also, q);
       } else if (std::string arm; joined_ && !joined_->follow(T, settings_.largest_step, arm)) {
-        why = "on the way to " + of_node(ahead(t)) + " " + arm;
+        why = "on the path to " + of_node(ahead(t)) + " " + arm;
       } else {
         Vector sample(static_cast<Eigen::Index>(motion_.axes.size()));
         if (joined_)
@@ -547,7 +547,7 @@ class CartesianPlanning {
     if (const std::size_t touching = first_touching(postures); touching < postures.size()) {
       last = touching;
       const CollisionVerdict verdict = world_.check(postures[touching]);
-      why = "on the way to " + of_node(ahead(times_[last])) + " " + verdict.first + " touches " + verdict.second;
+      why = "on the path to " + of_node(ahead(times_[last])) + " " + verdict.first + " touches " + verdict.second;
     }
     if (why.empty()) return true;
     end_before(ahead(times_[last]), why);
@@ -560,7 +560,7 @@ class CartesianPlanning {
   }
 
   std::string why_stopped(std::size_t given, const Pose& T, double elbow, const Vector& also, const ik::Axes& q) const {
-    const std::string way = "on the way to " + of_node(given);
+    const std::string way = "on the path to " + of_node(given);
     const auto next = arm_->nearest(for_arm(T, also), elbow, q);
     if (!next) return way + (arm_->branches(for_arm(T, also), elbow).empty() ? " the arm does not reach" : " a joint meets its limit");
     Eigen::Index joint = 0;
@@ -591,15 +591,15 @@ class CartesianPlanning {
 
   void measure_join() {
     const Trajectory& run = motion_.executable.approximation.trajectory;
-    const int looks = std::max(1, static_cast<int>(std::ceil(run.duration() / (4 * settings_.period))));
-    for (int k = 0; k <= looks; ++k) {
-      const Vector q = run.at(run.duration() * k / looks).position;
+    const int samples = std::max(1, static_cast<int>(std::ceil(run.duration() / (4 * settings_.period))));
+    for (int k = 0; k <= samples; ++k) {
+      const Vector q = run.at(run.duration() * k / samples).position;
       const JoinError e = joined_->error(chain_->forward(q.head(static_cast<Eigen::Index>(group_.axes.size())), nullptr),
                                          q.tail(static_cast<Eigen::Index>(joined_->axes().size())));
       motion_.joined = {std::max(motion_.joined.apart, e.apart), std::max(motion_.joined.turned, e.turned)};
     }
-    if (motion_.joined.apart > settings_.most_apart.apart || motion_.joined.turned > settings_.most_apart.turned)
-      refuse(text("the hands would come %.2f mm and %.2f degrees apart on the way", 1e3 * motion_.joined.apart,
+    if (motion_.joined.apart > settings_.max_apart.apart || motion_.joined.turned > settings_.max_apart.turned)
+      refuse(text("the hands would come %.2f mm and %.2f degrees apart on the path", 1e3 * motion_.joined.apart,
                   motion_.joined.turned * 180 / M_PI));
   }
 

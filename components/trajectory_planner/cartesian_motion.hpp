@@ -31,7 +31,7 @@ struct CartesianWaypoint {
 struct HeldLevel {
   Vector3 axis_tool{Vector3::UnitZ()};  ///< of the tool, along up_root when upright
   Vector3 up_root{Vector3::UnitZ()};    ///< up in the frame of the root link
-  double most{0.1};                     ///< largest angle between the two [rad]
+  double bound{0.1};                    ///< largest angle between the two [rad]
 };
 
 struct CartesianRequest {
@@ -65,7 +65,7 @@ struct CartesianSettings {
   double collision_step{0.01};                   ///< configurations are checked this often [rad, max norm]
   int elbows{24};                                ///< angles tried at a node that leaves its elbow open
   ApproximationTolerance tolerance{2e-4, 1e-2};  ///< of TR_app to the sampled joints [rad], [rad/s]
-  JoinError most_apart{1e-3, 3.5e-3};            ///< of joined tips: beyond it the motion is refused
+  JoinError max_apart{1e-3, 3.5e-3};             ///< of joined tips: beyond it the motion is refused
 };
 
 /// TR: the smoothed trajectory of the active axes and how to read poses from it. Own method: the

@@ -26,13 +26,13 @@ Node::Node(Bus& bus, const NodeContext& context)
       cost_(*context.robot, weights_) {
   if (!context.description.empty()) on_platform_ = on_platform(*context.robot, context.description);
   const auto file = settings::read_trajectory_planner_settings(context.settings / "trajectory_planner.txtpb");
-  settings_.corner_step = file.corner_step;
-  settings_.speed = {file.cost_step,       file.least_speed_factor, file.concern_radius, file.approach_speed,
-                     file.approach_factor, file.unseen_angle,       file.unseen_factor};
+  settings_.blend_step = file.blend_step;
+  settings_.speed = {file.cost_step,       file.min_speed_factor, file.concern_radius, file.approach_speed,
+                     file.approach_factor, file.unseen_angle,     file.unseen_factor};
   settings_.tool.allowed_excess = file.allowed_excess;
   const auto sped = [](RateBounds& bounds, double velocity) {
-    const double share = velocity / bounds.velocity;
-    bounds = {velocity, share * bounds.acceleration, share * bounds.jerk};
+    const double factor = velocity / bounds.velocity;
+    bounds = {velocity, factor * bounds.acceleration, factor * bounds.jerk};
   };
   sped(settings_.tool.translation, file.tool_speed);
   sped(settings_.tool.rotation, file.tool_turn_speed);

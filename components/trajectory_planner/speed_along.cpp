@@ -50,37 +50,37 @@ double SpeedAlong::what_people_do(const Vector& q) const {
   return least;
 }
 
-double SpeedAlong::share(double cost, const Vector& q) const {
-  return (1 - (1 - settings_.least_speed_factor) * std::clamp(cost, 0.0, 1.0)) * what_people_do(q);
+double SpeedAlong::factor(double cost, const Vector& q) const {
+  return (1 - (1 - settings_.min_speed_factor) * std::clamp(cost, 0.0, 1.0)) * what_people_do(q);
 }
 
-SpeedAlong::Look SpeedAlong::at(const Vector& q) const {
+SpeedAlong::SpeedSample SpeedAlong::at(const Vector& q) const {
   if (unconcerned()) return {};
   const double cost = cost_(q);
-  return {0, cost, share(cost, q)};
+  return {0, cost, factor(cost, q)};
 }
 
-std::vector<SpeedAlong::Look> SpeedAlong::along(const Vector& from, const Vector& to) const {
+std::vector<SpeedAlong::SpeedSample> SpeedAlong::along(const Vector& from, const Vector& to) const {
   const int parts =
       unconcerned() ? 1 : std::max(1, static_cast<int>(std::ceil((to - from).lpNorm<Eigen::Infinity>() / settings_.cost_step)));
   std::vector<double> at, cost(static_cast<std::size_t>(parts) + 1);
   for (int k = 0; k <= parts; ++k) at.push_back(static_cast<double>(k) / parts);
   cost_.on_line(from, to, at.data(), parts + 1, cost.data());
-  std::vector<Look> looks;
+  std::vector<SpeedSample> samples;
   for (std::size_t k = 0; k < at.size(); ++k)
-    looks.push_back({at[k], cost[k], unconcerned() ? 1.0 : share(cost[k], from + at[k] * (to - from))});
-  return looks;
+    samples.push_back({at[k], cost[k], unconcerned() ? 1.0 : factor(cost[k], from + at[k] * (to - from))});
+  return samples;
 }
 
-SpeedZones SpeedAlong::zones(const std::vector<Look>& looks) {
+SpeedZones SpeedAlong::zones(const std::vector<SpeedSample>& samples) {
   SpeedZones zones;
-  for (std::size_t k = 0; k + 1 < looks.size(); ++k) {
-    const double lower = std::min(looks[k].share, looks[k + 1].share);
-    const double share = std::max(kStep, kStep * std::floor(lower / kStep + 1e-9));
-    if (!zones.empty() && zones.back().scale == share)
-      zones.back().end = looks[k + 1].at;
+  for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
+    const double lower = std::min(samples[k].factor, samples[k + 1].factor);
+    const double factor = std::max(kStep, kStep * std::floor(lower / kStep + 1e-9));
+    if (!zones.empty() && zones.back().scale == factor)
+      zones.back().end = samples[k + 1].at;
     else
-      zones.push_back({looks[k + 1].at, share});
+      zones.push_back({samples[k + 1].at, factor});
   }
   return zones;
 }

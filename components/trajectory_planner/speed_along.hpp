@@ -19,8 +19,8 @@ struct Surroundings {
 
 /// Factors of the velocity limits, because of people.
 struct SpeedSettings {
-  double cost_step{0.1};           ///< the path is sampled this often [rad, max norm]
-  double least_speed_factor{0.5};  ///< where the cost is 1; 1 where it is 0, linear between
+  double cost_step{0.1};         ///< the path is sampled this often [rad, max norm]
+  double min_speed_factor{0.5};  ///< where the cost is 1; 1 where it is 0, linear between
   /// What people do counts in full up to half this distance from the tool, and fades to nothing
   /// here [m].
   double concern_radius{1.5};
@@ -37,22 +37,22 @@ class SpeedAlong {
   /// `cost` knows the same people; it, and the robot, must live on.
   SpeedAlong(const RobotModel& robot, const HumanCost& cost, const Surroundings& around, const SpeedSettings& settings);
 
-  struct Look {
-    double at{};      ///< position on the motion, 0 at its start, 1 at its end
-    double cost{};    ///< human-aware, [0, 1]
-    double share{1};  ///< factor of the velocity limits
+  struct SpeedSample {
+    double at{};       ///< position on the motion, 0 at its start, 1 at its end
+    double cost{};     ///< human-aware, [0, 1]
+    double factor{1};  ///< factor of the velocity limits
   };
   /// Returns whether no person is present and no layer adds a cost: the factor is 1 everywhere.
   bool unconcerned() const { return !cost_.concerned(); }
-  Look at(const Vector& q) const;  ///< all axes [rad]
+  SpeedSample at(const Vector& q) const;  ///< all axes [rad]
   /// Returns samples of the straight motion between two configurations, ends included.
-  std::vector<Look> along(const Vector& from, const Vector& to) const;
+  std::vector<SpeedSample> along(const Vector& from, const Vector& to) const;
   /// Factor of the velocity limits because of what people do, (0, 1]; 1 without people.
   double what_people_do(const Vector& q) const;
 
   /// Between two samples the lower factor of both counts, in steps of kStep downward, never below
   /// kStep; equal neighbours are one zone.
-  static SpeedZones zones(const std::vector<Look>& looks);
+  static SpeedZones zones(const std::vector<SpeedSample>& samples);
   /// Step, and least value, of the factors that zones() gives.
   static constexpr double kStep = 0.05;
 
@@ -62,7 +62,7 @@ class SpeedAlong {
     Vector3 trunk{Vector3::Zero()}, velocity{Vector3::Zero()};
     std::optional<Sight> sight;
   };
-  double share(double cost, const Vector& q) const;
+  double factor(double cost, const Vector& q) const;
 
   const RobotModel& robot_;
   const HumanCost& cost_;

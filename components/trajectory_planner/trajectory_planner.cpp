@@ -6,7 +6,7 @@
 #include "common/trajectory/limits_check.hpp"
 #include "common/trajectory/path/segment_table.hpp"
 #include "common/trajectory/path/smooth.hpp"
-#include "components/trajectory_planner/motion_judge.hpp"
+#include "components/trajectory_planner/motion_check.hpp"
 
 namespace handsel::trajectory_planner {
 namespace {
@@ -82,17 +82,17 @@ class CornerJudge {
   const Vector& start_;
   double step_;
   bool bound_;  // by what outside layers forbid: not when it starts there
-  MotionJudge motion_;
+  MotionCheck motion_;
 };
 
 /// Zones of the legs, as far as people are concerned.
 void look_along(const SpeedAlong& people, const TrajectoryRequest& request, const Group& group, Result& result) {
   if (people.unconcerned()) return;
   for (std::size_t k = 0; k + 1 < request.nodes.size(); ++k) {
-    const auto looks = people.along(RobotModel::with(request.start, group, request.nodes[k]),
-                                    RobotModel::with(request.start, group, request.nodes[k + 1]));
-    for (const SpeedAlong::Look& look : looks) result.cost = std::max(result.cost, std::clamp(look.cost, 0.0, 1.0));
-    result.speeds.push_back(SpeedAlong::zones(looks));
+    const auto samples = people.along(RobotModel::with(request.start, group, request.nodes[k]),
+                                      RobotModel::with(request.start, group, request.nodes[k + 1]));
+    for (const SpeedAlong::SpeedSample& look : samples) result.cost = std::max(result.cost, std::clamp(look.cost, 0.0, 1.0));
+    result.speeds.push_back(SpeedAlong::zones(samples));
   }
 }
 
@@ -125,12 +125,12 @@ void plan_joints(const PlanningCase& given, const HumanCost& cost, const SpeedAl
   const auto& [robot, group, world, request, settings] = given;
   look_along(people, request, group, result);
   tell_speeds(request, result);
-  CornerJudge judge(robot, group, world, cost, request.start, settings.corner_step);
+  CornerJudge check(robot, group, world, cost, request.start, settings.blend_step);
   SmoothSettings smoothing;
   smoothing.allowed_excess = settings.tool.allowed_excess;
   SmoothResult smoothed = smooth(
       request.nodes, comfort_limits(robot, group, request.speed_scale), smoothing,
-      [&judge](const Trajectory& corner) { return judge(corner); }, result.speeds);
+      [&check](const Trajectory& corner) { return check(corner); }, result.speeds);
   TrajectoryReply& reply = result.reply;
   if (!(reply.reason = smoothed.reason).empty()) return;
   tell_stops(smoothed.corners, reply);
@@ -150,7 +150,7 @@ void plan_tool(const PlanningCase& given, const SpeedAlong& people, const Pose& 
   wanted.people = people.unconcerned() ? nullptr : &people;
   for (const TipNode& node : request.poses)
     wanted.nodes.push_back({T_base_world * node.T_world_tip, node.has_elbow ? std::optional(node.elbow) : std::nullopt, node.also});
-  if (request.upright) wanted.level = HeldLevel{request.upright_axis, T_base_world.linear() * Vector3::UnitZ(), request.most_tilt};
+  if (request.upright) wanted.level = HeldLevel{request.upright_axis, T_base_world.linear() * Vector3::UnitZ(), request.max_tilt};
   if (!request.follower.empty()) wanted.joined = JoinedArm{robot.group(request.follower), request.T_tip_follower};
   CartesianMotion motion = plan_cartesian(robot, group, world, wanted, settings.tool);
   TrajectoryReply& reply = result.reply;

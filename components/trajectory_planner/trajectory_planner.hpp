@@ -13,7 +13,7 @@ namespace handsel::trajectory_planner {
 
 struct Settings {
   /// Blends are checked this often for places outside layers forbid [rad, max norm].
-  double corner_step{0.02};
+  double blend_step{0.02};
   SpeedSettings speed;  ///< how people lower the speed along the path
   /// Of motions of the tool; its allowed excess holds for those of joints too.
   CartesianSettings tool;

@@ -15,7 +15,7 @@ Place read_common(const std::filesystem::path& folder, const RobotModel& robot, 
   const auto controller = settings::read_trajectory_controller_settings(folder / "trajectory_controller.txtpb");
   out.dry_run = in.dry_run;
   out.watch.max_ahead = in.wire_jitter;
-  out.fade_fraction = in.fade_share;
+  out.fade_fraction = in.fade_fraction;
   out.watch.min_stop = in.min_stop;
   out.watch.period = controller.period;
   out.watch.max_gap = in.max_setpoint_gap;
@@ -33,7 +33,7 @@ void read_gripper(const settings::GripperSettings& in, const RobotModel& robot, 
   if (it == robot.axes().end()) refuse("axis", "names \"" + in.axis + "\", which robot " + robot.name() + " does not have");
   if (!(std::abs(in.open - in.closed) > kMinTravel)) refuse("open", "must differ from closed");
   if (!(in.closed_width <= in.open_width - kMinTravel)) refuse("closed_width", "must be below open_width");
-  if (!(in.most_force >= in.least_force)) refuse("most_force", "must be at least least_force");
+  if (!(in.max_force >= in.min_force)) refuse("max_force", "must be at least min_force");
   out.axis = static_cast<int>(it - robot.axes().begin());
   out.open = in.open;
   out.closed = in.closed;
@@ -41,8 +41,8 @@ void read_gripper(const settings::GripperSettings& in, const RobotModel& robot, 
   out.closed_width = in.closed_width;
   out.speed = in.speed;
   out.stiffness = in.stiffness;
-  out.min_force = in.least_force;
-  out.max_force = in.most_force;
+  out.min_force = in.min_force;
+  out.max_force = in.max_force;
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ Place load_settings(const std::filesystem::path& folder, const RobotModel& robot
   SettingsText text;
   const auto in = settings::read_reflex_arm_settings(folder / "reflex_arm.txtpb", &text);
   out.joint_deceleration = in.joint_deceleration;
-  out.limit_ratio = in.limit_share;
+  out.limit_ratio = in.limit_ratio;
   out.lost_cycles = in.lost_cycles;
   if (in.gripper) read_gripper(*in.gripper, robot, text.root().inside("gripper"), out.gripper);
   return read_common(folder, robot, in.common, text.root().inside("common"), out.common);

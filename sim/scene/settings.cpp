@@ -21,7 +21,7 @@ SimSettings load_settings(const std::filesystem::path& folder) {
   s.step = read.step;
   s.solver_iterations = read.solver_iterations;
   s.state_rate = read.state_rate;
-  s.ground_truth_rate = read.truth_rate;
+  s.ground_truth_rate = read.ground_truth_rate;
   s.servo.bandwidth = read.servo_bandwidth;
   s.robot_side.max_gap = read.max_setpoint_gap;
   s.robot_side.max_ahead = s.robot_side.max_gap;

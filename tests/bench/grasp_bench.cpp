@@ -11,7 +11,7 @@
 #include "components/grasp_planner/list/epsilon.hpp"
 #include "components/grasp_planner/list/frame_search.hpp"
 #include "components/grasp_planner/list/so3_grid.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "tests/support/oracles/hull_oracle.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
@@ -84,15 +84,16 @@ ObjectModel fine_mug() {
 }
 
 struct Setup {
-  std::shared_ptr<const HandGeometry> kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  std::shared_ptr<const FingerWorkspaces> workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
+  std::shared_ptr<const HandGeometry> hand_geometry =
+      std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  std::shared_ptr<const FingerWorkspaces> workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
   ObjectModel model = fine_mug();
   GraspListSettings settings = [] {
     GraspListSettings s;
     s.orientations = 2000;
     return s;
   }();
-  std::shared_ptr<const Graspable> mug = std::make_shared<const Graspable>(model, kit->tip_radius(), settings.step_share, 1);
+  std::shared_ptr<const Graspable> mug = std::make_shared<const Graspable>(model, hand_geometry->tip_radius(), settings.step_fraction, 1);
 };
 const Setup& setup() {
   static const Setup made;
@@ -108,7 +109,7 @@ void BM_1000_grasps(benchmark::State& state) {
     std::atomic<std::uint64_t> next{0}, found{0};
     std::vector<GraspList> parts(threads);
     const auto work = [&](std::size_t of) {
-      GraspLister lister(s.kit, s.workspaces, s.mug, s.settings);
+      GraspLister lister(s.hand_geometry, s.workspaces, s.mug, s.settings);
       for (std::size_t had = 0; found < 1000; had = lister.found()) {
         lister.test(next.fetch_add(32), 32);
         found += lister.found() - had;
@@ -132,13 +133,13 @@ Pose frame_of(std::uint64_t i) {
   static const auto positions = uniform_positions(setup().mug->box(), 60);
   static const auto orientations = so3_sequence(576);
   return make_pose(positions[i * 7 % positions.size()], orientations[i * 13 % orientations.size()]) *
-         setup().kit->hand.T_hand_grasp().inverse();
+         setup().hand_geometry->hand.T_hand_grasp().inverse();
 }
 
 /// Contacts of all fingers in a frame as the planner finds them: trees first, then inverse kinematics, then collision.
 void BM_frame_trees_first(benchmark::State& state) {
   const Setup& s = setup();
-  FrameSearch search(*s.kit, *s.workspaces, *s.mug, s.settings);
+  FrameSearch search(*s.hand_geometry, *s.workspaces, *s.mug, s.settings);
   GraspList counters;
   std::vector<std::uint32_t> points;
   std::uint64_t frame = 0;
@@ -158,16 +159,16 @@ void BM_frame_collision_first(benchmark::State& state) {
   std::uint64_t frame = 0;
   for (auto _ : state) {
     const Pose T = frame_of(frame++ % 300), T_hand_object = T.inverse();
-    if (s.kit->shape.palm_touches(*s.mug, T)) continue;
+    if (s.hand_geometry->shape.palm_touches(*s.mug, T)) continue;
     for (int f = 0; f < 4; ++f) {
-      const FingerChain& chain = s.kit->chains[static_cast<std::size_t>(f)];
+      const FingerChain& chain = s.hand_geometry->chains[static_cast<std::size_t>(f)];
       std::size_t found = 0;
       for (std::uint32_t i = 0; i < s.mug->points().size() && found < s.settings.contacts_per_finger; ++i) {
         const Vector3 p = T_hand_object * s.mug->tip_centre(i);
-        Vector q = s.kit->hand.pregrasp();
-        if (!chain.inverse(p, s.kit->hand.lower_contact(), s.kit->hand.upper_contact(), q)) continue;
+        Vector q = s.hand_geometry->hand.pregrasp();
+        if (!chain.inverse(p, s.hand_geometry->hand.lower_contact(), s.hand_geometry->hand.upper_contact(), q)) continue;
         chain.forward(q, T_step);
-        if (s.kit->shape.finger_touches(f, T_step, *s.mug, T, -s.settings.depth)) continue;
+        if (s.hand_geometry->shape.finger_touches(f, T_step, *s.mug, T, -s.settings.depth)) continue;
         const auto& spheres = (*s.workspaces)[static_cast<std::size_t>(f)].spheres();
         found += std::any_of(spheres.begin(), spheres.end(), [&](const WorkspaceSphere& w) { return (w.centre - p).norm() <= w.radius; });
       }
@@ -181,7 +182,7 @@ BENCHMARK(BM_frame_collision_first)->Unit(benchmark::kMicrosecond)->Iterations(3
 void BM_list_from_disk(benchmark::State& state) {
   static const test::TemporaryFolder folder;
   const Setup& s = setup();
-  GraspList list = list_grasps(s.kit, s.workspaces, s.mug, [] {
+  GraspList list = list_grasps(s.hand_geometry, s.workspaces, s.mug, [] {
     GraspListSettings few;
     few.orientations = 24;
     return few;
@@ -198,9 +199,9 @@ void BM_choose_from_list(benchmark::State& state) {
   const Setup& s = setup();
   static const auto robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
   static const ObjectModel mug = ObjectModel::load(kDeploy / "objects/mug/mug.txtpb");
-  GraspBook book(s.kit, {}, GraspStore(""));
-  static const auto page = book.page(mug);
-  const GraspChooser chooser(robot, s.kit, [](const std::string&) { return &mug; }, {});
+  GraspCache cache(s.hand_geometry, {}, GraspStore(""));
+  static const auto page = cache.page(mug);
+  const GraspChooser chooser(robot, s.hand_geometry, [](const std::string&) { return &mug; }, {});
   Scene scene;
   scene.robot_known = true;
   scene.robot_position = robot->rest_configuration();
@@ -219,7 +220,7 @@ BENCHMARK(BM_choose_from_list)->Arg(1)->Arg(10)->Unit(benchmark::kMillisecond);
 
 void BM_object_made_ready(benchmark::State& state) {
   const Setup& s = setup();
-  for (auto _ : state) benchmark::DoNotOptimize(Graspable(s.model, s.kit->tip_radius(), s.settings.step_share, 1));
+  for (auto _ : state) benchmark::DoNotOptimize(Graspable(s.model, s.hand_geometry->tip_radius(), s.settings.step_fraction, 1));
 }
 BENCHMARK(BM_object_made_ready)->Unit(benchmark::kMillisecond);
 

@@ -70,7 +70,7 @@ int run(int cases) {
     const std::vector<Vector> rest = remainder(first.path, on_way, 0.5);
     for (std::size_t i = 1; i < rest.size() && !blocked; ++i)
       blocked = !world.check_motion(RobotModel::with(problem.start, arm, rest[i - 1]), RobotModel::with(problem.start, arm, rest[i])).free;
-    LiveResult live;
+    ReplanResult live;
     Result anew;
     const double t_live = seconds([&] {
       put(people);

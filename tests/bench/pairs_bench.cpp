@@ -42,7 +42,8 @@ int run(int rounds) {
   for (const char* object : {"mug", "bottle", "box", "can", "ball"}) {
     const HandOnObject &right = hand_on_object("sah", object, 60, 144), &left = hand_on_object("sah_left", object, 60, 144),
                        &human = hand_on_object("human_right", object);
-    const HandSide a{right.kit.get(), &right.list}, b{left.kit.get(), &left.list}, h{human.kit.get(), &human.list};
+    const HandSide a{right.hand_geometry.get(), &right.list}, b{left.hand_geometry.get(), &left.list},
+        h{human.hand_geometry.get(), &human.list};
     DoubleSettings settings;
     settings.clearance = 0.004;
     row("double grasps, the 200 best of each", object, rounds, 1000, [&] { return list_double_grasps(a, b, settings).grasps.size(); });

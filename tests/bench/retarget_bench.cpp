@@ -88,7 +88,7 @@ int run(int cases) {
     ++tried;
 
     manipulation_planner::OtpSearch search;
-    path_planner::LiveResult live;
+    path_planner::ReplanResult live;
     TrajectoryReply soft;
     bool joined = false;
     const auto goals_of_search = [&] {

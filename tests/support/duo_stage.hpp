@@ -29,7 +29,7 @@ struct DuoStage {
     std::vector<RegraspArm> out;
     for (const Manipulator& m : manipulators(file, robot)) {
       const HandOnObject& h = hand_on_object(m.hand, object, 60, 144);
-      out.push_back({m, h.kit.get(), &h.list});
+      out.push_back({m, h.hand_geometry.get(), &h.list});
     }
     out.resize(count);
     return out;

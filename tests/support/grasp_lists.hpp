@@ -14,9 +14,10 @@ inline std::filesystem::path deploy_folder() { return std::filesystem::path(HAND
 
 inline std::shared_ptr<const HandGeometry> hand_kit(const std::string& name) {
   static std::map<std::string, std::shared_ptr<const HandGeometry>> kits;
-  auto& kit = kits[name];
-  if (!kit) kit = std::make_shared<const HandGeometry>(HandModel::load(deploy_folder() / "hands" / name / (name + ".txtpb")));
-  return kit;
+  auto& hand_geometry = kits[name];
+  if (!hand_geometry)
+    hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(deploy_folder() / "hands" / name / (name + ".txtpb")));
+  return hand_geometry;
 }
 
 inline const ObjectModel* object_model(const std::string& name) {
@@ -26,7 +27,7 @@ inline const ObjectModel* object_model(const std::string& name) {
 }
 
 struct HandOnObject {
-  std::shared_ptr<const HandGeometry> kit;
+  std::shared_ptr<const HandGeometry> hand_geometry;
   std::shared_ptr<const Graspable> object;
   GraspList list;
 };
@@ -36,14 +37,14 @@ inline const HandOnObject& hand_on_object(const std::string& hand, const std::st
   static std::map<std::string, HandOnObject> made;
   static std::map<std::string, std::shared_ptr<const FingerWorkspaces>> workspaces;
   HandOnObject& h = made[hand + "/" + object + "/" + std::to_string(positions) + "/" + std::to_string(orientations)];
-  if (h.kit) return h;
-  h.kit = hand_kit(hand);
-  if (!workspaces[hand]) workspaces[hand] = std::make_shared<const FingerWorkspaces>(make_workspaces(*h.kit));
+  if (h.hand_geometry) return h;
+  h.hand_geometry = hand_kit(hand);
+  if (!workspaces[hand]) workspaces[hand] = std::make_shared<const FingerWorkspaces>(make_workspaces(*h.hand_geometry));
   GraspListSettings settings;
   settings.positions = positions;
   settings.orientations = orientations;
-  h.object = std::make_shared<const Graspable>(*object_model(object), h.kit->tip_radius(), settings.step_share, settings.seed);
-  h.list = list_grasps(h.kit, workspaces[hand], h.object, settings);
+  h.object = std::make_shared<const Graspable>(*object_model(object), h.hand_geometry->tip_radius(), settings.step_fraction, settings.seed);
+  h.list = list_grasps(h.hand_geometry, workspaces[hand], h.object, settings);
   return h;
 }
 

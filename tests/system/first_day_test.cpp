@@ -24,15 +24,14 @@ FirstDayPlan reflex_arm() {
   test::small_robot();
   const std::string file =
       (std::filesystem::temp_directory_path() / ("handsel_small_robot_" + std::to_string(::getpid())) / "small.txtpb").string();
-  return {
-      HANDSEL_BINARIES,
-      "reflex_arm",
-      file,
-      "gripper { axis: \"finger_a_joint\" open: 0 closed: 1.2 open_width: 0.08 closed_width: 0 speed: 0.1 stiffness: 400 least_force: 5 "
-      "most_force: 40 }\n",
-      0,
-      HANDSEL_TEST_DOMAIN,
-      false};
+  return {HANDSEL_BINARIES,
+          "reflex_arm",
+          file,
+          "gripper { axis: \"finger_a_joint\" open: 0 closed: 1.2 open_width: 0.08 closed_width: 0 speed: 0.1 stiffness: 400 min_force: 5 "
+          "max_force: 40 }\n",
+          0,
+          HANDSEL_TEST_DOMAIN,
+          false};
 }
 
 template <FirstDayPlan (*plan)()>
@@ -133,14 +132,14 @@ TYPED_TEST(FirstDayOf, walls_are_not_passed) {
   this->tell([](FirstDay& day) {
     day.play("");
     ASSERT_TRUE(day.ready()) << day.where();
-    day.least_room = day.wall_room();
-    ASSERT_GT(day.least_room, 0.05);
+    day.min_room = day.wall_room();
+    ASSERT_GT(day.min_room, 0.05);
     day.move_to(FirstDay::kFar);
     ASSERT_TRUE(day.wait([&] { return day.angle() > 0.05 && day.has(Cause::wall); })) << day.where();
     EXPECT_EQ(day.status().mode, Mode::slow);
     ASSERT_TRUE(day.wait([&] { return day.angle() > 0.1 && day.speed() < 2e-3; })) << day.where();
     EXPECT_FALSE(day.arrived());
-    EXPECT_GE(day.least_room, 0.0);
+    EXPECT_GE(day.min_room, 0.0);
     day.cancel();
     ASSERT_TRUE(day.wait([&] { return day.status().motion == MotionState::stopped && day.standing(); })) << day.where();
     TestFixture::go_back(day);

@@ -44,9 +44,9 @@ Json over_dds(const std::string& scenario, int seed, const std::string& timeout 
 }
 
 void expect_bounded(const Json& line, const std::string& what) {
-  ASSERT_TRUE(line.contains("limit_share")) << what << ": " << line.dump();
+  ASSERT_TRUE(line.contains("limit_ratio")) << what << ": " << line.dump();
   for (const char* derivative : {"v", "a", "j"})
-    EXPECT_LE(line["limit_share"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
+    EXPECT_LE(line["limit_ratio"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
   EXPECT_EQ(line["ssm_violations"], 0) << what;
 }
 

@@ -80,7 +80,7 @@ TEST(Trials, lines_come_in_order_and_a_trial_that_cannot_start_is_one_failure) {
   EXPECT_EQ(lines[0]["failure"], "timeout");
   EXPECT_EQ(lines[1]["failure"], "error");
   for (const char* field :
-       {"scenario", "seed", "attention", "law", "success", "failure", "duration_s", "least_separation_m", "ssm_violations", "limit_share",
+       {"scenario", "seed", "attention", "law", "success", "failure", "duration_s", "min_separation_m", "ssm_violations", "limit_ratio",
         "drops", "activations", "activations_at_pmin", "reaction_p50_s", "reaction_p99_s", "hash"}) {
     EXPECT_TRUE(lines[0].contains(field)) << field;
   }

@@ -50,9 +50,9 @@ class OwnRobot : public testing::TestWithParam<const char*> {
         ++done;
       else
         std::printf("%s: %s %s\n", what.c_str(), line["failure"].dump().c_str(), line["reason"].dump().c_str());
-      ASSERT_TRUE(line.contains("limit_share")) << what << ": " << line.dump();
+      ASSERT_TRUE(line.contains("limit_ratio")) << what << ": " << line.dump();
       for (const char* derivative : {"v", "a", "j"})
-        EXPECT_LE(line["limit_share"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
+        EXPECT_LE(line["limit_ratio"][derivative].get<double>(), 1.0 + 1e-6) << what << " " << derivative;
       EXPECT_EQ(line["ssm_violations"], 0) << what;
     }
     EXPECT_GE(done, at_least);

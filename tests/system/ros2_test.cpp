@@ -212,7 +212,7 @@ TEST(Ros2, a_publisher_with_ros_names_moves_our_person_and_reads_our_robot) {
         from_seconds(10));
     return result;
   };
-  std::string result;  // on a busy machine the robot may have been stopped on the way; then it is asked once more
+  std::string result;  // on a busy machine the robot may have been stopped on the path; then it is asked once more
   for (int tries = 0; tries < 3 && result != "done"; ++tries) result = ask(names[axis], target);
   EXPECT_EQ(result, "done");
   EXPECT_NEAR(robot.position[static_cast<Eigen::Index>(axis)], target, 0.01);

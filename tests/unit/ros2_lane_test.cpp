@@ -422,12 +422,12 @@ TEST_F(Executor, refuses_with_the_reason) {
   verdict.free.back() = 0;
   verdict.reason = "forearm touches table";
   executor->on(verdict);
-  EXPECT_EQ(step().results.at(0), "refused: the way is not free: forearm touches table");
+  EXPECT_EQ(step().results.at(0), "refused: the path is not free: forearm touches table");
   EXPECT_EQ(asked(by(0.2)), "");
   step();
   EXPECT_EQ(step(5.1).results.at(0), "refused: the collision checker does not answer");
   now += from_seconds(1);
-  EXPECT_EQ(asked(by(0.2)), "refused: the trajectory controller is not heard");
+  EXPECT_EQ(asked(by(0.2)), "refused: no message of the trajectory controller arrives");
 }
 
 }  // namespace

@@ -339,7 +339,7 @@ TEST_F(ToolMotions, that_cannot_be_say_why_and_go_as_far_as_they_can) {
   request_.group = "arm";
   request_.upright = true;
   request_.upright_axis = home_.linear().transpose() * Vector3::UnitZ();
-  request_.most_tilt = 0.05;
+  request_.max_tilt = 0.05;
   to({0, 0.1, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(0.5, request_.upright_axis.unitOrthogonal())));
   expect(1, "leans over");
   request_.upright = false;

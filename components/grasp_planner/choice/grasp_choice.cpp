@@ -30,7 +30,7 @@ const char* reason_text(ChoiceReason reason) {
     case ChoiceReason::below_support:
       return "the hand would be in or under what the object stands on";
     case ChoiceReason::out_of_reach:
-      return "no posture of the arm reaches it";
+      return "no configuration of the arm reaches it";
     case ChoiceReason::collision:
       return "arm or hand would collide at the grasp";
     case ChoiceReason::cannot_lift:
@@ -38,19 +38,19 @@ const char* reason_text(ChoiceReason reason) {
     case ChoiceReason::no_approach:
       return "no straight approach is free";
     case ChoiceReason::near_giver:
-      return "the arm would come too near to the body of who holds it";
+      return "the arm would come too near to the body of the person who holds it";
     case ChoiceReason::goal_support:
       return "the hand would be in or under what the object is to be put on";
     case ChoiceReason::goal_taken:
       return "the object would touch something where it is to be put";
     case ChoiceReason::goal_out_of_reach:
-      return "no posture of the arm reaches the place where the object is to be put";
+      return "no configuration of the arm reaches the place where the object is to be put";
     case ChoiceReason::goal_collision:
       return "arm or hand would collide where the object is to be put";
     case ChoiceReason::goal_lowering:
       return "the arm could not lower the object straight to where it is to be put";
     case ChoiceReason::goal_leaving:
-      return "no straight way off the object is free where it is to be put";
+      return "no straight path off the object is free where it is to be put";
     case ChoiceReason::hidden:
       return "too little of the object would be seen past the hand";
     case ChoiceReason::not_considered:
@@ -97,23 +97,27 @@ std::string Choice::why_none(const GraspList& list) const {
   return why;
 }
 
-GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> kit, ObjectLibrary library,
-                           const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
-    : robot_(std::move(robot)), mobile_(std::move(mobile)), kit_(std::move(kit)), library_(std::move(library)), settings_(settings) {
+GraspChooser::GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> hand_geometry,
+                           ObjectLibrary library, const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile)
+    : robot_(std::move(robot)),
+      mobile_(std::move(mobile)),
+      hand_geometry_(std::move(hand_geometry)),
+      library_(std::move(library)),
+      settings_(settings) {
   arm_ = &robot_->require_group("arm");
   hand_ = &robot_->require_group("hand");
   if (arm_->tip < 0 || arm_->tip != robot_->tool_link()) {
     throw ConfigError("robot " + robot_->name() + ": the arm's tip_link must be the tool_link, the palm of the hand");
   }
-  const std::vector<Axis>& axes = kit_->hand.model().axes();
+  const std::vector<Axis>& axes = hand_geometry_->hand.model().axes();
   bool same = axes.size() == hand_->axes.size();
   for (std::size_t i = 0; same && i < axes.size(); ++i)
     same = robot_->axes()[static_cast<std::size_t>(hand_->axes[i])].name == axes[i].name;
   if (!same) {
-    throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + kit_->hand.name() +
+    throw ConfigError("robot " + robot_->name() + ": its group \"hand\" must list the joints of hand " + hand_geometry_->hand.name() +
                       " in the order of its fingers");
   }
-  retreats_ = retreat_directions(kit_->hand);
+  retreats_ = retreat_directions(hand_geometry_->hand);
 }
 
 Choice GraspChooser::choose(const GraspRequest& request, const GraspList& list, const Graspable& object, const Scene& scene,

@@ -20,12 +20,12 @@ struct ChoiceSettings {
   double support_gap{0.004};         ///< kept between hand and support [m]
   std::uint32_t reach_budget{400};   ///< inverse kinematics of the arm tried at most
   double rank_quality{1.0};          ///< weights of the order of the reply
-  double rank_posture{0.4};          ///< nearness to the rest configuration of the arm
+  double rank_configuration{0.4};    ///< nearness to the rest configuration of the arm
   double rank_contacts{0.2};         ///< fraction of the fingers in contact
   double rank_room{0.3};             ///< surface left free; when a person is to take the object
   double rank_partner{0.3};          ///< the person's best grasp beside it; then too, as the next two
   /// The arm can offer the object upright, the hand behind it, the person's wrist at ease.
-  double rank_exchange{0.3};
+  double rank_handover{0.3};
   double rank_transfer{0.3};  ///< a place was found where the person can take it so
   double rank_tilt{1.0};      ///< taken off for each radian the object must be tilted there
   /// Margin of the grip force / `sturdy_margin`, -2 to 1: what only just holds comes last.
@@ -104,7 +104,7 @@ class GraspChooser {
  public:
   /// ConfigError when the robot has no arm with the hand at its tip, or its hand's axes are not
   /// those of the hand description. `mobile`: the robot on its platform (on_platform), or nullptr.
-  GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> kit, ObjectLibrary library,
+  GraspChooser(std::shared_ptr<const RobotModel> robot, std::shared_ptr<const HandGeometry> hand_geometry, ObjectLibrary library,
                const ChoiceSettings& settings, std::shared_ptr<const RobotModel> mobile = nullptr);
 
   /// Deterministic for equal arguments. The request's object must be in the scene. `cancelled` may
@@ -125,7 +125,7 @@ class GraspChooser {
                      const std::function<bool()>& cancelled, std::vector<Found>& found) const;
 
   std::shared_ptr<const RobotModel> robot_, mobile_;
-  std::shared_ptr<const HandGeometry> kit_;
+  std::shared_ptr<const HandGeometry> hand_geometry_;
   ObjectLibrary library_;
   ChoiceSettings settings_;
   const Group* arm_{};

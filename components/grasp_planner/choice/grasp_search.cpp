@@ -98,30 +98,30 @@ void GraspChooser::Search::stand(const Pose& T_world_base) {
     return;
   }
   if (const auto sight = sight_of(*person)) eye = sight->eyes;
-  plan_exchange();
+  plan_handover();
   const auto arm = human_arm(*person, Side::right);
   if (pairs != nullptr && arm)
     places.emplace(*person, *arm, T_world_base.translation(), start.T_world_object.linear(), object.box().center());
 }
 
 // A middle place for the exchange: before the person's chest, on the side of the robot. Whoever carries the task out chooses the real one.
-void GraspChooser::Search::plan_exchange() {
-  exchange_known = false;
+void GraspChooser::Search::plan_handover() {
+  handover_known = false;
   const BodyJoint *torso = find_joint(*person, "torso"), *shoulder = find_joint(*person, "r_shoulder");
   if (torso == nullptr || shoulder == nullptr) return;
-  exchange_place = torso->position;
-  Vector3 to_robot = scene.T_world_base.translation() - exchange_place;
+  handover_place = torso->position;
+  Vector3 to_robot = scene.T_world_base.translation() - handover_place;
   to_robot.z() = 0;
   if (to_robot.norm() < 0.3) return;
   to_robot.normalize();
-  exchange_place += kExchangeAhead * to_robot;
-  exchange_place.z() = shoulder->position.z() - kExchangeBelow;
+  handover_place += kExchangeAhead * to_robot;
+  handover_place.z() = shoulder->position.z() - kExchangeBelow;
   to_person = -to_robot;
-  exchange_known = true;
+  handover_known = true;
 }
 
 double GraspChooser::Search::rank(const ListedGrasp& listed, std::size_t index) const {
-  const double fingers = static_cast<double>(self.kit_->chains.size());
+  const double fingers = static_cast<double>(self.hand_geometry_->chains.size());
   double sum =
       settings().rank_quality * listed.grasp.quality + settings().rank_contacts * static_cast<double>(touching(listed.grasp)) / fingers;
   sum += settings().rank_sturdy * std::clamp(listed.grasp.margin / settings().sturdy_margin, -2.0, 1.0);
@@ -149,17 +149,17 @@ std::optional<TransferPose> GraspChooser::Search::transfer(std::size_t index, co
   return places->best(*pairs, index, g.T_object_hand, tilt, try_reach, kTransferReaches);
 }
 
-GraspChooser::Search::Exchange GraspChooser::Search::exchange(const Grasp& g, const Vector& arm_q) {
-  Exchange best;
+GraspChooser::Search::HandoverPlace GraspChooser::Search::handover(const Grasp& g, const Vector& arm_q) {
+  HandoverPlace best;
   best.T_world_object = start.T_world_object;
-  best.T_world_object.translation() = exchange_place;
+  best.T_world_object.translation() = handover_place;
   for (int k = 0; k < kExchangeHeadings; ++k) {
     Pose T_world_held = Pose::Identity();
     T_world_held.linear() =
         Eigen::AngleAxisd(2 * std::numbers::pi * k / kExchangeHeadings, Vector3::UnitZ()) * start.T_world_object.linear();
-    T_world_held.translation() = exchange_place;
+    T_world_held.translation() = handover_place;
     const Pose T_world_hand = T_world_held * g.T_object_hand;
-    const double behind = (exchange_place - T_world_hand.translation()).normalized().dot(to_person);
+    const double behind = (handover_place - T_world_hand.translation()).normalized().dot(to_person);
     if (behind < 0 || behind <= best.behind) continue;
     if (reach(T_world_hand, RobotModel::with(request.start, *self.arm_, arm_q), 1)) best = {behind, T_world_held};
   }
@@ -168,18 +168,18 @@ GraspChooser::Search::Exchange GraspChooser::Search::exchange(const Grasp& g, co
 
 double GraspChooser::Search::visible(const Grasp& g, const Pose& T_world_object) {
   if (!eye) return 1;
-  self.kit_->forward(g.hand_joints, T_closed);
-  return visible_share(object, self.kit_->shape.placed(T_closed, g.T_object_hand), T_world_object.inverse() * *eye);
+  self.hand_geometry_->forward(g.hand_joints, T_closed);
+  return visible_fraction(object, self.hand_geometry_->shape.placed(T_closed, g.T_object_hand), T_world_object.inverse() * *eye);
 }
 
 bool GraspChooser::Search::below_support(const Grasp& g) { return below_support(start.T_world_object, g); }
 
 bool GraspChooser::Search::below_support(const Pose& T_world_object, const Grasp& g) {
   const Pose T_world_hand = T_world_object * g.T_object_hand;
-  self.kit_->forward(g.hand_joints, T_closed);
-  self.kit_->forward(g.pregrasp_joints, T_open);
+  self.hand_geometry_->forward(g.hand_joints, T_closed);
+  self.hand_geometry_->forward(g.pregrasp_joints, T_open);
   for (const auto* T : {&T_closed, &T_open}) {
-    for (const HandShape::Low& low : self.kit_->shape.lows(*T, T_world_hand)) {
+    for (const HandShape::Low& low : self.hand_geometry_->shape.lows(*T, T_world_hand)) {
       for (const SceneBox& box : scene.boxes) {
         if (!box.supports) continue;
         const Vector3 local = box.T_world_box.inverse() * low.middle;
@@ -215,7 +215,7 @@ bool GraspChooser::Search::free(CollisionWorld& world, const Vector& arm_q, cons
 }
 
 // The straight way from approach_q to grasp_q with the hand opened: nothing touched, the object neither.
-bool GraspChooser::Search::way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g) {
+bool GraspChooser::Search::approach_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g) {
   const Vector from = whole(approach_q, g.pregrasp_joints), to = whole(grasp_q, g.pregrasp_joints);
   const int steps = static_cast<int>(std::ceil(stand_off() / kSweepStep));
   const Pose T_object_root = site.T_world_object.inverse() * scene.T_world_base;
@@ -224,7 +224,7 @@ bool GraspChooser::Search::way_in_free(Site& site, const Vector& approach_q, con
     const Pose T_object_hand = T_object_root * robot().link_pose(from + share * (to - from), robot().tool_link());
     ++out.touch_tests;
     const double clearance = i == steps ? 0.5 * settings().approach_clearance : settings().approach_clearance;
-    if (self.kit_->shape.touches(T_open, object, T_object_hand, clearance)) return false;
+    if (self.hand_geometry_->shape.touches(T_open, object, T_object_hand, clearance)) return false;
   }
   out.states += static_cast<std::uint64_t>(motion_states(from, to, kMotionStep));
   return site.world.check_motion(from, to, kMotionStep).free;
@@ -252,18 +252,17 @@ double GraspChooser::Search::stand_off() const { return settings().stand_off - (
 // Where the straight way in begins; T_open must be that of the grasp.
 std::optional<Vector> GraspChooser::Search::approach(Site& site, const Vector& grasp_q, const Grasp& g) {
   const Pose T_world_hand = site.T_world_object * g.T_object_hand;
-  self.kit_->forward(g.pregrasp_joints, T_open);
+  self.hand_geometry_->forward(g.pregrasp_joints, T_open);
   std::vector<Vector3> directions = self.retreats_;
   directions.push_back(T_world_hand.linear().transpose() * Vector3::UnitZ());
   for (const Vector3& direction : directions) {
     const RetreatPath path{direction, stand_off(), settings().approach_clearance};
-    if (!retreat_free(*self.kit_, T_open, object, g.T_object_hand, path, &out.touch_tests))
-      continue;
+    if (!retreat_free(*self.hand_geometry_, T_open, object, g.T_object_hand, path, &out.touch_tests)) continue;
     Pose T = T_world_hand;
     T.translate(Vector3(stand_off() * direction));
     const auto q = reach(T, whole(grasp_q, g.pregrasp_joints), 0);
     if (!q || (*q - grasp_q).cwiseAbs().maxCoeff() > kLargestApproach) continue;
-    if (way_in_free(site, *q, grasp_q, g)) return q;
+    if (approach_free(site, *q, grasp_q, g)) return q;
   }
   return std::nullopt;
 }
@@ -277,8 +276,8 @@ bool GraspChooser::Search::can_lift(const Pose& T_world_hand, const Vector& gras
 
 bool GraspChooser::Search::stands_in(const Grasp& g) const {
   std::vector<std::vector<Pose>> T_fingers;
-  self.kit_->forward(g.pregrasp_joints, T_fingers);
-  const std::vector<HandShape::Low> lows = self.kit_->shape.lows(T_fingers, g.T_object_hand);
+  self.hand_geometry_->forward(g.pregrasp_joints, T_fingers);
+  const std::vector<HandShape::Low> lows = self.hand_geometry_->shape.lows(T_fingers, g.T_object_hand);
   return std::none_of(lows.begin(), lows.end(),
                       [&](const HandShape::Low& low) { return low.height < object.box().min().z() + settings().support_gap; });
 }
@@ -336,11 +335,11 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
   g = listed;
   const auto hidden = [&](const Pose& T_world_object) {
     g.visible = visible(g, T_world_object);
-    return g.visible < request.least_visible;
+    return g.visible < request.min_visible;
   };
   // From where the person will stand to the exchange is known only once the arm gets there.
   const bool seen_later = person != nullptr && !found.transfer;
-  if (!seen_later && request.least_visible > 0 && hidden(found.transfer ? found.transfer->T_world_object : start.T_world_object))
+  if (!seen_later && request.min_visible > 0 && hidden(found.transfer ? found.transfer->T_world_object : start.T_world_object))
     return ChoiceReason::hidden;
   const ChoiceReason taken = pick_up(g);
   if (taken != ChoiceReason::chosen) return taken;
@@ -348,14 +347,14 @@ ChoiceReason GraspChooser::Search::consider(const Grasp& listed, Found& found) {
     const ChoiceReason put = put_down(g, found.goal);
     if (put != ChoiceReason::chosen) return put;
   }
-  found.rank += settings().rank_posture * posture_score(robot(), *self.arm_, g.arm_joints);
+  found.rank += settings().rank_configuration * rest_score_of(robot(), *self.arm_, g.arm_joints);
   Pose T_world_seen = start.T_world_object;
   if (found.transfer) {
-    found.rank += settings().rank_exchange * found.transfer->score + settings().rank_transfer - settings().rank_tilt * found.transfer->tilt;
+    found.rank += settings().rank_handover * found.transfer->score + settings().rank_transfer - settings().rank_tilt * found.transfer->tilt;
     T_world_seen = found.transfer->T_world_object;
-  } else if (exchange_known) {
-    const Exchange at = exchange(g, g.arm_joints);
-    found.rank += settings().rank_exchange * at.behind;
+  } else if (handover_known) {
+    const HandoverPlace at = handover(g, g.arm_joints);
+    found.rank += settings().rank_handover * at.behind;
     T_world_seen = at.T_world_object;
   }
   if (g.visible <= 0 && hidden(T_world_seen)) return ChoiceReason::hidden;

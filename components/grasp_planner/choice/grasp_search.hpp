@@ -38,7 +38,7 @@ struct GraspChooser::Search {
     CollisionWorld world;
   };
   /// The middle place for the exchange, and how the object is held there.
-  struct Exchange {
+  struct HandoverPlace {
     /// How well the hand stays behind the object, [0, 1], in the best heading; -1: the arm gets to
     /// none.
     double behind{-1};
@@ -47,15 +47,15 @@ struct GraspChooser::Search {
 
   const RobotModel& robot() const { return *self.robot_; }
   const ChoiceSettings& settings() const { return self.settings_; }
-  void plan_exchange();
-  Exchange exchange(const Grasp& g, const Vector& arm_q);
+  void plan_handover();
+  HandoverPlace handover(const Grasp& g, const Vector& arm_q);
   double visible(const Grasp& g, const Pose& T_world_object);
   bool below_support(const Pose& T_world_object, const Grasp& g);
   Vector whole(const Vector& arm_q, const Vector& hand_q) const;
   std::optional<Vector> reach(const Pose& T_world_hand, const Vector& seed, int restarts);
   std::optional<Vector> inverse(const Pose& T_world_hand, const Vector& seed, int restarts) const;
   bool free(CollisionWorld& world, const Vector& arm_q, const Vector& hand_q);
-  bool way_in_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
+  bool approach_free(Site& site, const Vector& approach_q, const Vector& grasp_q, const Grasp& g);
   double stand_off() const;  ///< before the object, where the straight approach begins [m]
   std::optional<Vector> approach(Site& site, const Vector& grasp_q, const Grasp& g);
   bool something_at_goal() const;
@@ -88,8 +88,8 @@ struct GraspChooser::Search {
   bool goal_is_taken{};
   Pose T_root_world{Pose::Identity()};
   std::optional<Vector3> eye;  // world: of the person, else of the robot
-  Vector3 to_person{Vector3::Zero()}, exchange_place{Vector3::Zero()};
-  bool exchange_known{};
+  Vector3 to_person{Vector3::Zero()}, handover_place{Vector3::Zero()};
+  bool handover_known{};
   std::optional<TransferPlaces> places;
   std::uint64_t transfer_budget{};  // of transfer_reaches
   std::vector<std::vector<Pose>> T_closed, T_open;

@@ -39,12 +39,12 @@ std::vector<PlatformPlace> places_around(const RobotModel& robot, const Group& a
       for (int h = 0; h < kHeadings; ++h) {
         const double heading = nearest_heading(direction + 2 * std::numbers::pi * h / kHeadings, heading_now);
         const Eigen::Vector2d at = shoulder - Eigen::Rotation2Dd(heading) * chain.front().head<2>();
-        const double way = (at - T_world_base.translation().head<2>()).norm() + kTurnWay * std::abs(heading - heading_now);
-        out.push_back({{at.x(), at.y(), heading}, way});
+        const double distance = (at - T_world_base.translation().head<2>()).norm() + kTurnDistance * std::abs(heading - heading_now);
+        out.push_back({{at.x(), at.y(), heading}, distance});
       }
     }
   }
-  std::stable_sort(out.begin(), out.end(), [](const PlatformPlace& a, const PlatformPlace& b) { return a.way < b.way; });
+  std::stable_sort(out.begin(), out.end(), [](const PlatformPlace& a, const PlatformPlace& b) { return a.distance < b.distance; });
   return out;
 }
 
@@ -62,7 +62,7 @@ PlatformFloor::PlatformFloor(const RobotModel& mobile, ObjectLibrary library, co
   world_.set_people(people);
 }
 
-PlatformFloor::Verdict PlatformFloor::judge(const Vector& q, const Pose& T_world_base) {
+PlatformFloor::Verdict PlatformFloor::check(const Vector& q, const Pose& T_world_base) {
   const Vector whole = with_platform(q, T_world_base);
   if (!world_.is_free(whole)) return Verdict::blocked;
   return anybody_ && world_.distance_to_people(whole) < room_ ? Verdict::near_person : Verdict::free;

@@ -7,9 +7,9 @@ namespace handsel::grasp_planner {
 
 struct PlatformPlace {
   Vector3 pose{Vector3::Zero()};  ///< x, y [m], heading [rad], world
-  double way{};                   ///< from where it stands: metres, and kTurnWay metres a radian
+  double distance{};              ///< from where it stands: metres, and kTurnDistance metres a radian
 };
-inline constexpr double kTurnWay = 0.3;  ///< [m/rad]
+inline constexpr double kTurnDistance = 0.3;  ///< [m/rad]
 
 /// Places about `p_world_object` from which `arm` may reach it by its length: four distances of its
 /// shoulder, sixteen directions, twelve headings; the shortest drive first. `q`: all axes.
@@ -27,7 +27,7 @@ class PlatformFloor {
 
   enum class Verdict : std::uint8_t { free, blocked, near_person };
   /// Checks the whole robot in configuration q (its own axes) at the place.
-  Verdict judge(const Vector& q, const Pose& T_world_base);
+  Verdict check(const Vector& q, const Pose& T_world_base);
 
  private:
   CollisionWorld world_;

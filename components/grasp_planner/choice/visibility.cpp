@@ -13,7 +13,7 @@ constexpr double kThin = 0.0001;  // [m] nearer than this to a line of sight, th
 
 }  // namespace
 
-double visible_share(const Graspable& object, const HandShape::PlacedHand& hand, const Vector3& p_object_eye) {
+double visible_fraction(const Graspable& object, const HandShape::PlacedHand& hand, const Vector3& p_object_eye) {
   std::vector<SightCapsule> capsules;
   std::vector<SightBox> boxes;
   for (const HandShape::Placed& s : hand.solids) {

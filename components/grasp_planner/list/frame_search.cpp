@@ -28,16 +28,17 @@ bool plausible(const FingerWorkspace::Seed& seed, const Vector3& normal) {
 
 }  // namespace
 
-FrameSearch::FrameSearch(const HandGeometry& kit, const FingerWorkspaces& workspaces, const Graspable& object,
+FrameSearch::FrameSearch(const HandGeometry& hand_geometry, const FingerWorkspaces& workspaces, const Graspable& object,
                          const GraspListSettings& settings)
-    : kit_(kit), workspaces_(workspaces), object_(object), settings_(settings), seen_(object.points().size(), 0) {}
+    : hand_geometry_(hand_geometry), workspaces_(workspaces), object_(object), settings_(settings), seen_(object.points().size(), 0) {}
 
 void FrameSearch::candidates(int finger, const Pose& T_object_hand, std::vector<std::uint32_t>& points) {
   points.clear();
   ++query_;
   const FingerWorkspace& workspace = workspaces_[static_cast<std::size_t>(finger)];
   // A workspace that is a line or a sheet passes between the points.
-  const double wider = workspace.has_volume() ? 0.0 : settings_.step_share * kit_.chains[static_cast<std::size_t>(finger)].tip_radius();
+  const double wider =
+      workspace.has_volume() ? 0.0 : settings_.step_fraction * hand_geometry_.chains[static_cast<std::size_t>(finger)].tip_radius();
   for (const WorkspaceSphere& s : workspace.spheres()) {
     hits_.clear();
     object_.tip_centres().inside_ball(T_object_hand * s.centre, s.radius + wider, hits_);
@@ -50,19 +51,19 @@ void FrameSearch::candidates(int finger, const Pose& T_object_hand, std::vector<
 }
 
 bool FrameSearch::holds(int finger, const Pose& T_object_hand, const SurfacePoint& place, GraspList& counters, FingerContact& out) {
-  const FingerChain& chain = kit_.chains[static_cast<std::size_t>(finger)];
-  const HandModel& hand = kit_.hand;
+  const FingerChain& chain = hand_geometry_.chains[static_cast<std::size_t>(finger)];
+  const HandModel& hand = hand_geometry_.hand;
   const Vector3 normal = T_object_hand.linear().transpose() * place.normal;
   chain.forward(out.q, out.T_hand_step);
   const Vector3 p_hand_tip = chain.tip(out.T_hand_step);
   ++counters.touch_tests;
-  if (kit_.shape.finger_touches(finger, out.T_hand_step, object_, T_object_hand, -settings_.depth)) return false;
-  if (kit_.shape.finger_touches_palm(finger, out.T_hand_step)) return false;
+  if (hand_geometry_.shape.finger_touches(finger, out.T_hand_step, object_, T_object_hand, -settings_.depth)) return false;
+  if (hand_geometry_.shape.finger_touches_palm(finger, out.T_hand_step)) return false;
   // Back off along the normal, as far as the joints allow, and stay clear of the object there. An axis shared with another finger stays.
   Vector lower = hand.lower_contact(), upper = hand.upper_contact();
   for (const int a : chain.axes()) {
-    lower[a] = kit_.shared(a) ? out.q[a] : hand.model().axes()[static_cast<std::size_t>(a)].lower;
-    upper[a] = kit_.shared(a) ? out.q[a] : hand.model().axes()[static_cast<std::size_t>(a)].upper;
+    lower[a] = hand_geometry_.shared(a) ? out.q[a] : hand.model().axes()[static_cast<std::size_t>(a)].lower;
+    upper[a] = hand_geometry_.shared(a) ? out.q[a] : hand.model().axes()[static_cast<std::size_t>(a)].upper;
   }
   out.q_open = out.q;
   ++counters.finger_solutions;
@@ -70,18 +71,19 @@ bool FrameSearch::holds(int finger, const Pose& T_object_hand, const SurfacePoin
   chain.forward(out.q_open, T_);
   if ((chain.tip(T_) - p_hand_tip).dot(normal) < kLeastBackOff * settings_.opening) return false;
   ++counters.touch_tests;
-  if (kit_.shape.finger_touches(finger, T_, object_, T_object_hand, settings_.open_clearance)) return false;
-  if (kit_.shape.finger_touches_palm(finger, T_)) return false;
+  if (hand_geometry_.shape.finger_touches(finger, T_, object_, T_object_hand, settings_.open_clearance)) return false;
+  if (hand_geometry_.shape.finger_touches_palm(finger, T_)) return false;
   out.place = place;
   out.force = force_alignment(chain.jacobian(out.T_hand_step), normal);
   return true;
 }
 
 bool FrameSearch::touches_at(int finger, const Pose& T_object_hand, Vector q, FingerContact& out) const {
-  const FingerChain& chain = kit_.chains[static_cast<std::size_t>(finger)];
+  const FingerChain& chain = hand_geometry_.chains[static_cast<std::size_t>(finger)];
   const int closing = chain.axes().back();
-  const double from = chain.closing_sign() > 0 ? kit_.hand.lower_contact()[closing] : kit_.hand.upper_contact()[closing];
-  const double to = chain.closing_sign() > 0 ? kit_.hand.upper_contact()[closing] : kit_.hand.lower_contact()[closing];
+  const double from =
+      chain.closing_sign() > 0 ? hand_geometry_.hand.lower_contact()[closing] : hand_geometry_.hand.upper_contact()[closing];
+  const double to = chain.closing_sign() > 0 ? hand_geometry_.hand.upper_contact()[closing] : hand_geometry_.hand.lower_contact()[closing];
   // The tip goes no farther than lever * angle: steps of distance / lever never pass through the surface.
   double lever = 0;
   for (const double share : {0.0, 0.5, 1.0}) {
@@ -111,16 +113,16 @@ bool FrameSearch::touches_at(int finger, const Pose& T_object_hand, Vector q, Fi
 }
 
 std::vector<FingerContact> FrameSearch::close(int finger, const Pose& T_object_hand, GraspList& counters) {
-  const FingerChain& chain = kit_.chains[static_cast<std::size_t>(finger)];
+  const FingerChain& chain = hand_geometry_.chains[static_cast<std::size_t>(finger)];
   const int places = chain.axes().size() > 1 ? kInnerPlaces : 1;
   std::vector<FingerContact> found;
   FingerContact contact;
   for (int k = 0; k < places; ++k) {
-    Vector q = kit_.hand.pregrasp();
+    Vector q = hand_geometry_.hand.pregrasp();
     if (places > 1) {
       const int inner = chain.axes().front();
-      q[inner] =
-          kit_.hand.lower_contact()[inner] + (k + 0.5) / places * (kit_.hand.upper_contact()[inner] - kit_.hand.lower_contact()[inner]);
+      q[inner] = hand_geometry_.hand.lower_contact()[inner] +
+                 (k + 0.5) / places * (hand_geometry_.hand.upper_contact()[inner] - hand_geometry_.hand.lower_contact()[inner]);
     }
     ++counters.finger_solutions;
     if (touches_at(finger, T_object_hand, q, contact) && holds(finger, T_object_hand, contact.place, counters, contact))
@@ -129,9 +131,9 @@ std::vector<FingerContact> FrameSearch::close(int finger, const Pose& T_object_h
   return found;
 }
 
-bool FrameSearch::judge(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out) {
-  const FingerChain& chain = kit_.chains[static_cast<std::size_t>(finger)];
-  const HandModel& hand = kit_.hand;
+bool FrameSearch::check(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out) {
+  const FingerChain& chain = hand_geometry_.chains[static_cast<std::size_t>(finger)];
+  const HandModel& hand = hand_geometry_.hand;
   const Pose T_hand_object = T_object_hand.inverse();
   const Vector3 p_hand_tip = T_hand_object * object_.tip_centre(point);
   const Vector3 normal = T_hand_object.linear() * object_.points()[point].normal;
@@ -152,7 +154,7 @@ std::vector<FingerContact> FrameSearch::contacts(int finger, const Pose& T_objec
   std::vector<FingerContact> found;
   std::uint32_t tries = 0;
   const Pose T_hand_object = T_object_hand.inverse();
-  const double apart = 1.2 * kit_.tip_radius();
+  const double apart = 1.2 * hand_geometry_.tip_radius();
   FingerContact contact;
   for (const std::uint32_t i : points) {
     if (found.size() >= settings_.contacts_per_finger || tries >= settings_.tries_per_finger) break;
@@ -165,7 +167,7 @@ std::vector<FingerContact> FrameSearch::contacts(int finger, const Pose& T_objec
     const Vector3 normal = T_hand_object.linear() * p.normal;
     if (std::none_of(seeds.begin(), seeds.end(), [&](const auto& seed) { return plausible(seed, normal); })) continue;
     ++tries;
-    if (judge(finger, T_object_hand, i, counters, contact)) found.push_back(contact);
+    if (check(finger, T_object_hand, i, counters, contact)) found.push_back(contact);
   }
   return found;
 }

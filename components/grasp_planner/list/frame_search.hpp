@@ -19,7 +19,8 @@ struct FingerContact {
 
 class FrameSearch {
  public:
-  FrameSearch(const HandGeometry& kit, const FingerWorkspaces& workspaces, const Graspable& object, const GraspListSettings& settings);
+  FrameSearch(const HandGeometry& hand_geometry, const FingerWorkspaces& workspaces, const Graspable& object,
+              const GraspListSettings& settings);
 
   /// Points of the object a finger's workspace covers with the hand at this pose: those well inside
   /// first.
@@ -36,9 +37,9 @@ class FrameSearch {
   /// Touch, palm and the path back off with the finger at out.q on the place; sets q_open, steps
   /// and force.
   bool holds(int finger, const Pose& T_object_hand, const SurfacePoint& place, GraspList& counters, FingerContact& out);
-  bool judge(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out);
+  bool check(int finger, const Pose& T_object_hand, std::uint32_t point, GraspList& counters, FingerContact& out);
 
-  const HandGeometry& kit_;
+  const HandGeometry& hand_geometry_;
   const FingerWorkspaces& workspaces_;
   const Graspable& object_;
   const GraspListSettings& settings_;

@@ -100,14 +100,18 @@ std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSett
 struct GraspLister::Impl {
   Impl(std::shared_ptr<const HandGeometry> k, std::shared_ptr<const FingerWorkspaces> w, std::shared_ptr<const Graspable> o,
        const GraspListSettings& s)
-      : kit(std::move(k)), workspaces(std::move(w)), object(std::move(o)), settings(s), search(*kit, *workspaces, *object, settings) {
+      : hand_geometry(std::move(k)),
+        workspaces(std::move(w)),
+        object(std::move(o)),
+        settings(s),
+        search(*hand_geometry, *workspaces, *object, settings) {
     positions = uniform_positions(object->box(), position_count(object->box(), settings));
     orientations = so3_sequence(settings.orientations);
-    out.hand = kit->hand.name();
+    out.hand = hand_geometry->hand.name();
     out.object = object->name();
-    if (kit->hand.pinches()) pinch.emplace(*kit, *object, settings);
-    kit->forward(kit->hand.rest(), T_rest);
-    kit->forward(kit->hand.pregrasp(), T_pregrasp);
+    if (hand_geometry->hand.pinches()) pinch.emplace(*hand_geometry, *object, settings);
+    hand_geometry->forward(hand_geometry->hand.rest(), T_rest);
+    hand_geometry->forward(hand_geometry->hand.pregrasp(), T_pregrasp);
   }
 
   std::uint64_t frames() const { return pinch ? pinch->frames() : positions.size() * orientations.size(); }
@@ -115,8 +119,8 @@ struct GraspLister::Impl {
   FrameReason frame(std::uint64_t id) {
     if (pinch) return pinch_frame(id);
     const Pose T_object_grasp = make_pose(positions[id % positions.size()], orientations[id / positions.size()]);
-    const Pose T_object_hand = T_object_grasp * kit->hand.T_hand_grasp().inverse();
-    const std::size_t fingers = kit->chains.size();
+    const Pose T_object_hand = T_object_grasp * hand_geometry->hand.T_hand_grasp().inverse();
+    const std::size_t fingers = hand_geometry->chains.size();
     points.resize(fingers);
     search.candidates(0, T_object_hand, points[0]);
     if (points[0].empty()) return FrameReason::thumb_out_of_reach;
@@ -127,7 +131,7 @@ struct GraspLister::Impl {
     }
     if (reached + 1 < kLeastContacts) return FrameReason::fingers_out_of_reach;
     ++out.touch_tests;
-    if (kit->shape.palm_touches(*object, T_object_hand)) return FrameReason::palm_in_object;
+    if (hand_geometry->shape.palm_touches(*object, T_object_hand)) return FrameReason::palm_in_object;
     contacts.assign(fingers, {});
     contacts[0] = search.contacts(0, T_object_hand, points[0], out);
     if (contacts[0].empty()) return FrameReason::thumb_without_contact;
@@ -144,8 +148,8 @@ struct GraspLister::Impl {
   /// Posture of a finger without contact: rest, else pre-grasp; -1 when both collide with the object.
   int idle_posture(std::size_t f, const Pose& T_object_hand) {
     ++out.touch_tests;
-    if (!kit->shape.finger_touches(static_cast<int>(f), T_rest[f], *object, T_object_hand, 0.002)) return 0;
-    if (!kit->shape.finger_touches(static_cast<int>(f), T_pregrasp[f], *object, T_object_hand, 0.002)) return 1;
+    if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_rest[f], *object, T_object_hand, 0.002)) return 0;
+    if (!hand_geometry->shape.finger_touches(static_cast<int>(f), T_pregrasp[f], *object, T_object_hand, 0.002)) return 1;
     return -1;
   }
 
@@ -201,15 +205,17 @@ struct GraspLister::Impl {
     signed char& known =
         clashes[((g * contacts.size() + f) * width + static_cast<std::size_t>(a + 1)) * width + static_cast<std::size_t>(b + 1)];
     if (known < 0)
-      known = pull_apart(g, a, f, b) || kit->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
+      known =
+          pull_apart(g, a, f, b) || hand_geometry->shape.fingers_touch(static_cast<int>(g), poses(g, a), static_cast<int>(f), poses(f, b));
     return known != 0;
   }
 
   /// Fingers that share an axis must want the same of it; one without contact cannot while the other has one.
   bool pull_apart(std::size_t g, int a, std::size_t f, int b) const {
     if (a < 0 && b < 0) return false;
-    for (const int axis : kit->hand.fingers()[g].axes) {
-      if (std::find(kit->hand.fingers()[f].axes.begin(), kit->hand.fingers()[f].axes.end(), axis) == kit->hand.fingers()[f].axes.end())
+    for (const int axis : hand_geometry->hand.fingers()[g].axes) {
+      if (std::find(hand_geometry->hand.fingers()[f].axes.begin(), hand_geometry->hand.fingers()[f].axes.end(), axis) ==
+          hand_geometry->hand.fingers()[f].axes.end())
         continue;
       if (a < 0 || b < 0) return true;
       const double differ = contacts[g][static_cast<std::size_t>(a)].q[axis] - contacts[f][static_cast<std::size_t>(b)].q[axis];
@@ -306,8 +312,8 @@ struct GraspLister::Impl {
 
   double room(const Grasp& g) const {
     std::vector<std::vector<Pose>> T_hand_step;
-    kit->forward(g.hand_joints, T_hand_step);
-    std::vector<HandShape::Round> rounds = kit->shape.rounds(T_hand_step);
+    hand_geometry->forward(g.hand_joints, T_hand_step);
+    std::vector<HandShape::Round> rounds = hand_geometry->shape.rounds(T_hand_step);
     for (HandShape::Round& r : rounds) {
       r.a = g.T_object_hand * r.a;
       r.b = g.T_object_hand * r.b;
@@ -327,14 +333,14 @@ struct GraspLister::Impl {
     Grasp g;
     g.id = id;
     g.T_object_hand = T_object_hand;
-    g.hand_joints = kit->hand.rest();
-    g.pregrasp_joints = kit->hand.rest();
+    g.hand_joints = hand_geometry->hand.rest();
+    g.pregrasp_joints = hand_geometry->hand.rest();
     g.epsilon = grasp_epsilon;
     g.quality = grasp_quality;
     for (std::size_t f = 0; f < c.size(); ++f) {
       const FingerContact* contact = c[f] >= 0 ? &contacts[f][static_cast<std::size_t>(c[f])] : nullptr;
-      const Vector& idle_q = idle[f] == 1 ? kit->hand.pregrasp() : kit->hand.rest();
-      for (const int a : kit->hand.fingers()[f].axes) {
+      const Vector& idle_q = idle[f] == 1 ? hand_geometry->hand.pregrasp() : hand_geometry->hand.rest();
+      for (const int a : hand_geometry->hand.fingers()[f].axes) {
         g.hand_joints[a] = contact != nullptr ? contact->q[a] : idle_q[a];
         g.pregrasp_joints[a] = contact != nullptr ? contact->q_open[a] : idle_q[a];
       }
@@ -342,23 +348,23 @@ struct GraspLister::Impl {
       const SurfacePoint& p = contact->place;
       g.contacts.push_back({static_cast<std::uint32_t>(f), p.position, p.normal, p.triangle, p.barycentric, friction(), p.curvature});
     }
-    squeeze(c, g);
+    grip(c, g);
     return g;
   }
 
-  void squeeze(const Combination& c, Grasp& g) const {
+  void grip(const Combination& c, Grasp& g) const {
     const GripForces grip = grip_forces(point_contacts(c), object->com(), object->mass(), settings.grip);
     g.margin = grip.margin;
     g.hand_effort = Vector::Zero(g.hand_joints.size());
     const Pose T_hand_object = g.T_object_hand.inverse();
     for (std::size_t k = 0; k < grip.forces.size(); ++k) {
       const std::size_t f = g.contacts[k].finger;
-      kit->chains[f].add_effort(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step, T_hand_object, g.contacts[k].position,
-                                grip.forces[k], g.hand_effort);
+      hand_geometry->chains[f].add_effort(contacts[f][static_cast<std::size_t>(c[f])].T_hand_step, T_hand_object, g.contacts[k].position,
+                                          grip.forces[k], g.hand_effort);
     }
   }
 
-  std::shared_ptr<const HandGeometry> kit;
+  std::shared_ptr<const HandGeometry> hand_geometry;
   std::shared_ptr<const FingerWorkspaces> workspaces;
   std::shared_ptr<const Graspable> object;
   GraspListSettings settings;
@@ -375,9 +381,9 @@ struct GraspLister::Impl {
   GraspList out;
 };
 
-GraspLister::GraspLister(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspLister::GraspLister(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
                          std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun)
-    : impl_(std::make_unique<Impl>(std::move(kit), std::move(workspaces), std::move(object), settings)) {
+    : impl_(std::make_unique<Impl>(std::move(hand_geometry), std::move(workspaces), std::move(object), settings)) {
   if (begun.frames > 0) impl_->out = std::move(begun);
 }
 GraspLister::~GraspLister() = default;
@@ -402,8 +408,8 @@ bool GraspLister::advance(std::uint64_t count) {
 
 GraspList GraspLister::list() const { return merged({impl_->out}); }
 
-std::uint64_t frame_count(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings) {
-  if (kit.hand.pinches()) return PinchSearch(kit, object, settings).frames();
+std::uint64_t frame_count(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings) {
+  if (hand_geometry.hand.pinches()) return PinchSearch(hand_geometry, object, settings).frames();
   return uniform_positions(object.box(), position_count(object.box(), settings)).size() * std::uint64_t{settings.orientations};
 }
 
@@ -423,10 +429,10 @@ GraspList merged(std::vector<GraspList> parts) {
   return out;
 }
 
-GraspList list_grasps(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspList list_grasps(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
                       std::shared_ptr<const Graspable> object, const GraspListSettings& settings, const std::function<bool()>& cancelled,
                       GraspList begun) {
-  GraspLister lister(std::move(kit), std::move(workspaces), std::move(object), settings, std::move(begun));
+  GraspLister lister(std::move(hand_geometry), std::move(workspaces), std::move(object), settings, std::move(begun));
   while (lister.advance(64)) {
     if (cancelled && cancelled()) break;
   }

@@ -11,7 +11,7 @@
 
 #include "common/grasp/grip_force.hpp"
 #include "common/messages/planning.hpp"
-#include "components/grasp_planner/hand/hand_kit.hpp"
+#include "components/grasp_planner/hand/hand_geometry.hpp"
 #include "components/grasp_planner/object/graspable.hpp"
 
 namespace handsel::grasp_planner {
@@ -28,7 +28,7 @@ struct GraspListSettings {
   /// In a large box as many more as make them about this far apart [m]; 0: never more.
   double spacing{0.04};
   std::uint32_t orientations{144};       ///< of the incremental grid over all rotations
-  double step_share{0.6};                ///< distance of contact points / fingertip radius
+  double step_fraction{0.6};             ///< distance of contact points / fingertip radius
   double friction{0};                    ///< Coulomb coefficient; 0: the object's
   int cone_edges{8};                     ///< of a linearised friction cone, >= 6
   double full_epsilon{0.25};             ///< an epsilon from which on the stability counts as 1
@@ -91,7 +91,7 @@ std::vector<Vector3> uniform_positions(const Eigen::AlignedBox3d& box, std::uint
 std::uint32_t position_count(const Eigen::AlignedBox3d& box, const GraspListSettings& settings);
 
 /// Returns how many frames these settings give for a hand on an object.
-std::uint64_t frame_count(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings);
+std::uint64_t frame_count(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings);
 
 /// Returns lists of different frames of the same hand and object as one.
 GraspList merged(std::vector<GraspList> parts);
@@ -100,7 +100,7 @@ class GraspLister {
  public:
   /// `begun`: a list of the same hand, object and settings, but fewer orientations; it is
   /// continued. Empty: from the first frame.
-  GraspLister(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+  GraspLister(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
               std::shared_ptr<const Graspable> object, const GraspListSettings& settings, GraspList begun = {});
   ~GraspLister();
   GraspLister(GraspLister&&) noexcept;
@@ -122,7 +122,7 @@ class GraspLister {
 };
 
 /// All frames at once; `cancelled` is asked now and then.
-GraspList list_grasps(std::shared_ptr<const HandGeometry> kit, std::shared_ptr<const FingerWorkspaces> workspaces,
+GraspList list_grasps(std::shared_ptr<const HandGeometry> hand_geometry, std::shared_ptr<const FingerWorkspaces> workspaces,
                       std::shared_ptr<const Graspable> object, const GraspListSettings& settings,
                       const std::function<bool()>& cancelled = {}, GraspList begun = {});
 

@@ -163,7 +163,7 @@ std::uint64_t list_key(const HandModel& hand, const ObjectModel& object, const G
   h.add(object.mass);
   for (const double v : {static_cast<double>(s.positions),
                          s.spacing,
-                         s.step_share,
+                         s.step_fraction,
                          s.friction,
                          static_cast<double>(s.cone_edges),
                          s.full_epsilon,
@@ -211,7 +211,7 @@ std::filesystem::path GraspStore::file(const std::string& hand, const std::strin
 }
 
 std::optional<GraspList> GraspStore::load(const std::string& hand, const std::string& object, std::uint64_t key,
-                                          std::uint64_t most_frames) const {
+                                          std::uint64_t max_frames) const {
   if (folder_.empty()) return std::nullopt;
   const std::string begin = stem(hand, object, key);
   std::vector<std::uint64_t> known;
@@ -220,7 +220,7 @@ std::optional<GraspList> GraspStore::load(const std::string& hand, const std::st
     const std::string name = entry.path().filename().string();
     if (name.rfind(begin, 0) != 0 || entry.path().extension() != ".pb") continue;
     const std::uint64_t frames = std::strtoull(name.c_str() + begin.size(), nullptr, 10);
-    if (frames <= most_frames) known.push_back(frames);
+    if (frames <= max_frames) known.push_back(frames);
   }
   std::sort(known.rbegin(), known.rend());
   for (const std::uint64_t frames : known) {

@@ -22,9 +22,9 @@ class GraspStore {
   /// An empty folder: nothing is kept.
   explicit GraspStore(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// The longest list of at most `most_frames` frames. nullopt when there is none, or when all are
+  /// The longest list of at most `max_frames` frames. nullopt when there is none, or when all are
   /// damaged, of another version or made from something else: then it is made again.
-  std::optional<GraspList> load(const std::string& hand, const std::string& object, std::uint64_t key, std::uint64_t most_frames) const;
+  std::optional<GraspList> load(const std::string& hand, const std::string& object, std::uint64_t key, std::uint64_t max_frames) const;
   /// Written beside and renamed; false when the folder cannot be written to.
   bool save(const GraspList& list, std::uint64_t key) const;
   /// Returns the path of the file that holds a list of so many frames; characters that are neither

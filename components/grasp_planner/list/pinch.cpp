@@ -20,8 +20,8 @@ constexpr double kGolden = 0.6180339887498949;
 
 }  // namespace
 
-PinchMotion::PinchMotion(const HandGeometry& kit) : kit_(kit) {
-  const Vector &lower = kit.hand.lower_contact(), &upper = kit.hand.upper_contact();
+PinchMotion::PinchMotion(const HandGeometry& hand_geometry) : hand_geometry_(hand_geometry) {
+  const Vector &lower = hand_geometry.hand.lower_contact(), &upper = hand_geometry.hand.upper_contact();
   const Vector middle = 0.5 * (lower + upper);
   open_ = closed_ = middle;
   for (Eigen::Index a = 0; a < middle.size(); ++a) {
@@ -36,28 +36,28 @@ PinchMotion::PinchMotion(const HandGeometry& kit) : kit_(kit) {
 }
 
 Pose PinchMotion::T_hand_pad(std::size_t finger, const std::vector<Pose>& T_hand_step) const {
-  return kit_.chains[finger].tip_pose(T_hand_step) * kit_.hand.fingers()[finger].pad->T_tip_pad;
+  return hand_geometry_.chains[finger].tip_pose(T_hand_step) * hand_geometry_.hand.fingers()[finger].pad->T_tip_pad;
 }
 
 double PinchMotion::gap(const Vector& q) const {
   std::vector<std::vector<Pose>> T;
-  kit_.forward(q, T);
+  hand_geometry_.forward(q, T);
   const Pose first = T_hand_pad(0, T[0]), second = T_hand_pad(1, T[1]);
   return (second.translation() - first.translation()).dot(first.linear().col(2));
 }
 
 std::optional<Vector> PinchMotion::at_gap(double wanted) const {
   double open = 0, closed = 1;
-  if (wanted > widest_ || wanted < gap(posture(closed))) return std::nullopt;
+  if (wanted > widest_ || wanted < gap(configuration_at(closed))) return std::nullopt;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (open + closed);
-    (gap(posture(middle)) >= wanted ? open : closed) = middle;
+    (gap(configuration_at(middle)) >= wanted ? open : closed) = middle;
   }
-  return posture(0.5 * (open + closed));
+  return configuration_at(0.5 * (open + closed));
 }
 
-PinchSearch::PinchSearch(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings)
-    : kit_(kit), object_(object), settings_(settings), motion_(kit) {
+PinchSearch::PinchSearch(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings)
+    : hand_geometry_(hand_geometry), object_(object), settings_(settings), motion_(hand_geometry) {
   const std::uint64_t all = object.points().size();
   places_ = std::clamp<std::uint64_t>(std::uint64_t{position_count(object.box(), settings)} * settings.orientations / kTurns, 1, all);
   stride_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(kGolden * static_cast<double>(all)));
@@ -87,8 +87,8 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
   const auto closed = motion_.at_gap(thickness);
   const auto opened = motion_.at_gap(std::min(motion_.widest(), thickness + 2 * settings_.opening));
   if (!closed || !opened || motion_.gap(*opened) < thickness + 2 * settings_.open_clearance) return std::nullopt;
-  kit_.forward(*closed, T_closed_);
-  kit_.forward(*opened, T_open_);
+  hand_geometry_.forward(*closed, T_closed_);
+  hand_geometry_.forward(*opened, T_open_);
   const Pose T_hand_first = motion_.T_hand_pad(0, T_closed_[0]), T_hand_second = motion_.T_hand_pad(1, T_closed_[1]);
   if (-T_hand_first.linear().col(2).dot(T_hand_second.linear().col(2)) < kParallel) return std::nullopt;
   Pose T_object_first = Pose::Identity();
@@ -103,14 +103,14 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
   if (!touch(1, g.T_object_hand * T_hand_second, found)) return std::nullopt;
   ++counters.touch_tests;
   why = FrameReason::palm_in_object;
-  if (kit_.shape.palm_touches(object_, g.T_object_hand)) return std::nullopt;
+  if (hand_geometry_.shape.palm_touches(object_, g.T_object_hand)) return std::nullopt;
   why = FrameReason::fingers_collide;
   if (fingers_touch(T_closed_, g.T_object_hand, -settings_.depth, counters)) return std::nullopt;
   if (fingers_touch(T_open_, g.T_object_hand, settings_.open_clearance, counters)) return std::nullopt;
   g.hand_joints = *closed;
   g.pregrasp_joints = *opened;
   found.force /= static_cast<double>(g.contacts.size());
-  squeeze(found, std::max(on_first, g.contacts.size() - on_first));
+  grip(found, std::max(on_first, g.contacts.size() - on_first));
   why = FrameReason::not_closed;
   if (!(g.margin > 0)) return std::nullopt;  // pads would slip
   return found;
@@ -118,7 +118,7 @@ std::optional<PinchSearch::Found> PinchSearch::across(const SurfacePoint& place,
 
 /// Where the object meets a pad; of the places that touch, those farthest toward the pad's corners are its contacts.
 bool PinchSearch::touch(std::uint32_t finger, const Pose& T_object_pad, Found& found) {
-  const Pad& pad = *kit_.hand.fingers()[finger].pad;
+  const Pad& pad = *hand_geometry_.hand.fingers()[finger].pad;
   const Vector3 z = T_object_pad.linear().col(2);
   struct Place {
     Eigen::Vector2d on_pad;
@@ -156,23 +156,23 @@ bool PinchSearch::fingers_touch(const std::vector<std::vector<Pose>>& T_hand_ste
                                 GraspList& counters) const {
   for (int f = 0; f < 2; ++f) {
     ++counters.touch_tests;
-    if (kit_.shape.finger_touches(f, T_hand_step[static_cast<std::size_t>(f)], object_, T_object_hand, clearance)) return true;
+    if (hand_geometry_.shape.finger_touches(f, T_hand_step[static_cast<std::size_t>(f)], object_, T_object_hand, clearance)) return true;
   }
   return false;
 }
 
-void PinchSearch::squeeze(Found& found, std::size_t most_on_a_pad) const {
+void PinchSearch::grip(Found& found, std::size_t max_on_a_pad) const {
   Grasp& g = found.grasp;
   GripForceSettings grip = settings_.grip;
-  if (kit_.hand.grip_force() > 0) grip.max_normal = kit_.hand.grip_force();
-  grip.max_normal /= static_cast<double>(most_on_a_pad);
-  const GripForces squeeze = grip_forces(found.contacts, object_.com(), object_.mass(), grip);
-  g.margin = squeeze.margin;
+  if (hand_geometry_.hand.grip_force() > 0) grip.max_normal = hand_geometry_.hand.grip_force();
+  grip.max_normal /= static_cast<double>(max_on_a_pad);
+  const GripForces grip = grip_forces(found.contacts, object_.com(), object_.mass(), grip);
+  g.margin = grip.margin;
   g.hand_effort = Vector::Zero(g.hand_joints.size());
   const Pose T_hand_object = g.T_object_hand.inverse();
-  for (std::size_t k = 0; k < squeeze.forces.size(); ++k) {
+  for (std::size_t k = 0; k < grip.forces.size(); ++k) {
     const std::uint32_t f = g.contacts[k].finger;
-    kit_.chains[f].add_effort(T_closed_[f], T_hand_object, g.contacts[k].position, squeeze.forces[k], g.hand_effort);
+    hand_geometry_.chains[f].add_effort(T_closed_[f], T_hand_object, g.contacts[k].position, grip.forces[k], g.hand_effort);
   }
 }
 

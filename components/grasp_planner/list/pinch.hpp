@@ -13,11 +13,11 @@ namespace handsel::grasp_planner {
 /// narrowest (1).
 class PinchMotion {
  public:
-  explicit PinchMotion(const HandGeometry& kit);
+  explicit PinchMotion(const HandGeometry& hand_geometry);
 
   /// Returns the configuration of all hand axes. `closed`: 0 at the widest opening, 1 at the
   /// narrowest.
-  Vector posture(double closed) const { return open_ + closed * (closed_ - open_); }
+  Vector configuration_at(double closed) const { return open_ + closed * (closed_ - open_); }
   /// Returns the distance of the pads along the direction the first one presses [m].
   double gap(const Vector& q) const;
   /// Returns the gap of the hand at its widest opening [m].
@@ -29,14 +29,14 @@ class PinchMotion {
   Pose T_hand_pad(std::size_t finger, const std::vector<Pose>& T_hand_step) const;
 
  private:
-  const HandGeometry& kit_;
+  const HandGeometry& hand_geometry_;
   Vector open_, closed_;
   double widest_{};
 };
 
 class PinchSearch {
  public:
-  PinchSearch(const HandGeometry& kit, const Graspable& object, const GraspListSettings& settings);
+  PinchSearch(const HandGeometry& hand_geometry, const Graspable& object, const GraspListSettings& settings);
 
   /// Returns the number of frames: places of the surface times turns of the hand about the
   /// surface's normal; as many as the settings' positions and orientations, or fewer.
@@ -59,9 +59,9 @@ class PinchSearch {
   bool touch(std::uint32_t finger, const Pose& T_object_pad, Found& found);
   bool fingers_touch(const std::vector<std::vector<Pose>>& T_hand_step, const Pose& T_object_hand, double clearance,
                      GraspList& counters) const;
-  void squeeze(Found& found, std::size_t most_on_a_pad) const;
+  void grip(Found& found, std::size_t max_on_a_pad) const;
 
-  const HandGeometry& kit_;
+  const HandGeometry& hand_geometry_;
   const Graspable& object_;
   const GraspListSettings& settings_;
   PinchMotion motion_;

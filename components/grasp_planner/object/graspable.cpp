@@ -25,7 +25,7 @@ double depth(const Shape& shape, const Vector3& p) {
 
 }  // namespace
 
-Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_share, std::uint64_t seed)
+Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_fraction, std::uint64_t seed)
     : name_(object.name), com_(object.com), friction_(object.friction), mass_(object.mass) {
   auto mesh = std::make_shared<TriangleMesh>(object.mesh);
   if (mesh->triangles.empty()) throw ConfigError("object " + name_ + ": its mesh has no triangles; it needs a surface");
@@ -40,7 +40,7 @@ Graspable::Graspable(const ObjectModel& object, double tip_radius, double step_s
   }
   for (const Vector3& v : mesh->vertices) radius_ = std::max(radius_, (v - com_).norm());
   SurfaceSettings settings;
-  settings.step = step_share * tip_radius;
+  settings.step = step_fraction * tip_radius;
   settings.curvature_radius = tip_radius;
   settings.seed = seed;
   points_ = sample_surface(*mesh, settings);

@@ -15,10 +15,10 @@ namespace handsel::grasp_planner {
 
 class Graspable {
  public:
-  /// `tip_radius` [m] sets the sampling step (`step_share` of it) and the ball of the curvature.
+  /// `tip_radius` [m] sets the sampling step (`step_fraction` of it) and the ball of the curvature.
   /// ConfigError when the mesh has no surface, or a size no hand can mean (below 5 mm or above 2
   /// m): it says what to scale.
-  Graspable(const ObjectModel& object, double tip_radius, double step_share, std::uint64_t seed);
+  Graspable(const ObjectModel& object, double tip_radius, double step_fraction, std::uint64_t seed);
 
   /// Of the contact point nearest to `position` on the same side.
   double curvature_near(const Vector3& position, const Vector3& normal) const;

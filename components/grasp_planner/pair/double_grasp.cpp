@@ -25,15 +25,15 @@ struct Placed {
 class Side {
  public:
   Side(const HandSide& side, const DoubleSettings& settings) : side_(side), settings_(settings) {
-    taken_ = taken_grasps(*side.list, settings.most_of_each, settings.taken, settings.p_object_middle, side.also);
+    taken_ = taken_grasps(*side.list, settings.max_of_each, settings.taken, settings.p_object_middle, side.also);
     const std::size_t count = taken_.size();
     placed_.resize(count);
-    ways_ = retreat_directions(side.kit->hand);
+    ways_ = retreat_directions(side.hand_geometry->hand);
     Steps T_closed;
     for (std::size_t i = 0; i < count; ++i) {
-      side.kit->forward(grasp(i).hand_joints, T_closed);
-      placed_[i].closed = side.kit->shape.placed(T_closed, grasp(i).T_object_hand);
-      placed_[i].reached = side.posture.empty() || side.posture[taken_[i]] >= 0;
+      side.hand_geometry->forward(grasp(i).hand_joints, T_closed);
+      placed_[i].closed = side.hand_geometry->shape.placed(T_closed, grasp(i).T_object_hand);
+      placed_[i].reached = side.rest_score.empty() || side.rest_score[taken_[i]] >= 0;
     }
     tried_.assign(count, false);
   }
@@ -42,7 +42,7 @@ class Side {
   std::size_t index(std::size_t i) const { return taken_[i]; }  // into the list
   const Grasp& grasp(std::size_t i) const { return side_.list->grasps[taken_[i]].grasp; }
   Vector3 wrist(std::size_t i) const { return grasp(i).T_object_hand.linear().col(2); }
-  double posture(std::size_t i) const { return side_.posture.empty() ? 0.0 : side_.posture[taken_[i]]; }
+  double rest_score(std::size_t i) const { return side_.rest_score.empty() ? 0.0 : side_.rest_score[taken_[i]]; }
   const Placed& operator[](std::size_t i) const { return placed_[i]; }
 
   // Whether grasp i, opened, gets past the object and the other hand.
@@ -50,7 +50,7 @@ class Side {
     if (!tried_[i]) prepare(i);
     const Placed& p = placed_[i];
     return !p.way.empty() && std::none_of(p.way.begin(), p.way.end(), [&](const HandShape::PlacedHand& hand) {
-      return HandShape::hands_touch(hand, other, settings_.way_clearance);
+      return HandShape::hands_touch(hand, other, settings_.retreat_clearance);
     });
   }
 
@@ -58,17 +58,17 @@ class Side {
   void prepare(std::size_t i) {
     tried_[i] = true;
     Placed& p = placed_[i];
-    side_.kit->forward(grasp(i).pregrasp_joints, p.T_open);
+    side_.hand_geometry->forward(grasp(i).pregrasp_joints, p.T_open);
     const auto way = std::find_if(ways_.begin(), ways_.end(), [&](const Vector3& w) {
-      return retreat_free(*side_.kit, p.T_open, *settings_.passed, grasp(i).T_object_hand,
-                          {w, settings_.stand_off, settings_.way_clearance});
+      return retreat_free(*side_.hand_geometry, p.T_open, *settings_.passed, grasp(i).T_object_hand,
+                          {w, settings_.stand_off, settings_.retreat_clearance});
     });
     if (way == ways_.end()) return;
     p.direction = *way;
     for (double s = 0; s < settings_.stand_off + kSweepStep; s += 2 * kSweepStep) {
       Pose T = grasp(i).T_object_hand;
       T.translate(Vector3(s * *way));
-      p.way.push_back(side_.kit->shape.placed(p.T_open, T));
+      p.way.push_back(side_.hand_geometry->shape.placed(p.T_open, T));
     }
   }
 
@@ -133,14 +133,14 @@ Refusals DoubleList::refusals() const {
   add(out_of_reach, "an arm does not reach its grasp at the object's start or goal");
   add(not_opposed, "the wrists are not opposed enough");
   add(colliding, "the hands would collide");
-  add(no_way, "one hand could not come or leave while the other holds the object");
+  add(no_retreat, "one hand could not come or leave while the other holds the object");
   return out;
 }
 
 DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const DoubleSettings& settings) {
   Side first(a, settings), second(b, settings);
   DoubleList out;
-  const double most = std::cos(settings.least_opposition);
+  const double most = std::cos(settings.min_opposition);
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Vector3 wrist = first.wrist(i);
     for (std::size_t k = 0; k < second.size(); ++k) {
@@ -161,25 +161,25 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Double
       DoubleGrasp d{first.index(i), second.index(k)};
       if (settings.passed != nullptr) {
         if (!first.leaves(i, second[k].closed) || !second.leaves(k, first[i].closed)) {
-          ++out.no_way;
+          ++out.no_retreat;
           continue;
         }
-        d.way_first = first[i].direction;
-        d.way_second = second[k].direction;
+        d.retreat_first = first[i].direction;
+        d.retreat_second = second[k].direction;
       }
       d.opposition = std::acos(cosine);
       d.quality = std::min(first.grasp(i).quality, second.grasp(k).quality);
-      d.posture = std::min(first.posture(i), second.posture(k));
+      d.rest_score = std::min(first.rest_score(i), second.rest_score(k));
       out.grasps.push_back(d);
     }
   }
   add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.quality; });
-  add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.posture; });
+  add_normalised(out.grasps, [](const DoubleGrasp& g) { return g.rest_score; });
   std::stable_sort(out.grasps.begin(), out.grasps.end(), [](const DoubleGrasp& x, const DoubleGrasp& y) { return x.score > y.score; });
   return out;
 }
 
-double posture_score(const RobotModel& robot, const Group& arm, const Vector& arm_q) {
+double rest_score_of(const RobotModel& robot, const Group& arm, const Vector& arm_q) {
   double sum = 0;
   for (std::size_t i = 0; i < arm.axes.size(); ++i) {
     const Axis& axis = robot.axes()[static_cast<std::size_t>(arm.axes[i])];
@@ -188,7 +188,7 @@ double posture_score(const RobotModel& robot, const Group& arm, const Vector& ar
   return 1 - sum / static_cast<double>(arm.axes.size());
 }
 
-std::vector<double> posture_scores(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
+std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
                                    const std::vector<Pose>& T_root_object) {
   std::vector<double> out;
   IkOptions options;
@@ -197,7 +197,7 @@ std::vector<double> posture_scores(const RobotModel& robot, const Group& arm, co
     double least = 1;
     for (const Pose& T : T_root_object) {
       const auto q = robot.inverse(arm, T * g.grasp.T_object_hand, q_seed, options);
-      least = q ? std::min(least, posture_score(robot, arm, *q)) : -1;
+      least = q ? std::min(least, rest_score_of(robot, arm, *q)) : -1;
       if (!q) break;
     }
     out.push_back(least);

@@ -11,23 +11,23 @@ namespace handsel::grasp_planner {
 
 /// One hand's side of a double grasp.
 struct HandSide {
-  const HandGeometry* kit{};  ///< geometry of the hand
-  const GraspList* list{};    ///< grasps of the hand on the object
+  const HandGeometry* hand_geometry{};  ///< geometry of the hand
+  const GraspList* list{};              ///< grasps of the hand on the object
   /// How naturally the arm reaches each grasp, one a grasp of the list, the higher the better
-  /// (posture_scores()); below 0: not at all, such grasps are left out. Empty: not asked.
-  std::vector<double> posture{};
+  /// (rest_scores_of()); below 0: not at all, such grasps are left out. Empty: not asked.
+  std::vector<double> rest_score{};
   std::vector<std::size_t> also{};  ///< grasps that are taken whatever the settings say
 };
 
 struct DoubleGrasp {
   std::size_t first{}, second{};  ///< indices into the two lists
   double quality{};               ///< the smaller of the two
-  double posture{};               ///< the smaller of the two; 0 when not asked
+  double rest_score{};            ///< the smaller of the two; 0 when not asked
   /// Angle between the wrists' directions, the z axes of the hands [rad]; pi: straight against each
   /// other.
   double opposition{};
   /// Hand frames: how each can leave or come; 0 when not asked.
-  Vector3 way_first{Vector3::Zero()}, way_second{Vector3::Zero()};
+  Vector3 retreat_first{Vector3::Zero()}, retreat_second{Vector3::Zero()};
   double score{};  ///< sum of quality and nearness to rest, each normalised over the list
 };
 
@@ -42,24 +42,24 @@ std::vector<std::size_t> taken_grasps(const GraspList& list, std::size_t count, 
                                       const std::vector<std::size_t>& also = {});
 
 struct DoubleSettings {
-  std::size_t most_of_each{200};             ///< grasps taken from each list
+  std::size_t max_of_each{200};              ///< grasps taken from each list
   Taken taken{Taken::best};                  ///< how those are chosen
   Vector3 p_object_middle{Vector3::Zero()};  ///< for spread grasps
   double clearance{0.0};                     ///< between the hands [m]
   double palm_clearance{0.0};                ///< between either palm and the other hand, when more [m]
-  double least_opposition{0.0};              ///< [rad] for a transfer: wrists opposed by at least this
+  double min_opposition{0.0};                ///< [rad] for a transfer: wrists opposed by at least this
   /// For passing the object on: either hand, opened, must be able to come and to leave straight
   /// over `stand_off`, past the object and the other hand. Needs the object.
   const Graspable* passed{};
-  double stand_off{0.09};       ///< [m]
-  double way_clearance{0.002};  ///< kept on that path [m]
+  double stand_off{0.09};           ///< [m]
+  double retreat_clearance{0.002};  ///< kept on that path [m]
 };
 
 struct DoubleList {
   std::vector<DoubleGrasp> grasps;  ///< best score first
   /// Pairs examined, and of these those left out: hands collide; wrists not opposed enough; no room
   /// to come or leave; an arm does not reach.
-  std::uint64_t pairs{}, colliding{}, not_opposed{}, no_way{}, out_of_reach{};
+  std::uint64_t pairs{}, colliding{}, not_opposed{}, no_retreat{}, out_of_reach{};
 
   /// Counts per reason of the pairs without a double grasp.
   Refusals refusals() const;
@@ -70,11 +70,11 @@ DoubleList list_double_grasps(const HandSide& a, const HandSide& b, const Double
 
 /// Returns the nearness of an arm to its rest configuration, [0, 1]: one minus the mean fraction of
 /// the ranges its axes are away from there.
-double posture_score(const RobotModel& robot, const Group& arm, const Vector& arm_q);
+double rest_score_of(const RobotModel& robot, const Group& arm, const Vector& arm_q);
 
-/// For each grasp of a list the smaller posture_score() of reaching it with the object at its start
+/// For each grasp of a list the smaller rest_score_of() of reaching it with the object at its start
 /// and at its goal; -1 when the arm does not reach one of them. `q_seed`: all axes.
-std::vector<double> posture_scores(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
+std::vector<double> rest_scores_of(const RobotModel& robot, const Group& arm, const Vector& q_seed, const GraspList& list,
                                    const std::vector<Pose>& T_root_object);
 
 }  // namespace handsel::grasp_planner

@@ -23,17 +23,17 @@ std::vector<LoadShare> share_load(const std::vector<BearingHand>& hands, const V
   const std::vector<GripForces> grips = shared_grip_forces(contacts, centre, load, settings);
   std::vector<LoadShare> out(hands.size());
   for (std::size_t h = 0; h < hands.size(); ++h) {
-    const auto& [kit, grasp] = hands[h];
+    const auto& [hand_geometry, grasp] = hands[h];
     const std::vector<Vector3>& forces = grips[h].forces;
     out[h].margin = forces.empty() ? -std::numeric_limits<double>::infinity() : grips[h].margin;
     if (forces.empty()) continue;
     Vector effort = Vector::Zero(grasp->hand_joints.size());
     std::vector<std::vector<Pose>> T_hand_step;
-    kit->forward(grasp->hand_joints, T_hand_step);
+    hand_geometry->forward(grasp->hand_joints, T_hand_step);
     const Pose T_hand_object = grasp->T_object_hand.inverse();
     for (std::size_t k = 0; k < forces.size(); ++k) {
       const Contact& c = grasp->contacts[k];
-      kit->chains[c.finger].add_effort(T_hand_step[c.finger], T_hand_object, c.position, forces[k], effort);
+      hand_geometry->chains[c.finger].add_effort(T_hand_step[c.finger], T_hand_object, c.position, forces[k], effort);
     }
     if (effort.allFinite() && effort.cwiseAbs().maxCoeff() >= kLeastEffort) out[h].effort = std::move(effort);
   }

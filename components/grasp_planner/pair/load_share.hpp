@@ -6,14 +6,14 @@
 
 #include "common/grasp/grip_force.hpp"
 #include "common/messages/planning.hpp"
-#include "components/grasp_planner/hand/hand_kit.hpp"
+#include "components/grasp_planner/hand/hand_geometry.hpp"
 
 namespace handsel::grasp_planner {
 
 /// A hand and its grasp of the load.
 struct BearingHand {
-  const HandGeometry* kit{};  ///< geometry of the hand
-  const Grasp* grasp{};       ///< its grasp of the load
+  const HandGeometry* hand_geometry{};  ///< geometry of the hand
+  const Grasp* grasp{};                 ///< its grasp of the load
 };
 
 /// What one of them has to do.

@@ -18,13 +18,13 @@ std::vector<Vector3> retreat_directions(const HandModel& hand) {
   return directions;
 }
 
-bool retreat_free(const HandGeometry& kit, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
+bool retreat_free(const HandGeometry& hand_geometry, const std::vector<std::vector<Pose>>& T_hand_step, const Graspable& object,
                   const Pose& T_object_hand, const RetreatPath& path, std::uint64_t* tests) {
   for (double s = path.length; s > 0; s -= 2 * kSweepStep) {
     Pose T = T_object_hand;
     T.translate(Vector3(s * path.direction));
     if (tests != nullptr) ++*tests;
-    if (kit.shape.touches(T_hand_step, object, T, path.clearance)) return false;
+    if (hand_geometry.shape.touches(T_hand_step, object, T, path.clearance)) return false;
   }
   return true;
 }

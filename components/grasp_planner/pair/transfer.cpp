@@ -32,10 +32,10 @@ std::vector<Eigen::Matrix3d> tilted(double tilt) {
 TransferTable::TransferTable(const HandSide& robot, const HandSide& human, const Graspable& object, const TransferSettings& settings)
     : settings_(settings), partners_(robot.list->grasps.size()) {
   DoubleSettings pairs;
-  pairs.most_of_each = settings.most_of_each;
+  pairs.max_of_each = settings.max_of_each;
   pairs.clearance = settings.clearance;
   pairs.palm_clearance = settings.palm_clearance;
-  pairs.least_opposition = settings.least_opposition;
+  pairs.min_opposition = settings.min_opposition;
   pairs.passed = &object;
   pairs.taken = Taken::spread;
   pairs.p_object_middle = object.box().center();
@@ -87,21 +87,21 @@ TransferPlaces::TransferPlaces(const Person& person, const HumanArm& arm, const 
 
 std::vector<double> tilt_levels(const TransferSettings& s) {
   std::vector<double> out{0.0};
-  while (out.back() + kTiltStep < s.most_tilt + 1e-3) out.push_back(out.back() + kTiltStep);
+  while (out.back() + kTiltStep < s.max_tilt + 1e-3) out.push_back(out.back() + kTiltStep);
   return out;
 }
 
 std::optional<TransferPose> TransferPlaces::best(
     const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
-    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach, int most_reaches) const {
+    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach, int max_reaches) const {
   const TransferSettings& s = table.settings();
-  const double least_cosine = std::cos(s.most_aim);
+  const double least_cosine = std::cos(s.max_aim);
   struct Held {
     Eigen::Matrix3d R;
     const TransferPartner* partner;
   };
   // Whether the hand of a partner at a place would do; the pose without the arm's joints.
-  const auto judge = [&](const Held& held, const Vector3& place, double most_strain) -> std::optional<TransferPose> {
+  const auto judge = [&](const Held& held, const Vector3& place, double max_strain) -> std::optional<TransferPose> {
     Vector3 way = place - chest_;
     way.z() = 0;
     const double cosine = (held.R * held.partner->T_object_wrist.linear().col(2)).dot(way.normalized());
@@ -110,13 +110,13 @@ std::optional<TransferPose> TransferPlaces::best(
     pose.T_world_object.linear() = held.R;
     pose.T_world_object.translation() = place - held.R * p_object_middle_;
     const auto wrist = wrist_posture(arm_, pose.T_world_object * held.partner->T_object_wrist);
-    if (!wrist || wrist->strain > most_strain) return std::nullopt;
+    if (!wrist || wrist->strain > max_strain) return std::nullopt;
     pose.partner = *held.partner;
     pose.wrist = *wrist;
     pose.aim = std::acos(std::min(1.0, cosine));
     pose.tilt = tilt;
-    pose.score = 0.4 * (held.partner->opposition - s.least_opposition) / (std::numbers::pi - s.least_opposition) +
-                 0.4 * (1 - wrist->strain / s.most_strain) + 0.2 * (1 - pose.aim / s.most_aim) - 0.3 * tilt;
+    pose.score = 0.4 * (held.partner->opposition - s.min_opposition) / (std::numbers::pi - s.min_opposition) +
+                 0.4 * (1 - wrist->strain / s.max_strain) + 0.2 * (1 - pose.aim / s.max_aim) - 0.3 * tilt;
     return pose;
   };
   std::vector<TransferPose> found;
@@ -128,12 +128,12 @@ std::optional<TransferPose> TransferPlaces::best(
   for (const Eigen::Matrix3d& R : turns) {
     std::vector<Held> likely;  // what is hopeless in the middle is so everywhere
     for (const TransferPartner& partner : table.partners(robot_grasp)) {
-      if (judge({R, &partner}, places_.front(), 1.3 * s.most_strain)) likely.push_back({R, &partner});
+      if (judge({R, &partner}, places_.front(), 1.3 * s.max_strain)) likely.push_back({R, &partner});
     }
     for (const Vector3& place : places_) {
       std::optional<TransferPose> at_place;
       for (const Held& held : likely) {
-        auto pose = judge(held, place, s.most_strain);
+        auto pose = judge(held, place, s.max_strain);
         if (pose && (!at_place || pose->score > at_place->score)) at_place = std::move(pose);
       }
       if (at_place) found.push_back(std::move(*at_place));
@@ -154,7 +154,7 @@ std::optional<TransferPose> TransferPlaces::best(
   std::stable_sort(ordered.begin(), ordered.end(), better);
   std::stable_sort(again.begin(), again.end(), better);
   std::move(again.begin(), again.end(), std::back_inserter(ordered));
-  for (std::size_t i = 0; i < ordered.size() && most_reaches > 0; ++i, --most_reaches) {
+  for (std::size_t i = 0; i < ordered.size() && max_reaches > 0; ++i, --max_reaches) {
     auto q = reach(ordered[i].T_world_object, ordered[i].T_world_object * T_object_hand);
     if (!q) continue;
     ordered[i].arm_joints = std::move(*q);

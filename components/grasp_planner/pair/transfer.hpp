@@ -12,18 +12,18 @@
 namespace handsel::grasp_planner {
 
 struct TransferSettings {
-  double clearance{0.004};        ///< between the two hands [m]
-  double palm_clearance{0.01};    ///< between either palm and the other hand [m]
-  double least_opposition{2.1};   ///< angle of the wrists, more than 120 degrees [rad]
-  std::size_t most_of_each{400};  ///< best grasps taken from each list
+  double clearance{0.004};       ///< between the two hands [m]
+  double palm_clearance{0.01};   ///< between either palm and the other hand [m]
+  double min_opposition{2.1};    ///< angle of the wrists, more than 120 degrees [rad]
+  std::size_t max_of_each{400};  ///< best grasps taken from each list
   /// Grasps of the person kept for each of the robot, clearly different ones.
   std::size_t partners{10};
   /// Strain of wrist and arm of the person; beyond it a pose is left out.
-  double most_strain{kComfortableStrain};
+  double max_strain{kComfortableStrain};
   /// Angle between the person's hand and the level direction from their body to the object [rad].
-  double most_aim{1.05};
-  int headings{24};     ///< of the object
-  double most_tilt{0};  ///< it may be tilted by up to this [rad]; upright is better
+  double max_aim{1.05};
+  int headings{24};    ///< of the object
+  double max_tilt{0};  ///< it may be tilted by up to this [rad]; upright is better
 };
 
 /// What a person's hand could do with the object in one grasp of the robot.
@@ -80,10 +80,10 @@ class TransferPlaces {
 
   /// Returns the best place for a grasp of the robot, the object tilted by `tilt` [rad] in some
   /// direction, at which `reach` finds an arm configuration for the robot's hand. `reach` is asked
-  /// `most_reaches` times at most, best score first.
+  /// `max_reaches` times at most, best score first.
   std::optional<TransferPose> best(const TransferTable& table, std::size_t robot_grasp, const Pose& T_object_hand, double tilt,
                                    const std::function<std::optional<Vector>(const Pose& T_world_object, const Pose& T_world_hand)>& reach,
-                                   int most_reaches) const;
+                                   int max_reaches) const;
 
  private:
   HumanArm arm_;

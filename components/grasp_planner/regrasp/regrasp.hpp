@@ -19,9 +19,9 @@ namespace handsel::grasp_planner {
 
 /// An arm with the grasps of its hand on the object.
 struct RegraspArm {
-  Manipulator arm;            ///< groups of arm and hand in the robot model
-  const HandGeometry* kit{};  ///< geometry of the hand of this arm; must outlive this struct
-  const GraspList* list{};    ///< grasps of that hand on the object; must outlive this struct
+  Manipulator arm;                      ///< groups of arm and hand in the robot model
+  const HandGeometry* hand_geometry{};  ///< geometry of the hand of this arm; must outlive this struct
+  const GraspList* list{};              ///< grasps of that hand on the object; must outlive this struct
 };
 
 /// One hand holds the object, or it stands somewhere.
@@ -52,18 +52,18 @@ struct RegraspStep {
 
 struct RegraspSettings {
   /// Grasps of each list that are considered, spread over all orientations.
-  std::size_t most_of_each{200};
+  std::size_t max_of_each{200};
   double clearance{0.004};  ///< between the hands [m]
   /// What is held may lie this far from its planned place when the other hand comes [m].
   double slack{0.005};
   double stand_off{0.09};   ///< of a hand before it comes and after it went [m]
   double lift{0.08};        ///< what is picked up or put down must be able to go this far straight up [m]
-  int exchange_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
+  int handover_tries{200};  ///< places and turns of the object tried to pass it in one double grasp
   /// The search ends when so many picks, passes and places were checked.
-  std::uint64_t most_steps_tried{3000};
-  GripForceSettings grip;             ///< of hands that bear a load together
-  double least_apart{0.25};           ///< of the palms of two hands that carry together [m]
-  std::size_t most_pairs_tried{400};  ///< of two hands at once
+  std::uint64_t max_steps_tried{3000};
+  GripForceSettings grip;            ///< of hands that bear a load together
+  double min_apart{0.25};            ///< of the palms of two hands that carry together [m]
+  std::size_t max_pairs_tried{400};  ///< of two hands at once
 };
 
 struct RegraspPlan {
@@ -72,7 +72,7 @@ struct RegraspPlan {
   std::string reason;              ///< why not, one sentence
   Refusals rejected;               ///< steps that were checked and why they cannot be made
   /// Steps checked in detail; pairs of grasps of two hands that do not collide.
-  std::uint64_t judged{}, double_grasps{};
+  std::uint64_t checked{}, double_grasps{};
   std::vector<LoadShare> shares;  ///< of two hands at once, one an arm: grip of each
 };
 

@@ -54,28 +54,23 @@ void write(const RegraspPlan& plan, const std::vector<RegraspArm>& arms, Regrasp
 
 }  // namespace
 
-std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot,
-                      std::size_t arms, const ObjectLibrary& library) {
-  if (arms != 2)
-    return "the robot has " + std::to_string(arms) +
-           " arms with hands, to pass an object it needs two";
+std::string objection(const RegraspRequest& request, const Scene& scene, const RobotModel& robot, std::size_t arms,
+                      const ObjectLibrary& library) {
+  if (arms != 2) return "the robot has " + std::to_string(arms) + " arms with hands, to pass an object it needs two";
   if (!scene.robot_known) return "the place of the robot is not known yet";
   if (request.start.size() != robot.dof())
-    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " +
-           std::to_string(robot.dof());
-  const auto object = std::find_if(scene.objects.begin(), scene.objects.end(),
-                                   [&](const SceneObject& o) { return o.id == request.object; });
+    return "the start has " + std::to_string(request.start.size()) + " axes, the robot has " + std::to_string(robot.dof());
+  const auto object =
+      std::find_if(scene.objects.begin(), scene.objects.end(), [&](const SceneObject& o) { return o.id == request.object; });
   if (object == scene.objects.end()) return "object " + request.object + " is not in the scene";
-  if (object->holder == Holder::robot || object->holder == Holder::human)
-    return request.object + " is held: it must stand first";
-  if (library(object->model) == nullptr)
-    return "there is no description of " + request.object + ", grasps need one";
+  if (object->holder == Holder::robot || object->holder == Holder::human) return request.object + " is held: it must stand first";
+  if (library(object->model) == nullptr) return "there is no description of " + request.object + ", grasps need one";
   return {};
 }
 
-RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage,
-                             const ObjectModel& model, const std::function<bool()>& cancelled) {
-  const std::vector<ArmBook>& arms = stage.arms;
+RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& stage, const ObjectModel& model,
+                             const std::function<bool()>& cancelled) {
+  const std::vector<ArmGrasps>& arms = stage.arms;
   const Scene& scene = stage.scene;
   RegraspAnswer answer;
   answer.reply.id = request.id;
@@ -85,10 +80,10 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
     answer.reply.reason = "object " + request.object + " is not in the scene";
     return answer;
   }
-  std::vector<std::shared_ptr<const GraspPage>> pages;
+  std::vector<std::shared_ptr<const CachedGrasps>> pages;
   std::vector<GraspList> whole(arms.size());
   for (std::size_t a = 0; a < arms.size(); ++a) {
-    pages.push_back(arms[a].book->page(model, cancelled));
+    pages.push_back(arms[a].cache->page(model, cancelled));
     if (!pages.back()) {
       answer.reply.reason = "cancelled";
       return answer;
@@ -101,12 +96,11 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
   task.goal.T_world_object = request.T_world_goal;
   if (request.both) {
     std::vector<RegraspArm> sides;
-    for (std::size_t a = 0; a < arms.size(); ++a) sides.push_back({arms[a].arm, arms[a].kit.get(), &whole[a]});
-    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
-                           request.object);
+    for (std::size_t a = 0; a < arms.size(); ++a) sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &whole[a]});
+    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene, request.object);
     planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan_together(task.start.T_world_object, task.goal.T_world_object, cancelled);
-    answer.judged = plan.judged;
+    answer.checked = plan.checked;
     write(plan, sides, answer.reply);
     for (std::size_t a = 0; a < plan.shares.size(); ++a) {
       answer.reply.steps[a].grasp.hand_effort = plan.shares[a].effort;
@@ -118,18 +112,16 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
     std::vector<GraspList> firm(arms.size());
     std::vector<RegraspArm> sides;
     for (std::size_t a = 0; a < arms.size(); ++a) {
-      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(),
-                   std::back_inserter(firm[a].grasps),
+      std::copy_if(whole[a].grasps.begin(), whole[a].grasps.end(), std::back_inserter(firm[a].grasps),
                    [min_margin](const ListedGrasp& g) { return g.grasp.margin >= min_margin; });
-      sides.push_back({arms[a].arm, arms[a].kit.get(), &firm[a]});
+      sides.push_back({arms[a].arm, arms[a].hand_geometry.get(), &firm[a]});
     }
     const bool any = std::all_of(firm.begin(), firm.end(), [](const GraspList& list) { return !list.grasps.empty(); });
     if (!any && min_margin != kMinMargins.back()) continue;
-    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene,
-                           request.object);
+    RegraspPlanner planner(stage.robot, sides, *pages.front()->object, stage.library, scene, request.object);
     planner.set_settings(stage.settings);
     const RegraspPlan plan = planner.plan(task, cancelled);
-    answer.judged += plan.judged;
+    answer.checked += plan.checked;
     // A firm grip is not worth handing the object to and fro.
     if (!plan.solved ? !answer.reply.solved : !answer.reply.solved || plan.steps.size() < answer.reply.steps.size()) {
       write(plan, sides, answer.reply);
@@ -141,8 +133,7 @@ RegraspAnswer answer_regrasp(const RegraspRequest& request, const RegraspStage& 
 }
 
 Duration regrasp_time(const RegraspAnswer& answer) {
-  return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.judged) +
-                      2e-4 * static_cast<double>(answer.listed));
+  return from_seconds(0.05 + 4e-3 * static_cast<double>(answer.checked) + 2e-4 * static_cast<double>(answer.listed));
 }
 
 }  // namespace handsel::grasp_planner

@@ -10,22 +10,22 @@
 #include "common/base/time.hpp"
 #include "common/messages/planning.hpp"
 #include "common/messages/world.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "components/grasp_planner/regrasp/regrasp.hpp"
 
 namespace handsel::grasp_planner {
 
 /// An arm, the geometry of its hand and the grasp lists of that hand.
-struct ArmBook {
-  Manipulator arm;                          ///< groups of arm and hand in the robot model
-  std::shared_ptr<const HandGeometry> kit;  ///< geometry of the hand of this arm
-  std::shared_ptr<GraspBook> book;          ///< grasp lists of that hand, made when first asked for
+struct ArmGrasps {
+  Manipulator arm;                                    ///< groups of arm and hand in the robot model
+  std::shared_ptr<const HandGeometry> hand_geometry;  ///< geometry of the hand of this arm
+  std::shared_ptr<GraspCache> cache;                  ///< grasp lists of that hand, made when first asked for
 };
 
 struct RegraspAnswer {
-  RegraspReply reply;      ///< as sent to the client; its reason says why there is no sequence
-  std::uint64_t judged{};  ///< steps checked in detail
-  std::uint64_t listed{};  ///< grasps that were listed for it
+  RegraspReply reply;       ///< as sent to the client; its reason says why there is no sequence
+  std::uint64_t checked{};  ///< steps checked in detail
+  std::uint64_t listed{};   ///< grasps that were listed for it
 };
 
 /// Returns why no hands can be searched for the request, one sentence; empty: they can. `arms`:
@@ -35,11 +35,11 @@ std::string objection(const RegraspRequest& request, const Scene& scene, const R
 
 /// What an answer is worked out from.
 struct RegraspStage {
-  const RobotModel& robot;           ///< with all arms
-  const std::vector<ArmBook>& arms;  ///< one or two
-  const ObjectLibrary& library;      ///< described models
-  const Scene& scene;                ///< obstacles and the object
-  const RegraspSettings& settings;   ///< of the planner
+  const RobotModel& robot;             ///< with all arms
+  const std::vector<ArmGrasps>& arms;  ///< one or two
+  const ObjectLibrary& library;        ///< described models
+  const Scene& scene;                  ///< obstacles and the object
+  const RegraspSettings& settings;     ///< of the planner
 };
 
 /// `request.object` is in the scene and stands; `model`: of it. The reply says why when there is no

@@ -42,7 +42,7 @@ StepCheck::StepCheck(const RobotModel& robot, std::vector<RegraspArm> arms, cons
       shapes_.push_back({static_cast<int>(l), CollisionShape::make(p.shape), p.T_parent_shape});
   }
   retreats_.reserve(arms_.size());
-  for (const RegraspArm& x : arms_) retreats_.push_back(retreat_directions(x.kit->hand));
+  for (const RegraspArm& x : arms_) retreats_.push_back(retreat_directions(x.hand_geometry->hand));
 }
 
 const Grasp& StepCheck::grasp(int arm, std::size_t i) const { return arms_[static_cast<std::size_t>(arm)].list->grasps[i].grasp; }
@@ -97,7 +97,7 @@ CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_ob
   const Pose T_world_hand = T_world_object * g.T_object_hand;
   const Vector& rest = robot_.rest_configuration();
   const auto arm_q = reach(arm, T_world_hand, rest, 2);
-  if (!arm_q) return {{}, "no posture of the arm reaches it"};
+  if (!arm_q) return {{}, "no configuration of the arm reaches it"};
   RegraspStep step;
   step.T_world_object = T_world_object;
   step.q = with(rest, arm, *arm_q, g.hand_joints);
@@ -113,18 +113,18 @@ CheckedStep StepCheck::check_pick(int arm, std::size_t i, const Pose& T_world_ob
     step.before = step.after = std::move(*off);
     return {std::move(step), ""};
   }
-  return {{}, "no straight way to or from it is free"};
+  return {{}, "no straight path to or from it is free"};
 }
 
 std::optional<Vector> StepCheck::stand_off(int arm, std::size_t i, const Pose& T_world_object, const Vector& q, const Vector& arm_q) {
   const Grasp& g = grasp(arm, i);
   FingerPoses T_open;
-  const HandGeometry& kit = *arms_[static_cast<std::size_t>(arm)].kit;
-  kit.forward(g.pregrasp_joints, T_open);
+  const HandGeometry& hand_geometry = *arms_[static_cast<std::size_t>(arm)].hand_geometry;
+  hand_geometry.forward(g.pregrasp_joints, T_open);
   std::vector<Vector3> all = retreats_[static_cast<std::size_t>(arm)];
   all.push_back((T_world_object * g.T_object_hand).linear().transpose() * Vector3::UnitZ());
   for (const Vector3& direction : all) {
-    if (!retreat_free(kit, T_open, object_, g.T_object_hand, {direction, settings_.stand_off, kRetreatClearance})) continue;
+    if (!retreat_free(hand_geometry, T_open, object_, g.T_object_hand, {direction, settings_.stand_off, kRetreatClearance})) continue;
     if (auto off = straight(arm, i, T_world_object, q, arm_q, direction)) return off;
   }
   return std::nullopt;
@@ -163,7 +163,7 @@ std::vector<StepCheck::PassPlace> StepCheck::pass_places(const Pass& pass) const
     }
   }
   std::stable_sort(out.begin(), out.end(), [](const PassPlace& x, const PassPlace& y) { return x.score > y.score; });
-  if (out.size() > static_cast<std::size_t>(settings_.exchange_tries)) out.resize(static_cast<std::size_t>(settings_.exchange_tries));
+  if (out.size() > static_cast<std::size_t>(settings_.handover_tries)) out.resize(static_cast<std::size_t>(settings_.handover_tries));
   return out;
 }
 

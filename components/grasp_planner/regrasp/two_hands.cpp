@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "components/grasp_planner/pair/carried_way.hpp"
+#include "components/grasp_planner/pair/carried_motion.hpp"
 
 namespace handsel::grasp_planner {
 namespace {
@@ -19,7 +19,7 @@ std::vector<Pose> carried_over(const Pose& T_start, const Pose& T_goal, double l
     T.translation().z() += lift;
     return T;
   };
-  return way_of_object({T_start, raised(T_start), raised(T_goal), T_goal}, kPathStep);
+  return path_of_object({T_start, raised(T_start), raised(T_goal), T_goal}, kPathStep);
 }
 
 /// One object carried by both hands from one place to another.
@@ -42,7 +42,7 @@ class TwoHandSearch {
   // in the list of the arm, and the motions of the arm by index.
   std::array<GraspList, 2> reached_;
   std::array<std::vector<std::size_t>, 2> index_;
-  std::array<std::map<std::size_t, std::vector<CarriedWay>>, 2> paths_;
+  std::array<std::map<std::size_t, std::vector<CarriedMotion>>, 2> paths_;
   std::array<HandSide, 2> sides_;
   RegraspPlan out_;
 };
@@ -59,18 +59,18 @@ bool TwoHandSearch::find_grasps(std::size_t a) {
   std::size_t firm = 0;
   for (std::size_t n = 0; n < arm.list->grasps.size(); ++n) {
     const Grasp& g = arm.list->grasps[n].grasp;
-    if (bear_part({arm.kit, &g}, 0.5, load_, check_.settings().grip).margin <= 0) continue;
+    if (bear_part({arm.hand_geometry, &g}, 0.5, load_, check_.settings().grip).margin <= 0) continue;
     ++firm;
     std::vector<Pose> T_root_tip;
     for (const Pose& T : T_world_path_) T_root_tip.push_back(check_.T_root_world() * T * g.T_object_hand);
-    std::vector<CarriedWay> found = carried_ways(check_.robot(), *arm.arm.arm, check_.robot().rest_configuration(), T_root_tip);
+    std::vector<CarriedMotion> found = carried_motions(check_.robot(), *arm.arm.arm, check_.robot().rest_configuration(), T_root_tip);
     if (found.empty()) continue;
     reached_[a].grasps.push_back(arm.list->grasps[n]);
     index_[a].push_back(n);
     sides_[a].posture.push_back(std::min(1.0, found.front().room));
     paths_[a][n] = std::move(found);
   }
-  sides_[a].kit = arm.kit;
+  sides_[a].hand_geometry = arm.hand_geometry;
   sides_[a].list = &reached_[a];
   if (!index_[a].empty()) return true;
   const std::string all = "by none of " + std::to_string(firm > 0 ? firm : arm.list->grasps.size()) + " grasps ";
@@ -82,7 +82,7 @@ bool TwoHandSearch::find_grasps(std::size_t a) {
 /// Returns the pairs of grasps that do not collide, the one with the largest margin first.
 DoubleList TwoHandSearch::list_pairs() const {
   DoubleSettings pairs;
-  pairs.most_of_each = check_.settings().most_of_each;
+  pairs.max_of_each = check_.settings().max_of_each;
   pairs.taken = Taken::spread;
   pairs.p_object_middle = check_.object().box().center();
   pairs.clearance = check_.settings().clearance;
@@ -98,24 +98,25 @@ DoubleList TwoHandSearch::list_pairs() const {
 }
 
 std::vector<LoadShare> TwoHandSearch::shares_of(const DoubleGrasp& pair) const {
-  return share_load({{check_.arms()[0].kit, &check_.grasp(0, pair.first)}, {check_.arms()[1].kit, &check_.grasp(1, pair.second)}},
-                    check_.object().com(), load_, check_.settings().grip);
+  return share_load(
+      {{check_.arms()[0].hand_geometry, &check_.grasp(0, pair.first)}, {check_.arms()[1].hand_geometry, &check_.grasp(1, pair.second)}},
+      check_.object().com(), load_, check_.settings().grip);
 }
 
 /// Returns the configurations at start and end of the path, on which both hands are closed on the
 /// object and nothing collides.
 std::optional<std::pair<Vector, Vector>> TwoHandSearch::both_along(const DoubleGrasp& pair, std::string& why) {
   const std::size_t i = pair.first, k = pair.second;
-  const std::vector<CarriedWay>&first = paths_[0].at(i), &second = paths_[1].at(k);
-  why = "arms or hands would collide on the way";
-  const auto at = [&](const CarriedWay& x, const CarriedWay& y, std::size_t n) {
+  const std::vector<CarriedMotion>&first = paths_[0].at(i), &second = paths_[1].at(k);
+  why = "arms or hands would collide on the path";
+  const auto at = [&](const CarriedMotion& x, const CarriedMotion& y, std::size_t n) {
     return check_.with(check_.with(check_.robot().rest_configuration(), 0, x.joints[n], check_.grasp(0, i).hand_joints), 1, y.joints[n],
                        check_.grasp(1, k).hand_joints);
   };
   for (std::size_t sum = 0; sum < 2 * kMotionsTried - 1; ++sum) {
     for (std::size_t x = sum < kMotionsTried ? 0 : sum - kMotionsTried + 1; x <= std::min(sum, kMotionsTried - 1); ++x) {
       if (x >= first.size() || sum - x >= second.size()) continue;
-      const CarriedWay &one = first[x], &other = second[sum - x];
+      const CarriedMotion &one = first[x], &other = second[sum - x];
       const auto free = [&](std::size_t n) {
         const Vector q = at(one, other, n);
         return check_.is_free(q) && check_.clear_of_object(q, T_world_path_[n], 0, 1);
@@ -149,7 +150,7 @@ std::optional<std::vector<RegraspStep>> TwoHandSearch::check_pair(const DoubleGr
   const auto after_first = before_second ? off(opened(at_goal, 1, k), T_goal, 0, i) : std::nullopt;
   const auto after_second = after_first ? off(opened(at_goal, 0, i), T_goal, 1, k) : std::nullopt;
   if (!after_second) {
-    why = "no straight way to or from it is free";
+    why = "no straight path to or from it is free";
     return std::nullopt;
   }
   first.kind = RegraspStepKind::pick;
@@ -182,7 +183,7 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
   std::map<std::string, std::uint64_t> rejected;
   for (const DoubleGrasp& d : doubles.grasps) {
     const Vector3 between = check_.grasp(0, d.first).T_object_hand.translation() - check_.grasp(1, d.second).T_object_hand.translation();
-    if (between.norm() < check_.settings().least_apart) {
+    if (between.norm() < check_.settings().min_apart) {
       ++rejected["the hands would be too near each other"];
       continue;
     }
@@ -190,8 +191,8 @@ RegraspPlan TwoHandSearch::run(const std::function<bool()>& cancelled) {
       ++rejected["the fingers would not bear it"];
       continue;
     }
-    if (out_.judged >= check_.settings().most_pairs_tried || (cancelled && cancelled())) break;
-    ++out_.judged;
+    if (out_.checked >= check_.settings().max_pairs_tried || (cancelled && cancelled())) break;
+    ++out_.checked;
     std::string why;
     auto steps = check_pair(d, why);
     if (steps) {

@@ -173,7 +173,7 @@ Routine<Outcome> move_together(Parts& parts, const std::string& object, const st
       robot.link_pose(start, parts.arm.palm()).inverse() * robot.link_pose(start, other->palm);
   request.upright = true;
   request.upright_axis = T_tool_object.linear() * Vector3::UnitZ();
-  request.most_tilt = kMaxTilt;
+  request.max_tilt = kMaxTilt;
   const bool answered = co_await timing.ask(request);
   if (!answered) co_return Outcome::no_answer("trajectory");
   if (!timing.reply()->solved)
@@ -227,7 +227,7 @@ Routine<Outcome> release_both(Parts& parts, const std::string& object, const Car
   for (const std::string& arm : arms) {
     Outcome done = co_await use_arm(parts, arm);
     if (!done.good) co_return done;
-    parts.action.phase = ActionPhase::letting_go;
+    parts.action.phase = ActionPhase::release;
     const Vector open = RobotModel::part(plan.down.after, parts.arm.fingers());
     HandResult opened =
         co_await parts.hand.run(HandAction::release, open, parts.settings.hand_timeout());

@@ -203,7 +203,7 @@ Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::str
   motion.is_straight = true;
   motion.allowed = {object};
   if (!person.empty()) motion.allowed.push_back(person);
-  std::string why = "no posture of the arm lies there";
+  std::string why = "no configuration of the arm lies there";
   for (const double ratio : kRetreatRatios) {
     Pose T = T_now;
     T.translation() += ratio * parts.settings.retreat_distance() * away;
@@ -216,7 +216,7 @@ Routine<Outcome> retreat(Parts& parts, const std::string& person, const std::str
     if (outcome.good) co_return outcome;
     why = outcome.reason;
   }
-  co_return Outcome::failure("the hand finds no straight way back from " + object + ": " + why);
+  co_return Outcome::failure("the hand finds no straight path back from " + object + ": " + why);
 }
 
 }  // namespace handsel::manipulation_planner

@@ -49,7 +49,7 @@ Routine<std::optional<Offer>> await_offer(Parts& parts, const std::string& wante
         parts.area.is_occupied(giver)) {
       has_cleared = true;
       Outcome cleared = co_await clear_offer_area(parts, giver, ClearUntil::any_offer);
-      if (!cleared.good) parts.refuse("making room", cleared.reason);
+      if (!cleared.good) parts.refuse("clearing the offer area", cleared.reason);
       continue;
     }
     co_await parts.waiting.pause(kObserveAgain);

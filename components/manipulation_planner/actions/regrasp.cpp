@@ -67,7 +67,7 @@ Routine<Outcome> draw_aside(Parts& parts) {
     }
     if (!farthest) continue;
     MotionSpec aside;
-    aside.phase = ActionPhase::making_room;
+    aside.phase = ActionPhase::clear_offer_area;
     aside.goals = {*farthest};
     aside.speed = parts.settings.carry_speed();
     Outcome drawn = co_await move(parts, aside);
@@ -150,7 +150,7 @@ Routine<Outcome> pass(Parts& parts, const std::string& object, const RegraspStep
 
   done = co_await use_arm(parts, step.from);
   if (!done.good) co_return done;
-  parts.action.phase = ActionPhase::letting_go_first_hand;
+  parts.action.phase = ActionPhase::release_first_hand;
   done = co_await release_and_retreat(parts, object, step.q, step.after);
   if (!done.good) co_return done;
   done = co_await use_arm(parts, step.to);
@@ -225,7 +225,7 @@ Routine<Outcome> execute_step(Parts& parts, const std::string& object, const Reg
       break;
     case RegraspKind::pass:
       if (!is_first_pass) done = co_await draw_aside(parts);
-      if (!done.good) parts.refuse("making room", done.reason);
+      if (!done.good) parts.refuse("clearing the offer area", done.reason);
       done = co_await pass(parts, object, step);
       break;
     case RegraspKind::place:

@@ -60,7 +60,7 @@ Outcome moved_away(const std::string& why) {
 }
 
 Outcome out_of_reach() {
-  return Outcome::failure("no posture of the arm reaches it where it is held now");
+  return Outcome::failure("no configuration of the arm reaches it where it is held now");
 }
 
 /// Returns the motion to the stand-off of a grasp, which follows the object.
@@ -103,7 +103,7 @@ Routine<Outcome> step_back(Parts& parts, const Offer& offer) {
     Outcome stepped = co_await execute(parts, planned.waypoints, back);
     co_return stepped;
   }
-  Outcome none = Outcome::failure("no straight way leads off " + offer.giver);
+  Outcome none = Outcome::failure("no straight path leads off " + offer.giver);
   parts.refuse("stepping back", none.reason);
   co_return none;
 }
@@ -143,7 +143,7 @@ Routine<Outcome> retreat_from_offer(Parts& parts, const Offer& offer) {
   next.goals = {RobotModel::part(parts.arm.robot().rest_configuration(), parts.arm.group())};
   next.allowed = {offer.object};
   Outcome drawn = co_await retreat_from(parts, offer.giver, next);
-  if (!drawn.good) parts.refuse("drawing back", drawn.reason);
+  if (!drawn.good) parts.refuse("retreating", drawn.reason);
   co_return drawn;
 }
 
@@ -235,7 +235,7 @@ Routine<Outcome> await_release(Parts& parts, const Offer& offer) {
     co_await parts.waiting.pause(kObserveAgain);
   }
   co_return is_given() ? Outcome{}
-                       : Outcome::failure(offer.giver + " does not let go of " + offer.object);
+                       : Outcome::failure(offer.giver + " does not release " + offer.object);
 }
 
 /// Plans the approach and begins to open the hand.

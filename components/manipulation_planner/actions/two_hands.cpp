@@ -174,7 +174,7 @@ Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, co
   const RobotModel& robot = parts.arm.robot();
   const Pose T_off = robot.link_pose(closed, parts.arm.palm()).inverse() *
                      robot.link_pose(after, parts.arm.palm());
-  std::string why = "no posture of the arm lies there";
+  std::string why = "no configuration of the arm lies there";
   for (const double ratio : kRetreatRatios) {
     Pose T = T_off;
     T.translation() *= ratio;
@@ -190,7 +190,7 @@ Routine<Outcome> release_and_retreat(Parts& parts, const std::string& object, co
     if (gone.good) co_return gone;
     why = gone.reason;
   }
-  co_return Outcome::failure("the hand finds no straight way off " + object + ": " + why);
+  co_return Outcome::failure("the hand finds no straight path off " + object + ": " + why);
 }
 
 }  // namespace handsel::manipulation_planner

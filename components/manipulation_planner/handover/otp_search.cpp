@@ -201,7 +201,7 @@ OtpSearch find_otp(const RobotModel& robot, const OtpQuery& query, const Vector&
              kMinDistance;
     });
     if (is_near) continue;
-    if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.exchange_tries())
+    if (out.poses.size() >= settings.exchange_goals() || out.tried >= settings.handover_tries())
       break;
     ++out.tried;
     const Pose T_root_tip = query.scene.T_world_base.inverse() * candidate.T_world_object *

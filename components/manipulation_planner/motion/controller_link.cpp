@@ -79,7 +79,7 @@ Routine<Outcome> ControllerLink::end_of(std::uint64_t command) {
   const MotionState motion = now_.execution()->motion;
   if (motion == MotionState::refused) co_return Outcome::failure("trajectory refused: " + reason());
   if (motion != MotionState::finished)
-    co_return Outcome::failure("stopped on the way: " + reason());
+    co_return Outcome::failure("stopped on the path: " + reason());
   co_await waiting_.until([this] { return arm_.at_rest(); }, kRestTimeout);
   co_return Outcome{};
 }

@@ -81,7 +81,7 @@ Routine<PlannedPath> plan_path(Parts& parts, const Vector& start, const MotionSp
   planned.start_touches = reply.start_touches;
   if (!reply.solved) planned.outcome = Outcome::failure(reply.reason);
   if (length_of(planned.waypoints) > motion.max_length)
-    planned.outcome = Outcome::failure("only a long way around leads there");
+    planned.outcome = Outcome::failure("only a long detour leads there");
   co_return planned;
 }
 
@@ -216,7 +216,7 @@ static std::vector<Vector> retreat_goals(const Parts& parts, const std::string& 
 
 Routine<Outcome> retreat_from(Parts& parts, const std::string& touched, const MotionSpec& next) {
   MotionSpec off;
-  off.phase = ActionPhase::drawing_back;
+  off.phase = ActionPhase::retreat_from_person;
   off.is_straight = true;
   off.speed = parts.settings.approach_speed();
   off.allowed = next.allowed;
@@ -234,7 +234,7 @@ Routine<Outcome> retreat_from(Parts& parts, const std::string& touched, const Mo
     Outcome outcome = co_await execute(parts, first.waypoints, off);
     co_return outcome;
   }
-  co_return Outcome::failure("no straight way leads off " + touched);
+  co_return Outcome::failure("no straight path leads off " + touched);
 }
 
 }  // namespace handsel::manipulation_planner

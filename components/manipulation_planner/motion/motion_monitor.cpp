@@ -77,7 +77,7 @@ Outcome MotionMonitor::why_ended(const MotionSpec& motion, TimePoint began) cons
     why = Outcome::failure(motion.object->object + " was moved away");
     why.end = is_approached ? MotionEnd::giver_approached : MotionEnd::target_moved;
   } else {
-    why = Outcome::failure("the way is blocked: " + now_.execution()->reason);
+    why = Outcome::failure("the path is blocked: " + now_.execution()->reason);
     if (is_late(motion, began))
       why.end = MotionEnd::late;
     else if (is_person_too_near_)

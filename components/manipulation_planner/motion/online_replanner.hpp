@@ -34,7 +34,7 @@ class OnlineReplanner {
   OnlineReplanner(Parts& parts, const config::ManipulationPlannerSettings& settings,
                   std::shared_ptr<HumanCost> cost)
       : parts_(parts),
-        period_(settings.live_period(), settings.live_longest(), 0.0),
+        period_(settings.live_period(), settings.live_max_period(), 0.0),
         cost_(std::move(cost)) {}
 
   /// Takes the advised period [s] and gain of the saved cost; both hold for a moment only.

@@ -14,15 +14,15 @@ namespace handsel::path_planner {
 class Budget {
  public:
   Budget(const CollisionWorld& world, std::uint64_t limit, const Hooks& hooks)
-      : judge_(world), hooks_(hooks), before_(world.checks()), exact_before_(world.exact_checks()), limit_(limit) {}
+      : check_(world), hooks_(hooks), before_(world.checks()), exact_before_(world.exact_checks()), limit_(limit) {}
 
   /// Returns the states checked so far, and what was charged.
-  std::uint64_t checks() const { return judge_.checks() - before_ + exact_more_ * (judge_.exact_checks() - exact_before_) + charged_; }
+  std::uint64_t checks() const { return check_.checks() - before_ + exact_more_ * (check_.exact_checks() - exact_before_) + charged_; }
   /// From now on a state that only the exact check could decide counts as so many more: where the
   /// time it takes is what matters.
   void charge_exact(std::uint64_t more) {
     exact_more_ = more;
-    exact_before_ = judge_.exact_checks();
+    exact_before_ = check_.exact_checks();
   }
   /// Adds work that counts like that many checks.
   void charge(std::uint64_t checks) { charged_ += checks; }
@@ -40,7 +40,7 @@ class Budget {
   const Hooks& hooks() const { return hooks_; }
 
  private:
-  const CollisionWorld& judge_;
+  const CollisionWorld& check_;
   const Hooks& hooks_;
   std::function<bool()> stop_;
   std::uint64_t before_, exact_before_, limit_, charged_{}, exact_more_{};

@@ -76,7 +76,9 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
   const bool people = space.costs().concerns_people();
   int in_vain = 0;
   const auto& asked_on = space.hooks().smooth_on;
-  const auto goes_on = [&](int round) { return asked_on ? asked_on() : round < settings.smoothing_rounds && in_vain < settings.patience; };
+  const auto goes_on = [&](int round) {
+    return asked_on ? asked_on() : round < settings.smoothing_rounds && in_vain < settings.max_idle_rounds;
+  };
   for (int round = 0; goes_on(round) && !space.exhausted(); ++round) {
     const Line line(path);
     if (path.size() < 2 || line.length() < 1e-9) return;
@@ -89,15 +91,13 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
     } else {
       double s = random.between(0, line.length());
       const double other = random.between(0, line.length());
-      if (space.costs().of(line.point(line.at(other))) > space.costs().of(line.point(line.at(s))))
-        s = other;
-      const double half = random.between(0.2, 1.0) * settings.longest_edge;
+      if (space.costs().of(line.point(line.at(other))) > space.costs().of(line.point(line.at(s)))) s = other;
+      const double half = random.between(0.2, 1.0) * settings.max_edge;
       const Place from = line.at(std::max(0.0, s - half)), to = line.at(std::min(line.length(), s + half));
       const Vector center = line.point(line.at(s)), toward = random.within(space.lower(), space.upper()) - center;
       const double far = std::min(toward.norm(), random.between(0.1, 1.0) * half);
-      gained = toward.norm() > 1e-9 &&
-               replace(space, path, line, from, to,
-                       {space.upright().restore(center + toward * (far / toward.norm()))});
+      gained =
+          toward.norm() > 1e-9 && replace(space, path, line, from, to, {space.upright().restore(center + toward * (far / toward.norm()))});
     }
     in_vain = gained ? 0 : in_vain + 1;
   }
@@ -105,10 +105,8 @@ void smooth(SearchSpace& space, std::vector<Vector>& path, Random& random) {
 
 void prune(SearchSpace& space, std::vector<Vector>& path) {
   for (std::size_t i = 1; i + 1 < path.size() && !space.exhausted();) {
-    const double before =
-        space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
-    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) &&
-        space.motion_free(path[i - 1], path[i + 1])) {
+    const double before = space.costs().price(path[i - 1], path[i]) + space.costs().price(path[i], path[i + 1]);
+    if (space.costs().price(path[i - 1], path[i + 1]) <= before * (1 + kPruneLoss) && space.motion_free(path[i - 1], path[i + 1])) {
       path.erase(path.begin() + static_cast<long>(i));
       if (i > 1) --i;
     } else {

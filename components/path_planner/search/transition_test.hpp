@@ -16,11 +16,11 @@ class TransitionTest {
   bool operator()(double from, double to) {
     if (to <= from) return true;
     if (random_.unit() < std::exp(-(to - from) / temperature_)) {
-      temperature_ = std::max(kLeastTemperature, temperature_ / kTemperatureFactor);
+      temperature_ = std::max(kMinTemperature, temperature_ / kTemperatureFactor);
       refusals_ = 0;
       return true;
     }
-    if (++refusals_ > kMostRefusals) {
+    if (++refusals_ > kMaxRefusals) {
       temperature_ *= kTemperatureFactor;
       refusals_ = 0;
     }
@@ -29,8 +29,8 @@ class TransitionTest {
 
  private:
   static constexpr double kTemperatureFactor = 1.5;
-  static constexpr int kMostRefusals = 3;
-  static constexpr double kLeastTemperature = 1e-6;
+  static constexpr int kMaxRefusals = 3;
+  static constexpr double kMinTemperature = 1e-6;
 
   double temperature_;
   Random& random_;

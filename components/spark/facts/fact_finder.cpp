@@ -38,7 +38,7 @@ FactFinder::FactFinder(const config::SparkSettings& settings, std::shared_ptr<co
       library_(std::move(objects)),
       capsules_(robot_capsules(*robot_)),
       reach_(arm_reach(*robot_)),
-      exchange_(settings),
+      handover_(settings),
       lasting_(settings.fact_dwell()),
       instant_(0) {}
 
@@ -196,7 +196,7 @@ Facts FactFinder::find(const Scene& scene, const HumanState& people, TimePoint n
     hand_facts(scene, person, judged);
   }
   thing_facts(scene, people, judged);
-  exchange_.find(scene, people, robot, now, judged);
+  handover_.find(scene, people, robot, now, judged);
 
   // Zones, holders, supports and what happened a moment ago come with a memory of their own.
   const auto own = [](const Candidate& c) {

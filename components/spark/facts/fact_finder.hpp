@@ -15,7 +15,7 @@
 #include "common/messages/world.hpp"
 #include "common/model/arm_reach.hpp"
 #include "common/model/robot_capsules.hpp"
-#include "components/spark/facts/exchange_facts.hpp"
+#include "components/spark/facts/handover_facts.hpp"
 #include "components/spark/facts/fact_memory.hpp"
 
 namespace handsel::spark {
@@ -55,7 +55,7 @@ class FactFinder {
   std::vector<Extent> extents_;  // of the scene's objects
   ArmReach reach_;
   std::map<std::string, Zone> zones_;
-  ExchangeFacts exchange_;
+  HandoverFacts handover_;
   FactMemory lasting_, instant_;  // what is found here; what was found with a memory of its own
 };
 

@@ -9,8 +9,8 @@
 namespace handsel::spark {
 namespace {
 
-constexpr double kSameId = 0.15;     // a body with the id they had is preferred by this [m]
-constexpr double kPause = 0.3;  // under another id a person comes back no farther than walked [s]
+constexpr double kSameId = 0.15;        // a body with the id they had is preferred by this [m]
+constexpr double kPause = 0.3;          // under another id a person comes back no farther than walked [s]
 constexpr double kGrid = 0.3;           // places of a lost person are tried this far apart [m]
 constexpr double kFarthest = 5;         // and no farther than this [m]
 constexpr double kWidest = 4;           // max extent of a body: beyond, joints are not compared [m]
@@ -82,8 +82,7 @@ void PeopleTracker::add(const ObservedPerson& body, const std::string& source, T
   const auto from = sources_.find(source);
   update(fresh, body, seen, 0, settings_);
   if (fresh.person.joints.empty()) return;
-  fresh.came_in = from != sources_.end() &&
-                  at_boundary(from->second, position(fresh.person, kTorso), settings_.edge());
+  fresh.came_in = from != sources_.end() && at_boundary(from->second, position(fresh.person, kTorso), settings_.edge());
   tracks_.push_back(std::move(fresh));
 }
 
@@ -121,8 +120,7 @@ void PeopleTracker::confine(Track& track, TimePoint now) const {
     // An adopted person was lost before this process began to observe: empty_after without a
     // gap stands for the time before.
     const bool observed_on =
-        source.unbroken <= track.seen ||
-        (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after());
+        source.unbroken <= track.seen || (track.adopted && to_seconds(source.seen - source.unbroken) >= settings_.empty_after());
     const bool watched = recent(source, now) && source.seen > track.seen && observed_on;
     if (watched && at_boundary(source, position(track.person, kTorso), settings_.edge()))
       track.left_by = name, track.confined = source.seen;
@@ -146,8 +144,7 @@ Track* PeopleTracker::successor(const Track& gone, TimePoint now) {
       const auto before = gone.bodies.find(body.first);
       return before != gone.bodies.end() && before->second == body.second;
     });
-    if (&other == &gone || other.born <= gone.seen || d >= nearest || (d > walked && !called_so))
-      continue;
+    if (&other == &gone || other.born <= gone.seen || d >= nearest || (d > walked && !called_so)) continue;
     out = &other;
     nearest = d;
   }
@@ -241,9 +238,8 @@ std::uint32_t PeopleTracker::observe(const HumanObservation& observation, TimePo
 }
 
 std::size_t PeopleTracker::clear(const std::string& id, TimePoint now) {
-  return std::erase_if(tracks_, [&](const Track& track) {
-    return track.age(now) > settings_.lost_after() && (id.empty() || track.person.id == id);
-  });
+  return std::erase_if(
+      tracks_, [&](const Track& track) { return track.age(now) > settings_.lost_after() && (id.empty() || track.person.id == id); });
 }
 
 /// How far a lost or doubted person may be from the last body [m].
@@ -302,7 +298,7 @@ HumanState PeopleTracker::state(TimePoint now, const Coverage& reach, LeftOut* r
 std::string PeopleTracker::trouble(TimePoint now) const {
   std::string out;
   for (const auto& [name, source] : sources_) {
-    const std::string why = why_not_live(source, now, settings_.max_view_age());
+    const std::string why = why_not_active(source, now, settings_.max_view_age());
     if (!why.empty()) out += (out.empty() ? "source " : "; source ") + name + " " + why;
   }
   return out;

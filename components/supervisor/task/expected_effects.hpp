@@ -11,8 +11,8 @@ namespace handsel::supervisor {
 /// Assumes the effects of an action that has succeeded until the facts have had time to show them.
 class ExpectedEffects {
  public:
-  /// `patience`: time for which effects are assumed [s]. `domain` must outlive this object.
-  ExpectedEffects(const Domain& domain, double patience) : domain_(domain), patience_(patience) {}
+  /// `timeout`: time for which effects are assumed [s]. `domain` must outlive this object.
+  ExpectedEffects(const Domain& domain, double timeout) : domain_(domain), timeout_(timeout) {}
 
   /// An action has ended, successfully or not.
   void on_end(TimePoint now) { ended_at_ = now; }
@@ -21,13 +21,13 @@ class ExpectedEffects {
   /// Expects nothing of the last action.
   void forget() { action_.reset(); }
   /// Returns whether the facts may still lag behind the end of the last action.
-  bool pending(TimePoint now) const { return to_seconds(now - ended_at_) < patience_; }
+  bool pending(TimePoint now) const { return to_seconds(now - ended_at_) < timeout_; }
   /// Returns the state of the world with the effects that are expected.
   State believed(World& world, TimePoint now) const;
 
  private:
   const Domain& domain_;
-  double patience_;
+  double timeout_;
   std::optional<PlannedAction> action_;
   TimePoint ended_at_{};
 };

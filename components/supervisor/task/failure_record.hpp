@@ -33,7 +33,7 @@ class FailureRecord {
   /// Why the task was given up; empty: it was not.
   const std::string& reason() const { return given_up_; }
   /// Counts an action of the recovery that failed. Returns whether others may be tried.
-  bool may_recover_otherwise() { return ++failed_recoveries_ <= settings_.most_recoveries(); }
+  bool may_recover_otherwise() { return ++failed_recoveries_ <= settings_.max_recoveries(); }
 
  private:
   const config::SupervisorSettings& settings_;

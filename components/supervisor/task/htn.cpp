@@ -41,7 +41,7 @@ class Search {
       best_.reason = !blame_.empty()           ? blame_
                      : too_deep_               ? "the tasks of the domain lead ever deeper without an end"
                      : nodes_ >= limits_.nodes ? "no plan was found in " + std::to_string(limits_.nodes) + " states"
-                                               : "there is no way to " + task_text(task, frame_of(world_, args));
+                                               : "there is no method to " + task_text(task, frame_of(world_, args));
     }
     return std::move(best_);
   }
@@ -309,7 +309,7 @@ class Search {
     const Item what = call_item(first, *item.frame, 0);
     const std::string text =
         first.action ? planned(domain_, ground_, first.index, *what.frame).text() : task_text(first.index, *what.frame);
-    tree_.push_back({text, item.depth, -1, true, mine.empty() ? "there is no way to do it" : mine});
+    tree_.push_back({text, item.depth, -1, true, mine.empty() ? "there is no method to do it" : mine});
     step(state, agenda->rest, cost + item.step->skip_cost);
     tree_.resize(lines);
   }

@@ -76,7 +76,7 @@ std::string PlanningProblem::unachieved(const State& state) const {
 
 std::string PlanningProblem::why_replaced(const PlannedAction& action) const {
   const std::string fate = action.object.empty() ? "" : situation_.fate_of(action.object);
-  return fate.empty() ? std::string("another way was taken") : fate;
+  return fate.empty() ? std::string("another method was taken") : fate;
 }
 
 std::string PlanningProblem::why_dropped(const PlannedAction& action) const {

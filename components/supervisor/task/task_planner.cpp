@@ -127,7 +127,7 @@ TaskQuery query_for(const TaskGoal& goal, const Domain& domain, const World& wor
       out.args = {goal.object, goal.onto};
       break;
     case TaskKind::go_to:
-      if (!goal.surface.empty() && goal.surface != "rest") resolve.refuse("there is no posture called " + goal.surface + "; there is rest");
+      if (!goal.surface.empty() && goal.surface != "rest") resolve.refuse("there is no configuration called " + goal.surface + "; there is rest");
       out.args = {or_nothing(goal.surface)};
       break;
     default:

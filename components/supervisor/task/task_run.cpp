@@ -34,7 +34,7 @@ TaskRun::TaskRun(const config::SupervisorSettings& settings, const Domain& domai
     : settings_(settings),
       situation_(situation),
       problem_(settings, domain, situation, normal(goal)),
-      effects_(domain, settings.effect_patience()),
+      effects_(domain, settings.effect_timeout()),
       dispatch_(settings.goal_retry()),
       failures_(settings),
       accepted_(now) {
@@ -110,7 +110,7 @@ Plan TaskRun::plan_from(const State& state) const {
 }
 
 bool TaskRun::replan(TimePoint now) {
-  if (++replans_ > settings_.most_replans()) return false;
+  if (++replans_ > settings_.max_replans()) return false;
   if (!failures_.recovering()) {
     const TaskQuery query = problem_.resolve(problem_.goal());
     if (query.reason.empty()) problem_.set_query(query);
@@ -250,7 +250,7 @@ void TaskRun::watch(TimePoint now, TaskWishes& wishes) {
   const bool obsolete = !problem_.why_impossible(later, after).empty();
   if (!obsolete_.lasts(obsolete, now, settings_.settle_time())) return;
   obsolete_.reset();
-  if (replans_ >= settings_.most_replans()) return;
+  if (replans_ >= settings_.max_replans()) return;
   Plan plan = plan_from(after);
   if (!plan.found) return;  // evaluated again when this action has ended
   ++replans_;

@@ -24,15 +24,15 @@ void AxisMover::begin() noexcept {
   segment_ = 0;
 }
 
-void AxisMover::go_to(double target, const AxisLimits& limits, const AxisLimits& most) noexcept {
+void AxisMover::go_to(double target, const AxisLimits& limits, const AxisLimits& max_velocity) noexcept {
   AxisLimits used = limits;
   if (std::abs(state_.velocity + state_.acceleration * std::abs(state_.acceleration) / (2.0 * limits.jerk)) > limits.velocity) {
-    used.acceleration = most.acceleration;
-    used.jerk = most.jerk;
+    used.acceleration = max_velocity.acceleration;
+    used.jerk = max_velocity.jerk;
   }
   AxisProfile profile;
   if (solve_axis(state_, {target, 0.0, 0.0}, used, profile) != AxisOutcome::ok) {
-    stop(most);
+    stop(max_velocity);
     return;
   }
   profile_ = profile;

@@ -14,8 +14,8 @@ class AxisMover {
   void take_over(const AxisState& state, const AxisLimits& limits) noexcept;
   /// Minimum-time motion from the present state to rest at `target`. Where `limits` would let the
   /// present state continue to a velocity beyond theirs, acceleration and jerk may be as large as
-  /// `most`.
-  void go_to(double target, const AxisLimits& limits, const AxisLimits& most) noexcept;
+  /// `max_velocity`.
+  void go_to(double target, const AxisLimits& limits, const AxisLimits& max_velocity) noexcept;
   /// Minimum-time stop from the present state.
   void stop(const AxisLimits& limits) noexcept;
   const AxisState& step(double dt) noexcept;  ///< state dt later

@@ -47,7 +47,7 @@ KinematicLimits limits_of_axes(const KinematicLimits& limits, const std::vector<
 std::string why_not_now(const CommandHead& head, const CommandConditions& now) {
   const std::string& name = now.robot.name();
   if (head.robot != name) return "it is for robot " + head.robot + ", this is " + name;
-  if (!now.ready) return "the robot's posture is not known yet";
+  if (!now.ready) return "the robot's configuration is not known yet";
   if (head.age > now.max_age) return "it is " + std::to_string(head.age) + " s old";
   const std::uint64_t epoch = now.permission.go().epoch;
   if (!now.permission.received() || head.epoch != epoch)

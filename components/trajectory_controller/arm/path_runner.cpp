@@ -28,18 +28,18 @@ bool begins_alike(const MotionState3& from, const MotionState3& first, const Kin
 }  // namespace
 
 std::string PathRunner::start(const Trajectory& trajectory, const PathLimits& limits) {
-  if (std::string why = law_.init(trajectory, limits.motion, dt_); !why.empty()) return why;
+  if (std::string why = scaling_.init(trajectory, limits.motion, dt_); !why.empty()) return why;
   limits_ = limits;
   path_ = trajectory;
   stale_ = false;
   cursor_ = 0;
-  finished_ = law_.finished();
-  state_ = law_.state();
+  finished_ = scaling_.finished();
+  state_ = scaling_.state();
   return {};
 }
 
 const Trajectory& PathRunner::path() const {
-  if (stale_) path_ = to_trajectory(law_.path());
+  if (stale_) path_ = to_trajectory(scaling_.path());
   stale_ = false;
   return path_;
 }
@@ -49,10 +49,10 @@ bool PathRunner::rejoin(const MotionState3& state) noexcept {
   constexpr int kTries = 10;       // in this short a window; the time of a cycle goes with them
   if (finished_) return false;
   SwitchSettings settings;
-  settings.first = std::max(0.0, law_.time());
+  settings.first = std::max(0.0, scaling_.time());
   settings.last = settings.first + kWithin;
   settings.tries = kTries;
-  if (law_.start_from(state, law_.path(), settings) != SwitchOutcome::ok) return false;
+  if (scaling_.start_from(state, scaling_.path(), settings) != SwitchOutcome::ok) return false;
   shift_ = this->offset();
   state_ = state;
   stale_ = true;
@@ -61,10 +61,10 @@ bool PathRunner::rejoin(const MotionState3& state) noexcept {
 }
 
 std::string PathRunner::why_out_of_bounds() const {
-  const SegmentTable& path = law_.path();
+  const SegmentTable& path = scaling_.path();
   MotionState3 at = rest_state(Eigen::VectorXd::Zero(axes()));
-  const double joins = offset() + law_.joined_at();
-  for (int k = path.find(law_.switched_at(), 0), cursor = k; k < path.segments() && path.knot(k) < joins; ++k) {
+  const double joins = offset() + scaling_.joined_at();
+  for (int k = path.find(scaling_.switched_at(), 0), cursor = k; k < path.segments() && path.knot(k) < joins; ++k) {
     path.evaluate(path.knot(k), cursor = k, at);
     for (Eigen::Index i = 0; i < axes(); ++i) {
       if (!(limits_.lower[i] < limits_.upper[i])) continue;
@@ -79,7 +79,7 @@ std::string PathRunner::why_out_of_bounds() const {
 }
 
 template <class Switch>
-std::string PathRunner::go_over(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go) {
+std::string PathRunner::switch_to(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go) {
   if (std::string why = why_not_runnable(next, limits_.motion); !why.empty()) return why;
   SwitchSettings settings;
   MotionState3 there = next.at(0.0);
@@ -103,33 +103,33 @@ std::string PathRunner::go_over(const MotionState3& from, const Trajectory& next
   }
   if (const SwitchOutcome outcome = go(SegmentTable(next), settings); outcome != SwitchOutcome::ok) return reason(outcome);
   if (std::string why = why_out_of_bounds(); !why.empty()) {
-    law_.undo_switch();
+    scaling_.undo_switch();
     return why;
   }
   stale_ = true;
   cursor_ = 0;
-  finished_ = law_.finished();
+  finished_ = scaling_.finished();
   return {};
 }
 
 std::string PathRunner::switch_at(double leave, const Trajectory& next, double reach) {
   if (next.size() != axes()) return reason(SwitchOutcome::wrong_size);
-  MotionState3 from = law_.state();
-  law_.path().evaluate(std::max(leave, law_.time()), cursor_, from);
-  if (!(leave > law_.time())) {
-    if (law_.standing()) from.velocity.setZero();
-    if (law_.standing()) from.acceleration.setZero();
-    if (law_.alpha() < 0) from.velocity = -from.velocity;
+  MotionState3 from = scaling_.state();
+  scaling_.path().evaluate(std::max(leave, scaling_.time()), cursor_, from);
+  if (!(leave > scaling_.time())) {
+    if (scaling_.standing()) from.velocity.setZero();
+    if (scaling_.standing()) from.acceleration.setZero();
+    if (scaling_.alpha() < 0) from.velocity = -from.velocity;
   }
-  return go_over(from, next, reach, leave >= law_.duration(),
-                 [&](const SegmentTable& table, const SwitchSettings& settings) { return law_.switch_at(leave, table, settings); });
+  return switch_to(from, next, reach, leave >= scaling_.duration(),
+                   [&](const SegmentTable& table, const SwitchSettings& settings) { return scaling_.switch_at(leave, table, settings); });
 }
 
 std::string PathRunner::start_from(const MotionState3& state, const Trajectory& next, double reach) {
   if (next.size() != axes()) return reason(SwitchOutcome::wrong_size);
   if (std::string why =
-          go_over(state, next, reach, false,
-                  [&](const SegmentTable& table, const SwitchSettings& settings) { return law_.start_from(state, table, settings); });
+          switch_to(state, next, reach, false,
+                    [&](const SegmentTable& table, const SwitchSettings& settings) { return scaling_.start_from(state, table, settings); });
       !why.empty())
     return why;
   state_ = state;
@@ -138,13 +138,13 @@ std::string PathRunner::start_from(const MotionState3& state, const Trajectory& 
 
 bool PathRunner::step(double wanted) noexcept {
   if (finished_) return true;
-  law_.set_target(law_.time() <= 0.0 ? std::max(0.0, wanted) : wanted);
-  law_.advance(dt_);
-  const MotionState3& next = law_.state();
+  scaling_.set_target(scaling_.time() <= 0.0 ? std::max(0.0, wanted) : wanted);
+  scaling_.advance(dt_);
+  const MotionState3& next = scaling_.state();
   for (Eigen::Index i = 0; i < next.position.size(); ++i)
     if (!acceptable(state_, next, i, limits_.motion, dt_)) return false;
   state_ = next;
-  finished_ = law_.finished();
+  finished_ = scaling_.finished();
   return true;
 }
 

@@ -23,7 +23,7 @@ class PathRunner {
   /// allocate.
   std::string start(const Trajectory& trajectory, const PathLimits& limits);
   /// Another factor, in [0, 1], before the first step from rest; elsewhere nothing happens.
-  void begin_with(double factor) noexcept { law_.begin_with(factor); }
+  void begin_with(double factor) noexcept { scaling_.begin_with(factor); }
   /// Switches to `next` at the switch point `leave` on time() [s] (at once when that is past), over
   /// the fastest connecting motion that joins it no farther than `reach` [rad] from there in any
   /// axis, at its beginning when the present path is run to its end; the factor is kept. Empty, or
@@ -41,36 +41,36 @@ class PathRunner {
   bool step(double wanted) noexcept;
 
   /// Position, velocity and acceleration of the path at `time` [s] at full speed.
-  void look(double time, MotionState3& out) noexcept { law_.path().evaluate(time, cursor_, out); }
+  void observe(double time, MotionState3& out) noexcept { scaling_.path().evaluate(time, cursor_, out); }
   /// Set-point after the last step: position, velocity and acceleration of the axes of the path.
   const MotionState3& state() const noexcept { return state_; }
   /// Whole path, connecting motions included. May allocate.
   const Trajectory& path() const;
   /// Time along the path at full speed [s], >= 0.
-  double time() const noexcept { return std::max(0.0, law_.time()); }
+  double time() const noexcept { return std::max(0.0, scaling_.time()); }
   /// Value of time() at the beginning of the trajectory that was given last [s].
-  double offset() const noexcept { return law_.time() - law_.own_time(); }
+  double offset() const noexcept { return scaling_.time() - scaling_.own_time(); }
   /// Switch point from the trajectory before, as a value of time() [s].
-  double switched_at() const noexcept { return law_.switched_at(); }
+  double switched_at() const noexcept { return scaling_.switched_at(); }
   /// Speed factor in force, alpha, in [-1, 1]; negative: back along the path.
-  double factor() const noexcept { return law_.alpha(); }
+  double factor() const noexcept { return scaling_.alpha(); }
   /// Duration of the whole path at full speed [s]; 0 before the first start.
-  double duration() const noexcept { return axes() > 0 ? law_.duration() : 0.0; }
+  double duration() const noexcept { return axes() > 0 ? scaling_.duration() : 0.0; }
   /// Number of axes of the path; 0 before the first start.
   int axes() const noexcept { return static_cast<int>(state_.position.size()); }
   /// Returns whether the end of the path is reached; true before the first start.
   bool finished() const noexcept { return finished_; }
   /// Returns whether the speed factor and its rate are 0, so that no axis moves.
-  bool standing() const noexcept { return law_.standing(); }
+  bool standing() const noexcept { return scaling_.standing(); }
 
  private:
   template <class Switch>
-  std::string go_over(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go);
+  std::string switch_to(const MotionState3& from, const Trajectory& next, double reach, bool from_rest, Switch&& go);
   std::string why_out_of_bounds() const;
 
   double dt_;
   PathLimits limits_;
-  TimeScaling law_;
+  TimeScaling scaling_;
   mutable Trajectory path_;  // as law_ has it, unless stale
   mutable bool stale_{};
   double shift_{};

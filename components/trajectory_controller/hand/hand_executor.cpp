@@ -42,7 +42,7 @@ HandExecutor::HandExecutor(const HandSettings& settings, HandAxes hand, const Ki
       fingers_(std::move(hand), comfort, stop, settings.lever),
       release_to_(Vector::Zero(static_cast<Eigen::Index>(fingers_.size()))),
       release_(settings.pull) {
-  settings_.least_contacts = std::min(settings.least_contacts, size());
+  settings_.min_contacts = std::min(settings.min_contacts, size());
 }
 
 void HandExecutor::reset(const Vector& robot_position, const Vector& robot_effort) noexcept {
@@ -98,7 +98,7 @@ std::string HandExecutor::accept(const HandCommand& command) {
   for (std::size_t i = 0; i < fingers_.size(); ++i) {
     Finger& f = fingers_[i];
     f.effort = command.effort.size() > 0 ? command.effort[static_cast<Eigen::Index>(i)]
-                                         : f.direction * f.speed_ratio * settings_.squeeze_effort / f.lever;
+                                         : f.direction * f.speed_ratio * settings_.grip_effort / f.lever;
     max_effort_ = std::max(max_effort_, std::abs(f.effort));
   }
   return {};
@@ -141,7 +141,7 @@ void HandExecutor::start(Phase phase) {
     Finger& f = fingers_[i];
     const double travel = f.final - f.mover.state().position;
     f.speed_ratio = farthest > 0.0 ? std::max(0.05, std::abs(travel) / farthest) : 1.0;
-    const bool closes = std::abs(travel) >= settings_.closing_least * f.lever;
+    const bool closes = std::abs(travel) >= settings_.min_closing * f.lever;
     f.direction = phase == Phase::closing && closes ? std::copysign(1.0, travel) : 0.0;
     f.contact = false;
     f.pressed_for = 0.0;
@@ -188,13 +188,13 @@ void HandExecutor::seek(const RobotState& robot, double dt) noexcept {
 }
 
 void HandExecutor::grip(const RobotState& robot, double dt) noexcept {
-  level_ = std::min(1.0, level_ + dt / settings_.squeeze_time);
+  level_ = std::min(1.0, level_ + dt / settings_.grip_rise_time);
   settled_for_ = level_ >= 1.0 ? settled_for_ + dt : 0.0;
   if (settled_for_ < settings_.settle_time) return;
   fingers_.hold_object(kMinor * max_effort_);
   // A finger that something keeps from what it should push on leaves the others unbalanced: only a
   // person who also holds the object keeps it there.
-  const bool pushes = fingers_.all_push(robot, settings_.squeeze_effort, settings_.least_push);
+  const bool pushes = fingers_.all_push(robot, settings_.grip_effort, settings_.min_push);
   const bool held = presses(robot) && (!person_near_ || pushes);
   state_ = held ? HandState::grasped : HandState::empty;
   phase_ = Phase::hold;
@@ -223,7 +223,7 @@ void HandExecutor::check_outcome(const RobotState& robot, double payload, double
 
 /// Returns whether enough axes press on what is held.
 bool HandExecutor::presses(const RobotState& robot) const noexcept {
-  return fingers_.count_pressing(robot, settings_.touch_effort) >= settings_.least_contacts;
+  return fingers_.count_pressing(robot, settings_.touch_effort) >= settings_.min_contacts;
 }
 
 void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
@@ -249,9 +249,9 @@ void HandExecutor::watch_release(const HandInputs& in, TimePoint now) noexcept {
 
 /// The grip force follows what the hand does.
 void HandExecutor::change_level(double dt) noexcept {
-  const double change = dt / settings_.squeeze_time;
+  const double change = dt / settings_.grip_rise_time;
   if (phase_ == Phase::regripping) level_ = std::min(1.0, level_ + change);
-  if (phase_ == Phase::loosened) level_ = std::max(std::min(level_, settings_.loosen_share), level_ - change);
+  if (phase_ == Phase::loosened) level_ = std::max(std::min(level_, settings_.loosen_fraction), level_ - change);
   if (phase_ == Phase::releasing || phase_ == Phase::moving) level_ = std::max(0.0, level_ - change);
 }
 

@@ -82,10 +82,10 @@ Grip ReleaseWatch::update(const Felt& felt, TimePoint now) noexcept {
   }
   if (grip_ == Grip::open) return grip_;
   loose_for_ += dt;
-  slack_for_ = filter_.load_ratio() < settings_.slack_share ? slack_for_ + dt : 0.0;
+  slack_for_ = filter_.load_ratio() < settings_.slack_fraction ? slack_for_ + dt : 0.0;
   if (lasted >= settings_.commit_time || slack_for_ >= settings_.slack_time)
     grip_ = Grip::open;
-  else if (loose_for_ >= settings_.patience)
+  else if (loose_for_ >= settings_.timeout)
     arm(threshold_);
   return grip_;
 }

@@ -22,10 +22,10 @@ struct PullSettings {
   double direction_cosine{0.7};  ///< of the force with its mean direction
   double away_cosine{-0.2};      ///< a force pointing away from the person does not count
   double commit_time{0.5};       ///< a pull that has lasted for this long opens the hand [s]
-  double slack_share{0.35};      ///< the person bears the load below this fraction of it
+  double slack_fraction{0.35};   ///< the person bears the load below this fraction of it
   double slack_time{0.15};       ///< and for this long: the hand opens [s]
   double lost_time{0.02};        ///< the load back on the hand for this long: close again [s]
-  double patience{1.0};          ///< timeout when loosened with neither: close again [s]
+  double timeout{1.0};           ///< timeout when loosened with neither: close again [s]
 };
 
 /// What the hand is to do. Ordered: later ones are nearer to a release.

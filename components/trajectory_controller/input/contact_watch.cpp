@@ -15,7 +15,7 @@ void ContactWatch::forget() noexcept {
   contact_ = Contact::none;
 }
 
-Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool exchanging) noexcept {
+Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool in_handover) noexcept {
   const double share = dt / (settings_.usual_time + dt);
   double most = 0.0;
   bool pushed = false;
@@ -41,7 +41,7 @@ Contact ContactWatch::update(const Eigen::VectorXd& external_torque, double dt, 
   }
   seen_ = true;
   torque_ = most;
-  pressed_for_ = most > (exchanging ? settings_.exchange_torque : settings_.torque) ? pressed_for_ + dt : 0.0;
+  pressed_for_ = most > (in_handover ? settings_.handover_torque : settings_.torque) ? pressed_for_ + dt : 0.0;
   contact_ = pressed_for_ > settings_.clamp_time ? Contact::clamped : pressed_for_ > settings_.time ? Contact::contact : Contact::none;
   pushed_for_ = pushed ? pushed_for_ + dt : 0.0;
   const bool load = pushed_for_ > settings_.yield_time && most <= settings_.torque;

@@ -11,7 +11,7 @@ namespace handsel::trajectory_controller {
 
 struct ContactSettings {
   double torque{25.0};           ///< beyond what is usual at the moment [Nm]
-  double exchange_torque{50.0};  ///< the same during a handover, where a pull is expected [Nm]
+  double handover_torque{50.0};  ///< the same during a handover, where a pull is expected [Nm]
   double time{0.02};             ///< for this long [s]
   double usual_time{0.5};        ///< time constant of the usual torque: load, friction, model [s]
   double follow_torque{5.0};     ///< what is usual follows only torques this near to it [Nm]
@@ -31,8 +31,8 @@ class ContactWatch {
   void reset() noexcept { seen_ = contact_ != Contact::none; }
   /// Takes one sample of the external torques of all axes [Nm], `dt` [s] after the one before, and
   /// returns whether there is contact. A robot that does not measure them (empty vector) has none.
-  /// `resting`: the arm does not move by itself; `exchanging`: during a handover.
-  Contact update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool exchanging) noexcept;
+  /// `resting`: the arm does not move by itself; `in_handover`: during a handover.
+  Contact update(const Eigen::VectorXd& external_torque, double dt, bool resting, bool in_handover) noexcept;
   /// Returns the push on the i-th watched axis, for complying: beyond the usual before it began, 0
   /// within yield_torque [Nm].
   double push(std::size_t i) const noexcept { return pushes_[i]; }

@@ -5,7 +5,7 @@
 namespace handsel::trajectory_controller {
 
 void MotionPermission::set(const Go& go, TimePoint sampled) {
-  const GoRefusal refusal = gate_.hear(go);
+  const GoRefusal refusal = gate_.receive(go);
   if (refusal == GoRefusal::older_epoch) return;
   time_.mark(sampled);
   if (refusal != GoRefusal::none) return;
@@ -15,7 +15,7 @@ void MotionPermission::set(const Go& go, TimePoint sampled) {
 }
 
 void MotionPermission::set(const SafetyState& safety) {
-  gate_.hear(safety);
+  gate_.receive(safety);
   safety_reason_ = safety.reason;
 }
 

@@ -15,7 +15,7 @@ class MotionPermission {
   /// Notes whether motion waits for a person, and why.
   void set(const SafetyState& safety);
   /// Notes the state of the drives, see GoGate.
-  void set(DriveMode mode) noexcept { gate_.hear(mode); }
+  void set(DriveMode mode) noexcept { gate_.receive(mode); }
 
   /// Go in force; its override factor is in [0, 1].
   const Go& go() const noexcept { return go_; }

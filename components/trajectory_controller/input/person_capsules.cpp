@@ -11,7 +11,7 @@ void prepare(const HumanState& people, const SeparationExemption& exception, dou
   out.covered = people.covered;
   ++out.revision;
   for (const Person& person : people.people) {
-    const bool exchanging = !exception.person.empty() && person.id == exception.person;
+    const bool in_handover = !exception.person.empty() && person.id == exception.person;
     const bool known = person.age <= unknown_after && person.joints.size() == kBodyJoints.size();
     const BodyCapsule* before = nullptr;
     const std::vector<BodyCapsule> body_parts = body_capsules(person);
@@ -38,8 +38,8 @@ void prepare(const HumanState& people, const SeparationExemption& exception, dou
         }
       const bool left = body.part == BodyPart::forearm_left || body.part == BodyPart::hand_left;
       const bool right = body.part == BodyPart::forearm_right || body.part == BodyPart::hand_right;
-      c.excepted = exchanging && ((left && (exception.both_sides || exception.side == Side::left)) ||
-                                  (right && (exception.both_sides || exception.side == Side::right)));
+      c.excepted = in_handover && ((left && (exception.both_sides || exception.side == Side::left)) ||
+                                   (right && (exception.both_sides || exception.side == Side::right)));
       out.capsules.push_back(c);
     }
   }

@@ -22,7 +22,7 @@ class SetPoints {
   void begin_cycle() { next_ = sent_; }
   /// Ends a cycle: what was made is what was sent. `guard`: limits; `dt`: control period [s].
   void end_cycle(const KinematicLimits& guard, double dt) noexcept {
-    measure(sent_, next_, guard, dt, shares_);
+    measure(sent_, next_, guard, dt, ratios_);
     sent_ = next_;
   }
 
@@ -33,7 +33,7 @@ class SetPoints {
   /// The same, to be changed.
   MotionState3& next() noexcept { return next_; }
   /// Largest ratios to the guard limits so far.
-  const LimitShares& shares() const noexcept { return shares_; }
+  const LimitRatios& ratios() const noexcept { return ratios_; }
 
   /// Returns whether no axis moved in the set-point sent last.
   bool at_rest() const noexcept { return sent_.velocity.isZero(0.0) && sent_.acceleration.isZero(0.0); }
@@ -46,7 +46,7 @@ class SetPoints {
 
  private:
   MotionState3 sent_, next_;
-  LimitShares shares_;
+  LimitRatios ratios_;
 };
 
 }  // namespace handsel::trajectory_controller

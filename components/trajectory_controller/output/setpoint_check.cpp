@@ -20,11 +20,11 @@ bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::I
 }
 
 void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt,
-             LimitShares& shares) noexcept {
+             LimitRatios& ratios) noexcept {
   for (Eigen::Index i = 0; i < next.position.size(); ++i) {
-    shares.velocity = std::max(shares.velocity, std::abs(next.velocity[i]) / guard.velocity[i]);
-    shares.acceleration = std::max(shares.acceleration, std::abs(next.acceleration[i]) / guard.acceleration[i]);
-    shares.jerk = std::max(shares.jerk, std::abs(next.acceleration[i] - previous.acceleration[i]) / dt / guard.jerk[i]);
+    ratios.velocity = std::max(ratios.velocity, std::abs(next.velocity[i]) / guard.velocity[i]);
+    ratios.acceleration = std::max(ratios.acceleration, std::abs(next.acceleration[i]) / guard.acceleration[i]);
+    ratios.jerk = std::max(ratios.jerk, std::abs(next.acceleration[i] - previous.acceleration[i]) / dt / guard.jerk[i]);
   }
 }
 

@@ -10,7 +10,7 @@ namespace handsel::trajectory_controller {
 inline constexpr double kLimitTolerance = 1e-6;
 
 /// Largest |v|/V, |a|/A, |j|/J sent so far.
-struct LimitShares {
+struct LimitRatios {
   double velocity{}, acceleration{}, jerk{};  ///< largest ratio over all axes; 1: at the limit
 };
 
@@ -18,6 +18,6 @@ struct LimitShares {
 bool acceptable(const MotionState3& previous, const MotionState3& next, Eigen::Index i, const KinematicLimits& guard, double dt) noexcept;
 
 /// Raises the ratios by those of the step from `previous` to `next`, which takes `dt` [s].
-void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt, LimitShares& shares) noexcept;
+void measure(const MotionState3& previous, const MotionState3& next, const KinematicLimits& guard, double dt, LimitRatios& ratios) noexcept;
 
 }  // namespace handsel::trajectory_controller

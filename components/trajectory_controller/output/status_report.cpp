@@ -54,7 +54,7 @@ std::string reason(const StatusSources& from) {
     return std::string(name(Cause::blind)) + ": " + why_blind(from) + "; " + refusal;
   }
   if (supervisor.mode() >= Mode::hold) return held_reason(from);
-  const Cause cause = gravest(supervisor.verdict().causes);
+  const Cause cause = most_severe(supervisor.verdict().causes);
   if (cause == Cause::none) return from.dry_run ? "dry run: no set-point is sent" : "";
   std::string out = name(cause);
   if (cause == Cause::blind) out += ": " + why_blind(from);
@@ -84,10 +84,10 @@ ExecutionStatus make_status(const StatusSources& from) {
   s.reason = reason(from);
   s.cycles = from.cycles;
   s.late_cycles = from.supervisor.late_cycles();
-  const LimitShares& ratios = from.set_points.shares();
-  s.limit_share_velocity = ratios.velocity;
-  s.limit_share_acceleration = ratios.acceleration;
-  s.limit_share_jerk = ratios.jerk;
+  const LimitRatios& ratios = from.set_points.ratios();
+  s.limit_ratio_velocity = ratios.velocity;
+  s.limit_ratio_acceleration = ratios.acceleration;
+  s.limit_ratio_jerk = ratios.jerk;
   s.separation = from.nearest.distance;
   s.separation_limit = from.nearest.needed;
   s.nearest_on_robot = from.nearest.on_robot;

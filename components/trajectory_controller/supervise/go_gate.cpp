@@ -25,18 +25,18 @@ const char* text_of(GoRefusal refusal) {
   return "";
 }
 
-GoRefusal GoGate::hear(const Go& go) noexcept {
-  last_refusal_ = go.state_revision == 0          ? GoRefusal::no_state
-                  : go.state_revision < revision_ ? GoRefusal::older_state
-                  : heard_ && go.epoch < epoch_   ? GoRefusal::older_epoch
-                                                  : GoRefusal::none;
+GoRefusal GoGate::receive(const Go& go) noexcept {
+  last_refusal_ = go.state_revision == 0           ? GoRefusal::no_state
+                  : go.state_revision < revision_  ? GoRefusal::older_state
+                  : received_ && go.epoch < epoch_ ? GoRefusal::older_epoch
+                                                   : GoRefusal::none;
   if (last_refusal_ == GoRefusal::no_state || last_refusal_ == GoRefusal::older_state) allowed_ = false;
   if (last_refusal_ != GoRefusal::none) return last_refusal_;
-  if (!heard_) {
+  if (!received_) {
     first_epoch_ = go.epoch;
     if (waits_) stop_revision_ = go.state_revision;  // the stop was seen before any Go
   }
-  heard_ = true;
+  received_ = true;
   epoch_ = go.epoch;
   revision_ = go.state_revision;
   allowed_ = go.allowed;
@@ -44,11 +44,11 @@ GoRefusal GoGate::hear(const Go& go) noexcept {
   return last_refusal_;
 }
 
-void GoGate::hear(const SafetyState& state) noexcept { awaits_person_ = state.paused || state.fault || state.awaits_person; }
+void GoGate::receive(const SafetyState& state) noexcept { awaits_person_ = state.paused || state.fault || state.awaits_person; }
 
 bool GoGate::awaits_person() const noexcept { return !allowed() && (waits_ || awaits_person_ || last_refusal_ == GoRefusal::older_state); }
 
-void GoGate::hear(DriveMode mode) noexcept {
+void GoGate::receive(DriveMode mode) noexcept {
   const DriveMode before = std::exchange(drive_, mode);
   const bool pressed = mode == DriveMode::user_stop || mode == DriveMode::emergency_stop;
   if (mode == before || !is_stop(mode) || (!pressed && is_stop(before))) return;

@@ -26,12 +26,12 @@ class GoGate {
   /// Takes a Go, or says why not; one from no state or an older one withdraws the permission. The
   /// first one received permits no motion, whatever its content: it may have been issued before
   /// this process started.
-  GoRefusal hear(const Go& go) noexcept;
+  GoRefusal receive(const Go& go) noexcept;
   /// Notes whether the safety state is paused, at fault or waiting for a person.
-  void hear(const SafetyState& state) noexcept;
+  void receive(const SafetyState& state) noexcept;
   /// Notes a protective, user or emergency stop: from then on only a Go from a newer state permits
   /// motion, as a person makes it.
-  void hear(DriveMode mode) noexcept;
+  void receive(DriveMode mode) noexcept;
 
   /// Returns whether the Go in force permits motion.
   bool allowed() const noexcept { return allowed_ && !waits_; }
@@ -44,7 +44,7 @@ class GoGate {
   GoRefusal last_refusal() const noexcept { return last_refusal_; }
 
  private:
-  bool heard_{false}, allowed_{false}, awaits_person_{false};
+  bool received_{false}, allowed_{false}, awaits_person_{false};
   bool waits_{false};  ///< a stop was seen; a Go from a state newer than stop_revision_ ends it
   std::uint64_t epoch_{}, first_epoch_{~std::uint64_t{0}}, revision_{}, stop_revision_{};
   DriveMode drive_{DriveMode::enabled};

@@ -106,7 +106,7 @@ class Evaluation {
     l.reach = 0.5 * std::sqrt(l.length2) + r.radius;
     l.quickest = std::sqrt(std::max(r.va.squaredNorm(), r.vb.squaredNorm()));
     const double need = needed(quickest_person_, l.quickest, high_, reaction_ + oldest_, margin_);
-    const double farthest = std::max(settings_.exchange_range, need) + l.reach;  // that may matter
+    const double farthest = std::max(settings_.handover_range, need) + l.reach;  // that may matter
     for (const PersonCapsule& part : query_.people.capsules) check_part(l, farthest, part);
   }
 
@@ -144,7 +144,7 @@ class Evaluation {
 
   /// Distance within which the part matters to the link [m].
   double range(const Link& link, const PersonCapsule& part) const noexcept {
-    if (part.excepted) return settings_.exchange_range;
+    if (part.excepted) return settings_.handover_range;
     if (link.quickest < kStill) return 0.0;
     const double v_h = fastest(part, settings_);
     return needed(v_h, link.quickest, high_, reaction_ + part.age, margin_);
@@ -160,10 +160,10 @@ class Evaluation {
 
   /// Limits the speed toward an exempt part.
   void limit_exempt(const Approach& at) noexcept {
-    verdict_.exchange_clear = false;
+    verdict_.handover_clear = false;
     double& best = at.closing > 0 ? forward_ : backward_;
     const double closing = std::abs(at.closing);
-    if (closing > settings_.exchange_speed) best = std::min(best, settings_.exchange_speed / closing);
+    if (closing > settings_.handover_speed) best = std::min(best, settings_.handover_speed / closing);
   }
 
   /// Limits the speed so that a stop fits into the distance.

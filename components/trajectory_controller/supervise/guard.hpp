@@ -24,8 +24,8 @@ struct GuardSettings {
   double uncertainty_human{0.03};  ///< Z_d [m]
   double uncertainty_robot{0.01};  ///< Z_r [m]
   double uncovered_factor{0.3};    ///< speed factor while "nobody" is not a fact
-  double exchange_speed{0.25};     ///< largest speed toward an exempt forearm or hand [m/s]
-  double exchange_range{0.30};     ///< within this distance [m]
+  double handover_speed{0.25};     ///< largest speed toward an exempt forearm or hand [m/s]
+  double handover_range{0.30};     ///< within this distance [m]
   double stop_persistence{0.15};   ///< too near and still closing in for this long: Stop [s]
 };
 
@@ -49,7 +49,7 @@ struct GuardVerdict {
   bool wall{};                ///< a wall limits a factor
   bool uncovered{};           ///< nobody is seen, but that nobody is there is not certain
   bool too_near{};            ///< nearer than a stop at the present factor needs, still closing in
-  bool exchange_clear{true};  ///< no exempt part within exchange_range
+  bool handover_clear{true};  ///< no exempt part within handover_range
 };
 
 /// What guard() compares.

@@ -68,6 +68,6 @@ class ModeMachine {
 };
 
 /// Returns the most severe of the causes (bits of Cause), for reports to people; none for 0.
-Cause gravest(std::uint32_t causes);
+Cause most_severe(std::uint32_t causes);
 
 }  // namespace handsel::trajectory_controller

@@ -19,7 +19,7 @@ void add_stop(const PathMotion& motion, const KinematicLimits& limits, int g, St
     const double peak = v + 0.5 * a * ease;
     const double rest = stop_time(peak, limits.acceleration[i], limits.jerk[i]);
     table.time[k] = std::max(table.time[k], ease + rest);
-    table.way[k] = std::max(table.way[k], peak / v * (ease + 0.5 * rest));
+    table.distance[k] = std::max(table.distance[k], peak / v * (ease + 0.5 * rest));
   }
 }
 

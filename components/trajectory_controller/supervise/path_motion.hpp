@@ -28,8 +28,8 @@ inline constexpr int kStopGrid = 16;
 
 /// Stop of the axes that move along the path, for the speed factors k / kStopGrid.
 struct StopTable {
-  std::array<double, kStopGrid + 1> time{};  ///< until all axes rest [s]
-  std::array<double, kStopGrid + 1> way{};   ///< travel divided by speed, largest of all axes [s]
+  std::array<double, kStopGrid + 1> time{};      ///< until all axes rest [s]
+  std::array<double, kStopGrid + 1> distance{};  ///< travel divided by speed, largest of all axes [s]
 };
 /// Returns times and travels of the stops from the motion at each factor, every axis jerk-limited
 /// by itself; 0 at factor 0.

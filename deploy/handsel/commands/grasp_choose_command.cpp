@@ -19,7 +19,7 @@ using namespace grasp_planner;
 struct ChooseOptions : StageOptions {
   ChooseOptions() { robot = "jido"; }
   std::vector<double> at{0.68, -0.42}, goal, person, obstacles;
-  double stature{1.75}, least_visible{0};
+  double stature{1.75}, min_visible{0};
   std::uint32_t number{5};
   bool move_platform{};
 };
@@ -77,7 +77,7 @@ int choose(const ChooseOptions& o) {
   request.object = "object";
   request.start = stage.robot->rest_configuration();
   request.max_grasps = o.number;
-  request.least_visible = o.least_visible;
+  request.min_visible = o.min_visible;
   request.move_platform = o.move_platform;
   if (!o.person.empty()) {
     people.people.push_back(somebody(o.person[0], o.person[1], o.stature));
@@ -131,7 +131,7 @@ void add_grasp_choose(CLI::App& grasp, int& exit_code) {
   choosing->add_option("--person", o->person, "it is for a person who stands at x,y [m], facing the robot")->delimiter(',')->expected(2);
   choosing->add_option("--stature", o->stature, "of the person [m]")->check(CLI::Range(0.8, 2.4))->capture_default_str();
   choosing
-      ->add_option("--least-visible", o->least_visible,
+      ->add_option("--least-visible", o->min_visible,
                    "fraction of the object that the person, else the robot's head, must see past the hand")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();

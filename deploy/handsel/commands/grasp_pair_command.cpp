@@ -27,7 +27,7 @@ double since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 
 struct PairOptions : ListOptions {
   std::string hand2{"sah"}, png;
-  std::size_t most_of_each{200}, number{1};
+  std::size_t max_of_each{200}, number{1};
   double clearance{0.005}, opposition{0};
   bool passed{}, spread{};
   int size{480};
@@ -36,9 +36,9 @@ struct PairOptions : ListOptions {
 int pairs(const PairOptions& o) {
   const Listed a = list_with(o.hand, o), b = list_with(o.hand2, o);
   DoubleSettings settings;
-  settings.most_of_each = o.most_of_each;
+  settings.max_of_each = o.max_of_each;
   settings.clearance = o.clearance;
-  settings.least_opposition = o.opposition * kDegree;
+  settings.min_opposition = o.opposition * kDegree;
   settings.taken = o.spread ? Taken::spread : Taken::best;
   settings.p_object_middle = a.object->box().center();
   settings.passed = o.passed ? a.object.get() : nullptr;
@@ -86,7 +86,7 @@ int transfer(const TransferOptions& o) {
   const Listed human = list_with(o.taker, o);
   const Listed& robot = stage.lists.front();
   TransferSettings settings;
-  settings.most_tilt = o.tilt * kDegree;
+  settings.max_tilt = o.tilt * kDegree;
   auto start = Clock::now();
   const TransferTable table({robot.hand_geometry.get(), &robot.list, {}}, {human.hand_geometry.get(), &human.list, {}}, *robot.object,
                             settings);
@@ -224,7 +224,7 @@ void add_grasp_pairs(CLI::App& grasp, int& exit_code) {
   auto d = std::make_shared<PairOptions>();
   add_list_options(*doubling, *d);
   doubling->add_option("--hand2", d->hand2, "the other hand's description: name or file")->capture_default_str();
-  doubling->add_option("--best", d->most_of_each, "grasps taken from each list")->check(kAboveZero)->capture_default_str();
+  doubling->add_option("--best", d->max_of_each, "grasps taken from each list")->check(kAboveZero)->capture_default_str();
   doubling->add_flag("--spread", d->spread, "take the best of every orientation and side in turn, not the best of all");
   doubling->add_option("--clearance", d->clearance, "kept between the hands [m]")->check(kNotNegative)->capture_default_str();
   doubling->add_option("--opposed", d->opposition, "wrists opposed by at least this [deg]")->check(CLI::Range(0.0, 180.0));

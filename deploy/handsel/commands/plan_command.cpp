@@ -205,7 +205,7 @@ class Batch {
       poses.push_back(one);
     }
     path_planner::PoseGoals found = path_planner::drives(group_->name)
-                                        ? path_planner::reach_driving(robot_, world_, poses, problem.start, problem.seed)
+                                        ? path_planner::reach_with_platform(robot_, world_, poses, problem.start, problem.seed)
                                         : path_planner::reach(robot_, *group_, poses, problem.start, problem.seed);
     problem.goals = std::move(found.goals);
     return found.reason;

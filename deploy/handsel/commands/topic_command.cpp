@@ -98,8 +98,8 @@ int rate(const TopicOptions& options) {
     std::printf("%s\n", nlohmann::json{{"topic", type.row().topic},
                                        {"rate_hz", hz},
                                        {"samples", count},
-                                       {"shortest_s", to_seconds(shortest)},
-                                       {"longest_s", to_seconds(longest)}}
+                                       {"min_gap_s", to_seconds(shortest)},
+                                       {"max_gap_s", to_seconds(longest)}}
                             .dump()
                             .c_str());
   } else {

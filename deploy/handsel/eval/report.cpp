@@ -101,12 +101,12 @@ nlohmann::json make_report(const ReportInputs& inputs, const Performer& performe
             {"peak_closing_speed_m_s", ground_truth.peak_closing_speed},
             {"commanders", ground_truth.commanders},
             {"hash", ground_truth.hash}}},
-          {"least_separation_m", seen.ground_truth.ever ? finite(ground_truth.least_separation) : Json(nullptr)},
+          {"min_separation_m", seen.ground_truth.ever ? finite(ground_truth.min_separation) : Json(nullptr)},
           {"ssm_violations", ground_truth.ssm_violations},
-          {"limit_share",
-           {{"v", ground_truth.limit_share_velocity}, {"a", ground_truth.limit_share_acceleration}, {"j", ground_truth.limit_share_jerk}}},
+          {"limit_ratio",
+           {{"v", ground_truth.limit_ratio_velocity}, {"a", ground_truth.limit_ratio_acceleration}, {"j", ground_truth.limit_ratio_jerk}}},
           {"limit_share_sent",
-           {{"v", execution.limit_share_velocity}, {"a", execution.limit_share_acceleration}, {"j", execution.limit_share_jerk}}},
+           {{"v", execution.limit_ratio_velocity}, {"a", execution.limit_ratio_acceleration}, {"j", execution.limit_ratio_jerk}}},
           {"deadline_misses", std::move(misses)},
           {"rejected", std::move(rejected)},
           {"refusals", std::move(gathered)},
@@ -144,13 +144,13 @@ std::string summary(const nlohmann::json& report) {
   if (!oracle["contact_share"].is_null())
     text += format("hold    %.1f s in the robot's hand, %.0f %% of it by contact alone\n", oracle["held_s"].get<double>(),
                    100 * oracle["contact_share"].get<double>());
-  const Json& share = report["limit_share"];
+  const Json& share = report["limit_ratio"];
   text += format("limits  v %.0f %%, a %.0f %%, j %.0f %% of what is allowed", 100 * share["v"].get<double>(),
                  100 * share["a"].get<double>(), 100 * share["j"].get<double>());
   text += "; " + std::to_string(oracle["limit_violations"].get<std::uint64_t>()) + " violations\n";
-  text += report["least_separation_m"].is_null()
+  text += report["min_separation_m"].is_null()
               ? std::string("nearest nobody came near\n")
-              : format("nearest %.2f m to the person", report["least_separation_m"].get<double>()) + "; " +
+              : format("nearest %.2f m to the person", report["min_separation_m"].get<double>()) + "; " +
                     std::to_string(report["ssm_violations"].get<std::uint64_t>()) + " speed-and-separation violations\n";
   if (!report["set_point_rate_hz"].is_null()) {
     text += format("timing  %.0f set-points/s, longest gap %.1f ms, %.3f %% of cycles late", report["set_point_rate_hz"].get<double>(),

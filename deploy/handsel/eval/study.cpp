@@ -27,7 +27,7 @@ struct Measure {
 constexpr Measure kMeasures[] = {{"activations_share", 3, false},
                                  {"cpu_chain_s", 3, false},
                                  {"looks", 1, false},
-                                 {"least_separation_m", 4, false},
+                                 {"min_separation_m", 4, false},
                                  {"below_separation_s", 3, false},
                                  {"ssm_violations", 2, false},
                                  {"closing_speed_m_s", 3, false},
@@ -258,7 +258,7 @@ std::string Study::plot(const std::string& scenario) const {
   for (const auto& [condition, trials] : lines_.at(scenario)) {
     std::vector<double> cost, separation;
     for (const auto& [seed, line] : trials) {
-      const auto c = value(line, {"cpu_chain_s", 0, false}), s = value(line, {"least_separation_m", 0, false});
+      const auto c = value(line, {"cpu_chain_s", 0, false}), s = value(line, {"min_separation_m", 0, false});
       if (!c || !s) continue;
       cost.push_back(*c);
       separation.push_back(*s);

@@ -143,9 +143,9 @@ nlohmann::json run_trial(const NodeContext& context, const TrialOptions& options
                {"reason", ground_truth.dropped && report["success"].get<bool>() ? Json(ground_truth.object + " was dropped afterwards")
                                                                                 : report["failure"]},
                {"duration_s", report["duration_s"]},
-               {"least_separation_m", report["least_separation_m"]},
+               {"min_separation_m", report["min_separation_m"]},
                {"ssm_violations", report["ssm_violations"]},
-               {"limit_share", report["limit_share"]},
+               {"limit_ratio", report["limit_ratio"]},
                {"limit_violations", ground_truth.limit_violations},
                {"collisions", ground_truth.self_or_scene_collisions},
                {"contact_force_n", ground_truth.contact_force},

@@ -71,7 +71,7 @@ std::shared_ptr<const HandGeometry> hand_geometry_of(const std::string& hand) {
 Listed prepared(const std::string& hand, const ListOptions& o, bool quiet) {
   Listed out;
   out.hand_geometry = hand_geometry_of(hand);
-  out.object = std::make_shared<const Graspable>(object_of(o), out.hand_geometry->tip_radius(), GraspListSettings{}.step_share, o.seed);
+  out.object = std::make_shared<const Graspable>(object_of(o), out.hand_geometry->tip_radius(), GraspListSettings{}.step_fraction, o.seed);
   if (!quiet) report_mesh(*out.object);
   return out;
 }

@@ -108,10 +108,10 @@ LandscapeResult plan_on_landscape(PlannerKind planner, std::uint64_t seed) {
   path_planner::Settings settings;
   settings.connect_range = settings.transition_range = 0.1;
   settings.cost_step = kCell;
-  settings.longest_edge = 0.3;
+  settings.max_edge = 0.3;
   settings.length_weight = 0.02;
   settings.smoothing_rounds = 600;
-  settings.patience = 200;
+  settings.max_idle_rounds = 200;
   path_planner::Problem problem;
   problem.axes = {0, 1};
   problem.start = Eigen::Vector2d(-0.85, -0.75);

@@ -209,7 +209,7 @@ std::string StoryRunner::evidence(const Condition& condition) const {
       return ": " + std::to_string(ground_truth.limit_violations) + " set-points broke a limit";
     case ConditionKind::no_ssm_violations:
       return ": for " + std::to_string(ground_truth.ssm_violations) +
-             " ms the robot came nearer faster than the distance allowed, least distance " + std::to_string(ground_truth.least_separation) +
+             " ms the robot came nearer faster than the distance allowed, least distance " + std::to_string(ground_truth.min_separation) +
              " m";
     default:
       return {};

@@ -52,9 +52,9 @@ class FirstDay {
         << " }\n";
     port_ = drivers::UdpPort(0).port();
     const std::string common = "common { port: " + std::to_string(port_) + " group: \"arm\" dry_run: " + (plan.dry_run ? "true" : "false") +
-                               " max_setpoint_gap: 0.02 min_stop: 0.5 wire_jitter: 0.02 fade_share: 0.1 }\n";
+                               " max_setpoint_gap: 0.02 min_stop: 0.5 wire_jitter: 0.02 fade_fraction: 0.1 }\n";
     folder_.write("position_arm.txtpb", common + "cycle: 0.005\n");
-    folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_share: 0.95 lost_cycles: 20\n" + plan.gripper);
+    folder_.write("reflex_arm.txtpb", common + "joint_deceleration: 3 limit_ratio: 0.95 lost_cycles: 20\n" + plan.gripper);
     go_.epoch = go_.state_revision = 1;
     go_.allowed = true;
     people_.covered = true;
@@ -161,8 +161,8 @@ class FirstDay {
   double angle() const { return angle_of(robot_state_); }  ///< measured, from the rest posture
   double speed() const { return gathered(robot_state_.velocity).cwiseAbs().maxCoeff(); }
   double wall_room() const { return wall_ - reach(robot_state_.position); }
-  double fastest{};     ///< of any arm axis as measured, since it was last set to 0 [rad/s]
-  double least_room{};  ///< between moving links and the wall, since it was last set [m]
+  double fastest{};   ///< of any arm axis as measured, since it was last set to 0 [rad/s]
+  double min_room{};  ///< between moving links and the wall, since it was last set [m]
 
   const RobotState& robot_state() const { return robot_state_; }
   const ExecutionStatus& status() const { return status_; }
@@ -227,7 +227,7 @@ class FirstDay {
       robot_state_ = m;
       ++states_;
       fastest = std::max(fastest, speed());
-      if (states_ % 5 == 0) least_room = std::min(least_room, wall_room());
+      if (states_ % 5 == 0) min_room = std::min(min_room, wall_room());
     });
     bus_.subscribe<ExecutionStatus>([this](const ExecutionStatus& m, const Receipt&) {
       if (m.mode != status_.mode || m.causes != status_.causes) remember(std::string(name(m.mode)) + " " + m.reason);

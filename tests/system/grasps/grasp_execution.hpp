@@ -13,7 +13,7 @@
 #include <string>
 
 #include "components/grasp_planner/choice/grasp_choice.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "sim/world.hpp"
 #include "tests/support/fingers.hpp"
 

@@ -61,7 +61,7 @@ class Grasping : public testing::Test {
   sim::SimSettings settings_ = sim::load_settings(kDeploy / "config");
   std::shared_ptr<const RobotModel> robot_ = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
   std::shared_ptr<const HandGeometry> kit_ = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  GraspBook book_{kit_, {}, GraspStore("")};
+  GraspCache book_{kit_, {}, GraspStore("")};
 };
 
 struct Case {

@@ -17,7 +17,7 @@
 #include <memory>
 #include <sstream>
 
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "sim/physics/object_body.hpp"
 #include "sim/robot/hand_measure.hpp"
 #include "sim/robot/robot_grasp.hpp"
@@ -224,10 +224,10 @@ double auc(const std::vector<Tried>& tried, double Tried::*figure) {
 
 TEST(GraspQuality, separates_what_holds_from_what_falls) {
   const int of_each = test::runs(10);
-  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  const RobotModel robot = hand_on_a_slide(kit->hand.model().axes());
+  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const RobotModel robot = hand_on_a_slide(hand_geometry->hand.model().axes());
   const sim::SimSettings settings = sim::load_settings(kDeploy / "config");
-  GraspBook book(kit, {}, GraspStore(""));
+  GraspCache book(hand_geometry, {}, GraspStore(""));
   std::vector<Tried> all;
   std::printf("%-8s %6s %5s  %s\n", "object", "grasps", "held", "held of each decile of quality, the worst first");
   for (const char* name : {"mug", "bottle", "box", "can", "ball"}) {

@@ -218,7 +218,7 @@ TEST(Regrasp, says_what_stands_in_the_way) {
   const RegraspPlan plan = planner.plan(task);
   EXPECT_FALSE(plan.solved);
   EXPECT_TRUE(plan.steps.empty());
-  EXPECT_NE(plan.reason.find("no posture of the arm reaches it"), std::string::npos) << plan.reason;
+  EXPECT_NE(plan.reason.find("no configuration of the arm reaches it"), std::string::npos) << plan.reason;
   ASSERT_FALSE(plan.rejected.empty());
   task.goal.arm = 2;
   EXPECT_THROW(planner.plan(task), ConfigError);
@@ -227,7 +227,7 @@ TEST(Regrasp, says_what_stands_in_the_way) {
 TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_heavier) {
   const HandOnObject &right = hand_on_object("sah", "tray", 60, 72), &left = hand_on_object("sah_left", "tray", 60, 72);
   const std::vector<Manipulator> hands = manipulators(duo().file, duo().robot);
-  const std::vector<RegraspArm> arms{{hands[0], right.kit.get(), &right.list}, {hands[1], left.kit.get(), &left.list}};
+  const std::vector<RegraspArm> arms{{hands[0], right.hand_geometry.get(), &right.list}, {hands[1], left.hand_geometry.get(), &left.list}};
   const auto library = [](const std::string& name) { return object_model(name); };
   const Pose T_start = DuoStage::standing("tray", 0.50, 0, M_PI / 2), T_goal = DuoStage::standing("tray", 0.60, 0, M_PI / 2);
   RegraspPlanner planner(duo().robot, arms, *right.object, library, duo().scene(), "thing");
@@ -239,13 +239,13 @@ TEST(Together, the_tray_is_taken_where_both_hands_bear_it_and_not_when_it_is_hea
     EXPECT_GT(plan.shares[a].margin, 0);
     EXPECT_EQ(plan.shares[a].effort.size(), arms[a].list->grasps[plan.steps[a].grasp_to].grasp.hand_joints.size());
     // The same hand alone, the load as it hangs at its side.
-    const BearingHand alone{arms[a].kit, &arms[a].list->grasps[plan.steps[a].grasp_to].grasp};
+    const BearingHand alone{arms[a].hand_geometry, &arms[a].list->grasps[plan.steps[a].grasp_to].grasp};
     const GripLoad load = carried_load(right.object->mass(), T_start.linear(), {});
     EXPECT_LT(share_load({alone}, right.object->com(), load, {}).front().margin, 0);
   }
   ObjectModel heavy = *object_model("tray");
   heavy.mass = 12;
-  const Graspable weight(heavy, right.kit->tip_radius(), GraspListSettings{}.step_share, 1);
+  const Graspable weight(heavy, right.hand_geometry->tip_radius(), GraspListSettings{}.step_fraction, 1);
   const RegraspPlan refused = RegraspPlanner(duo().robot, arms, weight, library, duo().scene(), "thing").plan_together(T_start, T_goal);
   EXPECT_FALSE(refused.solved);
   EXPECT_NE(refused.reason.find("bear"), std::string::npos) << refused.reason;

@@ -79,7 +79,7 @@ double distance(const Solids& a, const Solids& b) {
 double angle_between(const Vector3& a, const Vector3& b) { return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)); }
 
 // The ball has no up; two hands on the mug leave little choice.
-double most_tilt(const std::string& object) { return (object == "ball" ? 90 : object == "mug" ? 30 : 0) * kDegree; }
+double max_tilt(const std::string& object) { return (object == "ball" ? 90 : object == "mug" ? 30 : 0) * kDegree; }
 
 // The hand's orientation put together from the joints of the arm, each turned by what is said of it; and each within comfort.
 void expect_comfort(const Person& person, const TransferPose& t, const Pose& T_world_wrist) {
@@ -109,9 +109,10 @@ void expect_transfer(const std::string& object, int place) {
   auto& table = tables[object];
   if (!table) {
     TransferSettings settings;
-    settings.most_tilt = most_tilt(object);
-    table = std::make_shared<const TransferTable>(HandSide{robot_hand.kit.get(), &robot_hand.list, {}},
-                                                  HandSide{human_hand.kit.get(), &human_hand.list, {}}, *robot_hand.object, settings);
+    settings.max_tilt = max_tilt(object);
+    table =
+        std::make_shared<const TransferTable>(HandSide{robot_hand.hand_geometry.get(), &robot_hand.list, {}},
+                                              HandSide{human_hand.hand_geometry.get(), &human_hand.list, {}}, *robot_hand.object, settings);
   }
   const RobotModel& robot = *stage().robot;
   const Scene scene = scene_with(object);
@@ -139,7 +140,7 @@ void expect_transfer(const std::string& object, int place) {
   const Pose T_world_wrist = t.T_world_object * taken.T_object_hand;
   EXPECT_GT(angle_between(T_world_robot_hand.linear().col(2), T_world_wrist.linear().col(2)), 120 * kDegree);
 
-  const RobotModel& human = human_hand.kit->hand.model();
+  const RobotModel& human = human_hand.hand_geometry->hand.model();
   std::vector<bool> carried(robot.links().size(), false);  // palm and all beyond it
   for (std::size_t l = 0; l < robot.links().size(); ++l) {
     const int j = robot.links()[l].parent_joint;
@@ -160,7 +161,7 @@ void expect_transfer(const std::string& object, int place) {
   Vector3 way = t.T_world_object * robot_hand.object->box().center() - chest;
   way.z() = 0;
   EXPECT_LT(angle_between(T_world_wrist.linear().col(2), way), 60.5 * kDegree);
-  EXPECT_GT(t.T_world_object.linear()(2, 2), std::cos(most_tilt(object)) - 1e-6) << "the object is tilted";
+  EXPECT_GT(t.T_world_object.linear()(2, 2), std::cos(max_tilt(object)) - 1e-6) << "the object is tilted";
   std::printf("%-7s place %d: wrists %3.0f deg, palm %4.1f cm off, wrist strain %.2f, aim %2.0f deg, tilt %2.0f deg\n", object.c_str(),
               place, angle_between(T_world_robot_hand.linear().col(2), T_world_wrist.linear().col(2)) / kDegree,
               100 * distance(palm, robot_hand_solids), t.wrist.strain, t.aim / kDegree, t.tilt / kDegree);

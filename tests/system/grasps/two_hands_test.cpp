@@ -25,7 +25,7 @@ struct Trip {
   GroundTruth ground_truth;
   std::vector<std::string> phases;
   Pose T_start{Pose::Identity()};
-  double most_tilt{};  ///< of the object's z axis from up, ever [rad]
+  double max_tilt{};  ///< of the object's z axis from up, ever [rad]
   double seconds{};
   std::uint64_t truths{};  ///< told
 };
@@ -47,9 +47,9 @@ void settings_of_every_step(const std::filesystem::path& folder) {
   double step = 0;
   for (std::string line; std::getline(in, line);) {
     if (line.rfind("step:", 0) == 0) step = std::stod(line.substr(5));
-    if (line.rfind("truth_rate:", 0) != 0) out << line << "\n";
+    if (line.rfind("ground_truth_rate:", 0) != 0) out << line << "\n";
   }
-  out << "truth_rate: " << std::lround(1 / step) << "\n";
+  out << "ground_truth_rate: " << std::lround(1 / step) << "\n";
 }
 
 Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = TaskKind::place, const std::filesystem::path& settings = {}) {
@@ -67,7 +67,7 @@ Trip perform(const std::string& scenario, std::uint64_t seed, TaskKind kind = Ta
     if (!started) run.T_start = t.T_world_object;
     run.ground_truth = t;
     ++run.truths;
-    run.most_tilt = std::max(run.most_tilt, tilt(t.T_world_object));
+    run.max_tilt = std::max(run.max_tilt, tilt(t.T_world_object));
   });
   seat.after(from_seconds(3.0), [&](TimePoint) {
     started = true;
@@ -147,12 +147,12 @@ TEST(TwoHands, a_tray_too_heavy_for_one_is_carried_level_by_both) {
   for (std::uint64_t seed = 0; seeds >> seed;) {
     const Trip run = perform("duo_tray", seed, TaskKind::place, folder.path());
     std::printf("duo_tray, seed %d: %s after %.1f s, tilted by %.2f degrees at most in %d steps\n", static_cast<int>(seed),
-                run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(), run.seconds, run.most_tilt / kDegree,
+                run.task.state == TaskState::succeeded ? "done" : run.task.reason.c_str(), run.seconds, run.max_tilt / kDegree,
                 static_cast<int>(run.truths));
     SCOPED_TRACE("seed " + std::to_string(seed));
     expect_put(run, "duo_tray");
     EXPECT_GT(run.ground_truth.max_lifted, 0.15) << "over the edge of the stand";
-    EXPECT_LT(run.most_tilt, 5 * kDegree);
+    EXPECT_LT(run.max_tilt, 5 * kDegree);
     EXPECT_EQ(run.ground_truth.constraint_time, 0.0) << "contact alone holds what is heavy";
     EXPECT_GT(static_cast<double>(run.truths), 990 * run.seconds);
   }

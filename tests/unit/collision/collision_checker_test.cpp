@@ -184,7 +184,7 @@ TEST(Judge, answers_each_state_and_names_the_first_contact) {
   StateQuery query;
   query.id = {3, 4};
   query.states = {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector::Zero(2)};
-  const StateVerdict verdict = judge(robot, world, query);
+  const StateVerdict verdict = check_states(robot, world, query);
   EXPECT_EQ(verdict.id, query.id);
   EXPECT_EQ(verdict.free, (std::vector<std::uint8_t>{0, 1, 0}));
   EXPECT_THAT(verdict.reason, HasSubstr("box wall"));

@@ -126,8 +126,8 @@ TEST(LauncherSettings, are_read_and_each_bad_value_is_refused_with_file_line_and
   EXPECT_EQ(shipped.liveness.hung_after, from_seconds(2.0));
   EXPECT_EQ(shipped.backoff.max_wait, from_seconds(10.0));
   const fs::path file = fs::temp_directory_path() / ("launcher-" + std::to_string(getpid()) + ".txtpb");
-  const std::vector<std::string> keys{"hung_after",    "silent_job_after", "start_patience",
-                                      "first_backoff", "longest_backoff",  "stable_after"};
+  const std::vector<std::string> keys{"hung_after",    "silent_job_after", "start_timeout",
+                                      "first_backoff", "max_backoff",  "stable_after"};
   for (const std::string& wrong : keys) {
     for (const std::string value : {"nan", "inf", "-1", "0", "1e9"}) {
       std::string text;

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "common/config/resources.hpp"
-#include "components/grasp_planner/pair/carried_way.hpp"
+#include "components/grasp_planner/pair/carried_motion.hpp"
 #include "components/trajectory_planner/cartesian_motion.hpp"
 
 namespace handsel::trajectory_planner {
@@ -129,7 +129,7 @@ TEST(ClosedChain, planned_motion_keeps_the_tips_joined_at_every_time) {
   EXPECT_GE(planned, 10);
 }
 
-TEST(CarriedWay, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_limits) {
+TEST(CarriedMotion, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_limits) {
   Pair pair;
   int found = 0;
   for (int run = 0; run < 20; ++run) {
@@ -138,11 +138,11 @@ TEST(CarriedWay, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_lim
     Pose up = T, over = T;
     up.translation().z() += 0.1;
     over.translation() += Vector3(0.1, 0.05, 0.1);
-    const std::vector<Pose> way = grasp_planner::way_of_object({T, up, over}, 0.03);
+    const std::vector<Pose> way = grasp_planner::path_of_object({T, up, over}, 0.03);
     for (std::size_t k = 1; k < way.size(); ++k) EXPECT_LE((way[k].translation() - way[k - 1].translation()).norm(), 0.03 + 1e-9);
     const ik::Chain chain(pair.robot, pair.first, start);
     const auto arm = ik::SrsArm::recognise(chain);
-    for (const auto& carried : grasp_planner::carried_ways(pair.robot, pair.first, start, way)) {
+    for (const auto& carried : grasp_planner::carried_motions(pair.robot, pair.first, start, way)) {
       ++found;
       ASSERT_EQ(carried.joints.size(), way.size());
       double room = 1e9;
@@ -155,7 +155,7 @@ TEST(CarriedWay, goes_through_every_pose_with_its_elbow_kept_and_room_to_the_lim
         room = std::min({room, (q - chain.lower()).minCoeff(), (chain.upper() - q).minCoeff()});
       }
       EXPECT_NEAR(carried.room, room, 1e-12);
-      EXPECT_GE(carried.room, grasp_planner::CarriedSettings{}.least_room);
+      EXPECT_GE(carried.room, grasp_planner::CarriedSettings{}.min_room);
     }
   }
   EXPECT_GT(found, 20);

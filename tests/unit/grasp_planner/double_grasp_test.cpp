@@ -34,7 +34,7 @@ double hands_distance(const HandGeometry& a, const Pose& T_object_a, const Vecto
   return least;
 }
 
-HandSide side_of(const HandOnObject& h) { return {h.kit.get(), &h.list, {}}; }
+HandSide side_of(const HandOnObject& h) { return {h.hand_geometry.get(), &h.list, {}}; }
 
 TEST(Hands, the_left_hand_is_the_mirror_image_of_the_right) {
   for (const auto& [right, left] : {std::pair("sah", "sah_left"), std::pair("human_right", "human_left")}) {
@@ -64,7 +64,7 @@ TEST(Hands, the_left_hand_is_the_mirror_image_of_the_right) {
 TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
   const HandOnObject &right = hand_on_object("sah", "bottle"), &left = hand_on_object("sah_left", "bottle");
   DoubleSettings settings;
-  settings.most_of_each = 60;
+  settings.max_of_each = 60;
   settings.clearance = 0.004;
   const DoubleList doubles = list_double_grasps(side_of(right), side_of(left), settings);
   EXPECT_EQ(doubles.grasps.size() + doubles.colliding, doubles.pairs);
@@ -80,7 +80,8 @@ TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
     const Grasp &a = right.list.grasps[d.first].grasp, &b = left.list.grasps[d.second].grasp;
     EXPECT_DOUBLE_EQ(d.quality, std::min(a.quality, b.quality));
     if (n % 4 != 0) continue;
-    EXPECT_GT(hands_distance(*right.kit, a.T_object_hand, a.hand_joints, *left.kit, b.T_object_hand, b.hand_joints), 0.0039);
+    EXPECT_GT(hands_distance(*right.hand_geometry, a.T_object_hand, a.hand_joints, *left.hand_geometry, b.T_object_hand, b.hand_joints),
+              0.0039);
   }
   // What is not listed does collide.
   int judged = 0;
@@ -88,7 +89,8 @@ TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
     for (std::size_t k = 0; k < 60; k += 5) {
       if (listed.contains({i, k})) continue;
       const Grasp &a = right.list.grasps[i].grasp, &b = left.list.grasps[k].grasp;
-      EXPECT_LT(hands_distance(*right.kit, a.T_object_hand, a.hand_joints, *left.kit, b.T_object_hand, b.hand_joints), 0.0041);
+      EXPECT_LT(hands_distance(*right.hand_geometry, a.T_object_hand, a.hand_joints, *left.hand_geometry, b.T_object_hand, b.hand_joints),
+                0.0041);
       ++judged;
     }
   }
@@ -98,31 +100,37 @@ TEST(DoubleGrasps, hands_stay_apart_and_the_order_is_that_of_the_score) {
 TEST(DoubleGrasps, of_passing_either_hand_gets_out_past_object_and_other_hand) {
   const HandOnObject &right = hand_on_object("sah", "bottle"), &human = hand_on_object("human_right", "bottle");
   DoubleSettings settings;
-  settings.most_of_each = 120;
+  settings.max_of_each = 120;
   settings.clearance = 0.01;
-  settings.least_opposition = 120 * kDegree;
+  settings.min_opposition = 120 * kDegree;
   settings.passed = right.object.get();
   const DoubleList doubles = list_double_grasps(side_of(right), side_of(human), settings);
-  EXPECT_EQ(doubles.grasps.size() + doubles.colliding + doubles.not_opposed + doubles.no_way, doubles.pairs);
+  EXPECT_EQ(doubles.grasps.size() + doubles.colliding + doubles.not_opposed + doubles.no_retreat, doubles.pairs);
   ASSERT_GT(doubles.grasps.size(), 20U);
   EXPECT_GT(doubles.not_opposed, 0U);
   std::vector<Pose> T_open;
   for (std::size_t n = 0; n < doubles.grasps.size(); n += std::max<std::size_t>(1, doubles.grasps.size() / 3)) {
     const DoubleGrasp& d = doubles.grasps[n];
     const Grasp &a = right.list.grasps[d.first].grasp, &b = human.list.grasps[d.second].grasp;
-    EXPECT_GT(hands_distance(*right.kit, a.T_object_hand, a.hand_joints, *human.kit, b.T_object_hand, b.hand_joints), 0.0099);
+    EXPECT_GT(hands_distance(*right.hand_geometry, a.T_object_hand, a.hand_joints, *human.hand_geometry, b.T_object_hand, b.hand_joints),
+              0.0099);
     const double angle = std::acos((a.T_object_hand.linear() * Vector3::UnitZ()).dot(b.T_object_hand.linear() * Vector3::UnitZ()));
     EXPECT_GT(angle, 120 * kDegree - 1e-9);
     EXPECT_NEAR(angle, d.opposition, 1e-6);
-    EXPECT_NEAR(d.way_first.norm(), 1, 1e-9);
+    EXPECT_NEAR(d.retreat_first.norm(), 1, 1e-9);
     for (const double s : {0.016, 0.08}) {
       const auto off = [s](const Grasp& g, const Vector3& way) { return g.T_object_hand * Eigen::Translation3d(s * way); };
-      EXPECT_GT(hands_distance(*right.kit, off(a, d.way_first), a.pregrasp_joints, *human.kit, b.T_object_hand, b.hand_joints), 0);
-      EXPECT_GT(hands_distance(*right.kit, a.T_object_hand, a.hand_joints, *human.kit, off(b, d.way_second), b.pregrasp_joints), 0);
-      for (const auto& [kit, g, way] : {std::tuple(right.kit, &a, d.way_first), std::tuple(human.kit, &b, d.way_second)}) {
-        kit->hand.model().forward(g->pregrasp_joints, T_open);
+      EXPECT_GT(hands_distance(*right.hand_geometry, off(a, d.retreat_first), a.pregrasp_joints, *human.hand_geometry, b.T_object_hand,
+                               b.hand_joints),
+                0);
+      EXPECT_GT(hands_distance(*right.hand_geometry, a.T_object_hand, a.hand_joints, *human.hand_geometry, off(b, d.retreat_second),
+                               b.pregrasp_joints),
+                0);
+      for (const auto& [hand_geometry, g, way] :
+           {std::tuple(right.hand_geometry, &a, d.retreat_first), std::tuple(human.hand_geometry, &b, d.retreat_second)}) {
+        hand_geometry->hand.model().forward(g->pregrasp_joints, T_open);
         for (std::size_t l = 0; l < T_open.size(); ++l) {
-          for (const PlacedShape& shape : kit->hand.model().links()[l].collision) {
+          for (const PlacedShape& shape : hand_geometry->hand.model().links()[l].collision) {
             const Pose T_object_shape = off(*g, way) * T_open[l] * shape.T_parent_shape;
             EXPECT_FALSE(
                 shape_distance(shape.shape, T_object_shape, Shape(std::make_shared<TriangleMesh>(right.object->mesh())), Pose::Identity())
@@ -140,7 +148,7 @@ TEST(DoubleGrasps, the_less_natural_arm_counts_and_grasps_out_of_reach_are_left_
   for (std::size_t i = 0; i < right.list.grasps.size(); ++i) a.posture.push_back(i % 3 == 0 ? -1.0 : 0.5 + 0.001 * static_cast<double>(i));
   b.posture.assign(left.list.grasps.size(), 0.52);
   DoubleSettings settings;
-  settings.most_of_each = 60;
+  settings.max_of_each = 60;
   const DoubleList doubles = list_double_grasps(a, b, settings);
   EXPECT_EQ(doubles.out_of_reach, 20U * 60U);
   double low_q = 1, high_q = 0, low_p = 1, high_p = 0;

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "components/grasp_planner/choice/grasp_choice.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 
 namespace handsel::grasp_planner {
 namespace {
@@ -31,15 +31,15 @@ class GraspChoice : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     robot = std::make_shared<const RobotModel>(RobotModel::load(kDeploy / "robots/jido/jido.txtpb"));
-    kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+    hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
     settings.positions = 40;
     settings.orientations = 72;
-    book = std::make_unique<GraspBook>(kit, settings, GraspStore(store_folder()));
-    page = book->page(*library("mug"));
+    cache = std::make_unique<GraspCache>(hand_geometry, settings, GraspStore(store_folder()));
+    page = cache->page(*library("mug"));
   }
   static void TearDownTestSuite() {
     page.reset();
-    book.reset();
+    cache.reset();
     std::filesystem::remove_all(store_folder());
   }
 
@@ -61,19 +61,19 @@ class GraspChoice : public testing::Test {
   }
 
   static std::shared_ptr<const RobotModel> robot;
-  static std::shared_ptr<const HandGeometry> kit;
+  static std::shared_ptr<const HandGeometry> hand_geometry;
   static GraspListSettings settings;
-  static std::unique_ptr<GraspBook> book;
-  static std::shared_ptr<const GraspPage> page;
+  static std::unique_ptr<GraspCache> cache;
+  static std::shared_ptr<const CachedGrasps> page;
 };
 std::shared_ptr<const RobotModel> GraspChoice::robot;
-std::shared_ptr<const HandGeometry> GraspChoice::kit;
+std::shared_ptr<const HandGeometry> GraspChoice::hand_geometry;
 GraspListSettings GraspChoice::settings;
-std::unique_ptr<GraspBook> GraspChoice::book;
-std::shared_ptr<const GraspPage> GraspChoice::page;
+std::unique_ptr<GraspCache> GraspChoice::cache;
+std::shared_ptr<const CachedGrasps> GraspChoice::page;
 
 TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
-  const GraspChooser chooser(robot, kit, library, {});
+  const GraspChooser chooser(robot, hand_geometry, library, {});
   const Scene scene = scene_with_mug(0.68, -0.42);
   const Choice choice = chooser.choose(request(), page->list, *page->object, scene, {});
   ASSERT_GE(choice.grasps.size(), 5U);
@@ -106,7 +106,7 @@ TEST_F(GraspChoice, grasps_of_the_reply_can_be_carried_out) {
 }
 
 TEST_F(GraspChoice, is_the_same_every_time) {
-  const GraspChooser chooser(robot, kit, library, {});
+  const GraspChooser chooser(robot, hand_geometry, library, {});
   const Scene scene = scene_with_mug(0.7, -0.4);
   const Choice a = chooser.choose(request(), page->list, *page->object, scene, {}),
                b = chooser.choose(request(), page->list, *page->object, scene, {});
@@ -119,7 +119,7 @@ TEST_F(GraspChoice, is_the_same_every_time) {
 }
 
 TEST_F(GraspChoice, an_object_out_of_reach_gives_a_reason) {
-  const GraspChooser chooser(robot, kit, library, {});
+  const GraspChooser chooser(robot, hand_geometry, library, {});
   const Choice choice = chooser.choose(request(), page->list, *page->object, scene_with_mug(2.5, -0.5), {});
   EXPECT_TRUE(choice.grasps.empty());
   EXPECT_NE(choice.why_none(page->list).find("reaches"), std::string::npos) << choice.why_none(page->list);
@@ -128,8 +128,8 @@ TEST_F(GraspChoice, an_object_out_of_reach_gives_a_reason) {
 TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
   ChoiceSettings s;
   s.rank_room = 10;       // so that what else counts for a person
-  s.rank_exchange = 0.0;  // does not decide
-  const GraspChooser chooser(robot, kit, library, s);
+  s.rank_handover = 0.0;  // does not decide
+  const GraspChooser chooser(robot, hand_geometry, library, s);
   const Scene scene = scene_with_mug(0.68, -0.42);
   HumanState people;
   Person anna;
@@ -152,11 +152,11 @@ TEST_F(GraspChoice, for_a_person_the_mean_room_left_is_larger) {
 
 TEST_F(GraspChoice, a_robot_with_another_hand_is_refused) {
   const auto bare = std::make_shared<const RobotModel>(RobotModel::load_urdf(kDeploy / "robots/jido/jido.urdf"));
-  EXPECT_THROW(GraspChooser(bare, kit, library, {}), ConfigError);
+  EXPECT_THROW(GraspChooser(bare, hand_geometry, library, {}), ConfigError);
 }
 
 TEST_F(GraspChoice, lists_come_back_from_disk_as_they_were) {
-  const std::uint64_t key = list_key(kit->hand, *library("mug"), settings);
+  const std::uint64_t key = list_key(hand_geometry->hand, *library("mug"), settings);
   const GraspStore store(store_folder());
   const auto back = store.load("sah", "mug", key, page->list.frames);
   ASSERT_TRUE(back.has_value());
@@ -172,12 +172,12 @@ TEST_F(GraspChoice, lists_come_back_from_disk_as_they_were) {
     EXPECT_EQ(a.contacts.back().position, b.contacts.back().position);
     EXPECT_EQ(back->grasps[i].room, page->list.grasps[i].room);
   }
-  GraspBook second(kit, settings, store);
+  GraspCache second(hand_geometry, settings, store);
   EXPECT_EQ(second.page(*library("mug"))->list.grasps.size(), page->list.grasps.size());
 }
 
 TEST_F(GraspChoice, a_damaged_or_foreign_list_is_not_used) {
-  const std::uint64_t key = list_key(kit->hand, *library("mug"), settings);
+  const std::uint64_t key = list_key(hand_geometry->hand, *library("mug"), settings);
   const GraspStore store(store_folder() / "damaged");
   ASSERT_TRUE(store.save(page->list, key));
   const auto file = store.file("sah", "mug", key, page->list.frames);
@@ -196,8 +196,8 @@ TEST_F(GraspChoice, a_damaged_or_foreign_list_is_not_used) {
   EXPECT_FALSE(store.load("sah", "mug", key, page->list.frames).has_value());
   GraspListSettings other = settings;
   other.opening *= 2;
-  EXPECT_NE(list_key(kit->hand, *library("mug"), other), key);
-  EXPECT_NE(list_key(kit->hand, *library("box"), settings), key);
+  EXPECT_NE(list_key(hand_geometry->hand, *library("mug"), other), key);
+  EXPECT_NE(list_key(hand_geometry->hand, *library("box"), settings), key);
   EXPECT_FALSE(store.load("sah", "mug", key + 1, page->list.frames).has_value());
   EXPECT_FALSE(GraspStore("").save(page->list, key));
 }

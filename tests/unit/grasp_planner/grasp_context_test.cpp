@@ -64,7 +64,7 @@ HumanState anna(double x, double y) {
 }
 
 Choice choose(const GraspRequest& r, const Scene& scene, const HumanState& people = {}, const ChoiceSettings& settings = {}) {
-  const GraspChooser chooser(robot().model, mug().kit, library, settings, robot().mobile);
+  const GraspChooser chooser(robot().model, mug().hand_geometry, library, settings, robot().mobile);
   return chooser.choose(r, mug().list, *mug().object, scene, people);
 }
 
@@ -177,9 +177,9 @@ TEST(Goal, what_serves_at_the_start_may_not_serve_there) {
 
 // Lines of sight looked along in small steps, with the links' own shapes.
 double seen_by_steps(const Grasp& g, const Vector3& eye) {
-  const HandGeometry& kit = *mug().kit;
+  const HandGeometry& hand_geometry = *mug().hand_geometry;
   std::vector<Pose> T;
-  kit.hand.model().forward(g.hand_joints, T);
+  hand_geometry.hand.model().forward(g.hand_joints, T);
   std::size_t facing = 0, seen = 0;
   const auto& points = mug().object->points();
   for (std::size_t i = 0; i < points.size(); i += points.size() / 150 + 1) {
@@ -194,7 +194,7 @@ double seen_by_steps(const Grasp& g, const Vector3& eye) {
     for (double s = 0; s < 0.35 && !hidden; s += 0.003) {
       const Pose at = make_pose(from + s * along);
       for (std::size_t l = 0; l < T.size() && !hidden; ++l) {
-        for (const PlacedShape& shape : kit.hand.model().links()[l].collision)
+        for (const PlacedShape& shape : hand_geometry.hand.model().links()[l].collision)
           hidden = hidden || shape_distance(Sphere{0.0002}, at, shape.shape, g.T_object_hand * T[l] * shape.T_parent_shape).collide;
       }
     }
@@ -212,8 +212,8 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
   for (std::size_t i = 0; i < mug().list.grasps.size(); i += mug().list.grasps.size() / 8 + 1) {
     const Grasp& g = mug().list.grasps[i].grasp;
     const Vector3 eye = mug().object->box().center() + 0.9 * Vector3(normal(random), normal(random), normal(random)).normalized();
-    mug().kit->forward(g.hand_joints, T_step);
-    const double share = visible_share(*mug().object, mug().kit->shape.placed(T_step, g.T_object_hand), eye);
+    mug().hand_geometry->forward(g.hand_joints, T_step);
+    const double share = visible_fraction(*mug().object, mug().hand_geometry->shape.placed(T_step, g.T_object_hand), eye);
     const double expected = seen_by_steps(g, eye);
     EXPECT_NEAR(share, expected, 0.18) << "grasp " << g.id;  // of some sixty points, other ones
     difference += std::abs(share - expected);
@@ -225,8 +225,8 @@ TEST(Visibility, is_what_lines_of_sight_past_the_links_say) {
   EXPECT_LT(difference / grasps, 0.07);
   EXPECT_LT(least, most - 0.2);
   // A hand that is far away hides nothing.
-  mug().kit->forward(mug().list.grasps[0].grasp.hand_joints, T_step);
-  EXPECT_EQ(visible_share(*mug().object, mug().kit->shape.placed(T_step, make_pose({0, 0, -3})), {0, 0, 2}), 1.0);
+  mug().hand_geometry->forward(mug().list.grasps[0].grasp.hand_joints, T_step);
+  EXPECT_EQ(visible_fraction(*mug().object, mug().hand_geometry->shape.placed(T_step, make_pose({0, 0, -3})), {0, 0, 2}), 1.0);
 }
 
 TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
@@ -245,16 +245,16 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
   for (const char* human : {"", "anna"}) {
     SCOPED_TRACE(human);
     r.for_human = human;
-    r.least_visible = 0;
+    r.min_visible = 0;
     const Choice any = choose(r, scene, anna(1.35, 0.3));
     ASSERT_GE(any.grasps.size(), 10U);
-    r.least_visible = 0.5 * (least(any) + mean(any));
-    EXPECT_LT(least(any), r.least_visible);
+    r.min_visible = 0.5 * (least(any) + mean(any));
+    EXPECT_LT(least(any), r.min_visible);
     const Choice some = choose(r, scene, anna(1.35, 0.3));
     ASSERT_FALSE(some.grasps.empty());
-    EXPECT_GE(least(some), r.least_visible);
+    EXPECT_GE(least(some), r.min_visible);
     EXPECT_GT(count(some, ChoiceReason::hidden), 0U);
-    r.least_visible = 1;
+    r.min_visible = 1;
     const Choice none = choose(r, scene, anna(1.35, 0.3));
     for (const Grasp& g : none.grasps) EXPECT_GE(g.visible, 1);
   }
@@ -262,7 +262,7 @@ TEST(Visibility, of_the_robot_and_of_the_person_filters_and_ranks) {
   sight.rank_visible = 10;
   ChoiceSettings blind;
   blind.rank_visible = 0;
-  r.least_visible = 0;
+  r.min_visible = 0;
   r.for_human = "anna";
   r.max_grasps = 5;
   EXPECT_GT(mean(choose(r, scene, anna(1.35, 0.3), sight)), mean(choose(r, scene, anna(1.35, 0.3), blind)));
@@ -363,7 +363,7 @@ TEST(Platform, says_why_it_does_not_drive) {
   EXPECT_TRUE(none.grasps.empty());
   EXPECT_GT(none.platform.blocked, 0U);
   EXPECT_NE(none.why_none(mug().list).find("places of the platform"), std::string::npos) << none.why_none(mug().list);
-  const GraspChooser fixed(robot().model, mug().kit, library, {});
+  const GraspChooser fixed(robot().model, mug().hand_geometry, library, {});
   const Choice still = fixed.choose(r, mug().list, *mug().object, table_with_mug(2.4, 0.3), {});
   EXPECT_TRUE(still.grasps.empty());
   EXPECT_NE(still.why_none(mug().list).find("no platform"), std::string::npos) << still.why_none(mug().list);

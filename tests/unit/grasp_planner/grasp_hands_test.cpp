@@ -22,43 +22,43 @@ class Hands : public testing::TestWithParam<const char*> {};
 
 TEST_P(Hands, every_contact_is_touched_nothing_is_pierced_and_the_opened_hand_is_off_the_object) {
   const std::string name = GetParam();
-  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands" / name / (name + ".txtpb")));
-  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
+  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands" / name / (name + ".txtpb")));
+  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
   GraspListSettings settings;
   settings.positions = 16;
   settings.orientations = 36;
   // A person's hand and a Schunk hand are of other sizes: the can is small enough for all.
-  const auto can = std::make_shared<const Graspable>(object("can"), kit->tip_radius(), settings.step_share, 1);
-  const GraspList list = list_grasps(kit, workspaces, can, settings);
+  const auto can = std::make_shared<const Graspable>(object("can"), hand_geometry->tip_radius(), settings.step_fraction, 1);
+  const GraspList list = list_grasps(hand_geometry, workspaces, can, settings);
   ASSERT_GE(list.grasps.size(), 10U);
   std::vector<std::vector<Pose>> T;
   for (const ListedGrasp& listed : list.grasps) {
     const Grasp& g = listed.grasp;
     ASSERT_GE(g.contacts.size(), 3U);
-    kit->forward(g.hand_joints, T);
+    hand_geometry->forward(g.hand_joints, T);
     std::vector<PointContact> contacts;
     for (const Contact& c : g.contacts) {
-      const FingerChain& chain = kit->chains[c.finger];
+      const FingerChain& chain = hand_geometry->chains[c.finger];
       EXPECT_LT((g.T_object_hand * chain.tip(T[c.finger]) - c.position - chain.tip_radius() * c.normal).norm(),
                 chain.axes().size() < 3 ? 4e-3 : 2e-4);
       EXPECT_NEAR((g.T_object_hand * chain.tip(T[c.finger]) - c.position).norm(), chain.tip_radius(), 3e-4);
       for (const int a : chain.axes()) {
-        EXPECT_GE(g.hand_joints[a], kit->hand.lower_contact()[a] - 1e-9);
-        EXPECT_LE(g.hand_joints[a], kit->hand.upper_contact()[a] + 1e-9);
+        EXPECT_GE(g.hand_joints[a], hand_geometry->hand.lower_contact()[a] - 1e-9);
+        EXPECT_LE(g.hand_joints[a], hand_geometry->hand.upper_contact()[a] + 1e-9);
       }
       contacts.push_back({c.position, -c.normal, c.friction});
     }
-    EXPECT_FALSE(kit->shape.touches(T, *can, g.T_object_hand, -0.001)) << g.id;
+    EXPECT_FALSE(hand_geometry->shape.touches(T, *can, g.T_object_hand, -0.001)) << g.id;
     for (std::size_t a = 0; a < T.size(); ++a) {
-      EXPECT_FALSE(kit->shape.finger_touches_palm(static_cast<int>(a), T[a])) << g.id;
+      EXPECT_FALSE(hand_geometry->shape.finger_touches_palm(static_cast<int>(a), T[a])) << g.id;
       for (std::size_t b = 0; b < a; ++b)
-        EXPECT_FALSE(kit->shape.fingers_touch(static_cast<int>(a), T[a], static_cast<int>(b), T[b])) << g.id;
+        EXPECT_FALSE(hand_geometry->shape.fingers_touch(static_cast<int>(a), T[a], static_cast<int>(b), T[b])) << g.id;
     }
     EXPECT_TRUE(force_closure(contact_wrenches(contacts, 8, can->com(), 1 / can->radius())));
-    kit->forward(g.pregrasp_joints, T);
-    EXPECT_FALSE(kit->shape.touches(T, *can, g.T_object_hand, 0.0)) << g.id << ": the opened hand touches";
+    hand_geometry->forward(g.pregrasp_joints, T);
+    EXPECT_FALSE(hand_geometry->shape.touches(T, *can, g.T_object_hand, 0.0)) << g.id << ": the opened hand touches";
     for (Eigen::Index a = 0; a < g.hand_joints.size(); ++a) {
-      if (!kit->shared(static_cast<int>(a))) continue;
+      if (!hand_geometry->shared(static_cast<int>(a))) continue;
       EXPECT_EQ(g.hand_joints[a], g.pregrasp_joints[a]) << "a shared axis does not move as the hand opens";
     }
   }

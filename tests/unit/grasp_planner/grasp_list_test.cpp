@@ -13,8 +13,8 @@ namespace {
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
 std::shared_ptr<const HandGeometry> sah() {
-  static const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  return kit;
+  static const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  return hand_geometry;
 }
 
 std::shared_ptr<const FingerWorkspaces> workspaces() {
@@ -28,7 +28,7 @@ GraspList list_of(const std::string& name, std::uint32_t positions = 24, std::ui
   GraspListSettings settings;
   settings.positions = positions;
   settings.orientations = orientations;
-  return list_grasps(sah(), workspaces(), std::make_shared<const Graspable>(object(name), sah()->tip_radius(), settings.step_share, 1),
+  return list_grasps(sah(), workspaces(), std::make_shared<const Graspable>(object(name), sah()->tip_radius(), settings.step_fraction, 1),
                      settings);
 }
 

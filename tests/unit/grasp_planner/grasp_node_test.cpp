@@ -138,7 +138,7 @@ TEST_F(GraspNode, heeds_goal_sight_and_platform) {
   EXPECT_TRUE(replies_[0].grasps.empty());
   EXPECT_NE(replies_[0].reason.find("to be put"), std::string::npos) << replies_[0].reason;
   GraspRequest sight;
-  sight.least_visible = 0.7;
+  sight.min_visible = 0.7;
   ask(2, "cup", sight);
   ASSERT_TRUE(wait([&] { return replies_.size() == 2; }));
   ASSERT_FALSE(replies_[1].grasps.empty()) << replies_[1].reason;

@@ -71,13 +71,13 @@ class Figures : public testing::Test {
   }
 
   const std::filesystem::path deploy_ = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
-  HandGeometry kit_{HandModel::load(deploy_ / "hands/sah/sah.txtpb")};
-  Graspable object_{ObjectModel::load(deploy_ / "objects/box/box.txtpb"), kit_.tip_radius(), 0.6, 1};
+  HandGeometry hand_geometry_{HandModel::load(deploy_ / "hands/sah/sah.txtpb")};
+  Graspable object_{ObjectModel::load(deploy_ / "objects/box/box.txtpb"), hand_geometry_.tip_radius(), 0.6, 1};
 };
 
 TEST_F(Figures, a_grasp_shows_the_contacts_of_its_fingers_and_of_no_other) {
   Grasp g;
-  g.hand_joints = kit_.hand.pregrasp();
+  g.hand_joints = hand_geometry_.hand.pregrasp();
   for (const std::uint32_t finger : {0U, 2U}) {
     Contact c;
     c.finger = finger;
@@ -111,12 +111,12 @@ TEST_F(Figures, flat_is_red_and_the_edges_of_a_box_are_blue) {
 }
 
 TEST_F(Figures, candidates_are_coloured_by_the_fingers_that_reach_them) {
-  const FingerWorkspaces workspaces = make_workspaces(kit_);
-  const Pose T_object_hand = make_pose(object_.box().center()) * kit_.hand.T_hand_grasp().inverse();
+  const FingerWorkspaces workspaces = make_workspaces(hand_geometry_);
+  const Pose T_object_hand = make_pose(object_.box().center()) * hand_geometry_.hand.T_hand_grasp().inverse();
   std::array<int, 4> seen{};
   for (const Vector3& side : {Vector3(1, 1, 1), Vector3(-1, -1, -1)}) {
     Canvas canvas(200, 200, eye_on(object_.box(), side));
-    draw_candidates(canvas, kit_, workspaces, object_, T_object_hand);
+    draw_candidates(canvas, hand_geometry_, workspaces, object_, T_object_hand);
     for (std::size_t f = 0; f < 4; ++f) seen[f] += of_finger(canvas.picture(), f);
   }
   for (std::size_t f = 0; f < 4; ++f) EXPECT_GT(seen[f], 20) << f;

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "components/grasp_planner/list/grasp_fit.hpp"
-#include "components/grasp_planner/regrasp/grasp_book.hpp"
+#include "components/grasp_planner/regrasp/grasp_cache.hpp"
 #include "tests/support/processes/temporary_folder.hpp"
 
 namespace handsel::grasp_planner {
@@ -115,17 +115,17 @@ TEST(GraspStore, a_list_that_names_joints_fingers_or_triangles_that_are_not_ther
   EXPECT_FALSE(with([](ListedGrasp& g) { g.room = std::nan(""); }));
 }
 
-TEST(GraspBook, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_same_as_a_list_made_at_once) {
+TEST(GraspCache, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_same_as_a_list_made_at_once) {
   const TemporaryFolder folder;
-  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
   const ObjectModel box = ObjectModel::load(kDeploy / "objects/box/box.txtpb");
   GraspListSettings few, more;
   few.positions = more.positions = 8;
   few.orientations = 20;
   more.orientations = 30;
-  const auto first = GraspBook(kit, few, GraspStore(folder.path())).page(box);
-  const auto longer = GraspBook(kit, more, GraspStore(folder.path())).page(box);
-  const auto at_once = GraspBook(kit, more, GraspStore("")).page(box);
+  const auto first = GraspCache(hand_geometry, few, GraspStore(folder.path())).page(box);
+  const auto longer = GraspCache(hand_geometry, more, GraspStore(folder.path())).page(box);
+  const auto at_once = GraspCache(hand_geometry, more, GraspStore("")).page(box);
   EXPECT_GT(longer->list.frames, first->list.frames);
   EXPECT_EQ(longer->list.frames, at_once->list.frames);
   EXPECT_EQ(longer->list.reasons, at_once->list.reasons);
@@ -135,20 +135,21 @@ TEST(GraspBook, more_orientations_go_on_with_the_list_on_disk_and_come_to_the_sa
     EXPECT_EQ(longer->list.grasps[i].grasp.id, at_once->list.grasps[i].grasp.id);
     EXPECT_EQ(longer->list.grasps[i].grasp.hand_joints, at_once->list.grasps[i].grasp.hand_joints);
   }
-  const auto again = GraspBook(kit, few, GraspStore(folder.path())).page(box);
+  const auto again = GraspCache(hand_geometry, few, GraspStore(folder.path())).page(box);
   EXPECT_EQ(again->list.frames, first->list.frames) << "a longer list on disk does not lengthen a shorter one";
   EXPECT_EQ(again->list.grasps.size(), first->list.grasps.size());
 }
 
 TEST(GraspList, shared_among_listers_it_is_the_list_of_one) {
-  const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
-  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*kit));
-  const auto box = std::make_shared<const Graspable>(ObjectModel::load(kDeploy / "objects/box/box.txtpb"), kit->tip_radius(), 0.6, 1);
+  const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/sah/sah.txtpb"));
+  const auto workspaces = std::make_shared<const FingerWorkspaces>(make_workspaces(*hand_geometry));
+  const auto box =
+      std::make_shared<const Graspable>(ObjectModel::load(kDeploy / "objects/box/box.txtpb"), hand_geometry->tip_radius(), 0.6, 1);
   GraspListSettings settings;
   settings.positions = 8;
   settings.orientations = 30;
-  const GraspList one = list_grasps(kit, workspaces, box, settings);
-  GraspLister a(kit, workspaces, box, settings), b(kit, workspaces, box, settings);
+  const GraspList one = list_grasps(hand_geometry, workspaces, box, settings);
+  GraspLister a(hand_geometry, workspaces, box, settings), b(hand_geometry, workspaces, box, settings);
   for (std::uint64_t first = 0; first < a.frames(); first += 32) (first / 32 % 2 ? a : b).test(first, 32);
   const GraspList both = merged({a.list(), b.list()});
   EXPECT_EQ(both.frames, one.frames);

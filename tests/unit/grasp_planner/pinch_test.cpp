@@ -12,8 +12,8 @@ namespace {
 const std::filesystem::path kDeploy = std::filesystem::path(HANDSEL_SOURCE_DIR) / "deploy";
 
 std::shared_ptr<const HandGeometry> gripper() {
-  static const auto kit = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
-  return kit;
+  static const auto hand_geometry = std::make_shared<const HandGeometry>(HandModel::load(kDeploy / "hands/parallel/parallel.txtpb"));
+  return hand_geometry;
 }
 
 ObjectModel object(const std::string& name, double scale = 1) {
@@ -32,7 +32,7 @@ GraspListSettings small_settings() {
 }
 
 std::shared_ptr<const Graspable> graspable(const ObjectModel& o) {
-  return std::make_shared<const Graspable>(o, gripper()->tip_radius(), small_settings().step_share, 1);
+  return std::make_shared<const Graspable>(o, gripper()->tip_radius(), small_settings().step_fraction, 1);
 }
 
 GraspList list_of(const ObjectModel& o) {
@@ -107,14 +107,14 @@ TEST(Pinch, list_goes_on_where_it_stopped) {
 }
 
 TEST(Pinch, fingers_that_share_an_axis_carry_their_own_links) {
-  const HandGeometry& kit = *gripper();
-  ASSERT_EQ(kit.chains.size(), 2U);
-  for (const FingerChain& chain : kit.chains) {
+  const HandGeometry& hand_geometry = *gripper();
+  ASSERT_EQ(hand_geometry.chains.size(), 2U);
+  for (const FingerChain& chain : hand_geometry.chains) {
     EXPECT_EQ(chain.axes(), std::vector<int>{0});
     EXPECT_EQ(chain.steps(), 1);
   }
   const Vector q = Vector::Constant(1, 0.03);
-  EXPECT_NEAR((kit.chains[0].tip(q) - kit.chains[1].tip(q)).y(), 0.06, 1e-12);
+  EXPECT_NEAR((hand_geometry.chains[0].tip(q) - hand_geometry.chains[1].tip(q)).y(), 0.06, 1e-12);
 }
 
 }  // namespace

@@ -41,7 +41,7 @@ TEST(ManipulationPlanner, a_motion_that_is_held_back_again_and_again_is_planned_
   rig.run_until("approach");
   const auto blocked = [&] {
     const auto& refusals = rig.planner.status().refusals;
-    return std::any_of(refusals.begin(), refusals.end(), [](const Refusal& r) { return r.reason.starts_with("the way is blocked"); });
+    return std::any_of(refusals.begin(), refusals.end(), [](const Refusal& r) { return r.reason.starts_with("the path is blocked"); });
   };
   const double along = rig.along;
   for (int i = 0; i < 200 && !blocked(); ++i) {
@@ -118,7 +118,7 @@ TEST(ManipulationPlanner, from_a_person_it_touches_it_draws_back_first) {
     farthest = std::max(farthest, (rig.tool().translation() - torso).norm());
   }
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
-  EXPECT_EQ(rig.phases, (std::vector<std::string>{"drawing back", "to rest"}));
+  EXPECT_EQ(rig.phases, (std::vector<std::string>{"retreat from a person", "to rest"}));
   EXPECT_EQ(rig.allowed.front(), std::vector<std::string>{"anna"});
   EXPECT_TRUE(rig.allowed.back().empty());
   EXPECT_GT(farthest, before + 0.03);

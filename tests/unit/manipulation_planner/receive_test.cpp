@@ -75,7 +75,7 @@ TEST(ManipulationPlanner, what_nobody_offers_is_not_taken) {
   rig.run(60);
   EXPECT_EQ(rig.planner.status().state, ActionState::failed);
   EXPECT_EQ(rig.planner.status().reason, "anna does not offer mug within 30 s");
-  EXPECT_EQ(rig.phases, std::vector<std::string>{"making room"}) << "it moved toward them";
+  EXPECT_EQ(rig.phases, std::vector<std::string>{"clear the offer area"}) << "it moved toward them";
 }
 
 TEST(ManipulationPlanner, who_was_asked_for_it_offers_it_with_a_bent_arm_too) {
@@ -131,9 +131,9 @@ TEST(ManipulationPlanner, foresees_when_the_object_changes_hands) {
   double at_first = 0, closed_at = 0, foreseen_at = 0;
   for (int i = 0; i < 1500 && rig.planner.status().state == ActionState::running; ++i) {
     rig.cycle();
-    const double left = rig.planner.status().time_to_exchange, now = to_seconds(rig.now.time_since_epoch());
+    const double left = rig.planner.status().time_to_handover, now = to_seconds(rig.now.time_since_epoch());
     const std::string phase = phase_text(rig.planner.status());
-    const bool waits = phase == "watching for an offer" || phase == "making room";
+    const bool waits = phase == "watching for an offer" || phase == "clear the offer area";
     EXPECT_FALSE(waits && std::isfinite(left)) << phase;
     if (phase == "approach" && std::isfinite(left) && at_first == 0) {
       at_first = left;
@@ -144,7 +144,7 @@ TEST(ManipulationPlanner, foresees_when_the_object_changes_hands) {
   ASSERT_GT(at_first, 0.5);
   ASSERT_GT(closed_at, 0);
   EXPECT_NEAR(foreseen_at, closed_at, 2.0);
-  EXPECT_FALSE(std::isfinite(rig.planner.status().time_to_exchange)) << "it is over";
+  EXPECT_FALSE(std::isfinite(rig.planner.status().time_to_handover)) << "it is over";
 }
 
 TEST(ManipulationPlanner, what_is_put_into_the_open_hand_on_its_way_is_held_at_once) {
@@ -165,7 +165,7 @@ TEST(ManipulationPlanner, what_is_put_into_the_open_hand_on_its_way_is_held_at_o
   EXPECT_EQ(rig.planner.status().state, ActionState::succeeded) << rig.planner.status().reason;
   EXPECT_TRUE(rig.planner.status().holding);
   EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "reaching the object"), 0);
-  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "drawing back"), 0);
+  EXPECT_EQ(std::count(rig.phases.begin(), rig.phases.end(), "retreat from a person"), 0);
 }
 
 TEST(ManipulationPlanner, what_is_drawn_back_is_not_gone_after) {
@@ -212,12 +212,12 @@ TEST(ManipulationPlanner, room_is_made_only_until_there_is_an_offer) {
   rig.scene.objects[0].holder_id = "anna";
   rig.draw_back();
   rig.start(ActionKind::receive);
-  rig.run_until("making room");
-  ASSERT_EQ(phase_text(rig.planner.status()), "making room");
+  rig.run_until("clear the offer area");
+  ASSERT_EQ(phase_text(rig.planner.status()), "clear the offer area");
   for (int i = 0; i < 5; ++i) rig.cycle();
   rig.hold_out();
-  for (int i = 0; i < 50 && phase_text(rig.planner.status()) == "making room"; ++i) rig.cycle();
-  EXPECT_NE(phase_text(rig.planner.status()), "making room") << "it goes all the way though she waits";
+  for (int i = 0; i < 50 && phase_text(rig.planner.status()) == "clear the offer area"; ++i) rig.cycle();
+  EXPECT_NE(phase_text(rig.planner.status()), "clear the offer area") << "it goes all the way though she waits";
 }
 
 TEST(ManipulationPlanner, where_fingers_are_in_the_way_of_the_hand_it_does_not_go) {
@@ -262,7 +262,7 @@ TEST(ManipulationPlanner, who_does_not_let_go_keeps_it) {
   rig.start(ActionKind::receive);
   rig.run(200);
   EXPECT_EQ(rig.planner.status().state, ActionState::failed);
-  EXPECT_EQ(rig.planner.status().reason, "anna does not let go of mug");
+  EXPECT_EQ(rig.planner.status().reason, "anna does not release mug");
   EXPECT_EQ(rig.phases.back(), "backing off");
   EXPECT_FALSE(rig.planner.status().holding);
 }

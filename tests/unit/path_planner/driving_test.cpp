@@ -84,7 +84,7 @@ class DrivingJido : public ::testing::Test {
 
 TEST_F(DrivingJido, the_links_are_where_the_standing_robot_has_them) {
   std::mt19937 random(11);
-  std::vector<Pose> standing, driving;
+  std::vector<Pose> standing, platform_motion;
   for (int k = 0; k < 20; ++k) {
     Vector q = fixed().rest_configuration();
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -95,11 +95,11 @@ TEST_F(DrivingJido, the_links_are_where_the_standing_robot_has_them) {
     const Pose T_world_base = make_pose({place(random), place(random), 0},
                                         Eigen::Quaterniond(Eigen::AngleAxisd(std::remainder(place(random), 2 * M_PI), Vector3::UnitZ())));
     fixed().forward(q, standing);
-    mobile().forward(with_platform(q, T_world_base), driving);
-    ASSERT_EQ(driving.size(), standing.size() + 3);
+    mobile().forward(with_platform(q, T_world_base), platform_motion);
+    ASSERT_EQ(platform_motion.size(), standing.size() + 3);
     for (std::size_t link = 0; link < standing.size(); ++link) {
       EXPECT_EQ(mobile().links()[link + 3].name, fixed().links()[link].name);
-      EXPECT_TRUE(driving[link + 3].isApprox(T_world_base * standing[link], 1e-9)) << fixed().links()[link].name;
+      EXPECT_TRUE(platform_motion[link + 3].isApprox(T_world_base * standing[link], 1e-9)) << fixed().links()[link].name;
     }
     CollisionWorld alone(fixed(), nullptr);
     EXPECT_EQ(exact_.is_free(with_platform(q, T_world_base)), alone.is_free(q)) << "the robot against itself";
@@ -166,7 +166,7 @@ TEST_F(DrivingJido, the_whole_robot_is_one_request) {
   people_ = test::person_at({2.2, -1.6, 0});
   Problem p = problem("robot", at(0, 0.5, 0.4), {});
   const Pose T_world_tip = mobile().link_pose(at(1.5, -0.3, 0.2), mobile().tool_link());
-  const PoseGoals reached = reach_driving(mobile(), world_, {{T_world_tip, Vector3::Zero(), 0}}, p.start, 3);
+  const PoseGoals reached = reach_with_platform(mobile(), world_, {{T_world_tip, Vector3::Zero(), 0}}, p.start, 3);
   ASSERT_FALSE(reached.goals.empty()) << reached.reason;
   p.goals = reached.goals;
   drive(mobile(), navigation_, kRoam, p);

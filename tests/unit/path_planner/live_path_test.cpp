@@ -39,9 +39,7 @@ class LivePath : public ::testing::Test {
     world_.set_people(people);
     cost_.set_people(people);
   }
-  LiveResult go() {
-    return continue_path({robot_, world_, cost_}, problem_, running_, settings_, live_, hooks_);
-  }
+  ReplanResult go() { return continue_path({robot_, world_, cost_}, problem_, running_, settings_, live_, hooks_); }
   void expect_sound(const Result& result) { test::expect_sound(result, problem_, world_); }
 
   RobotModel robot_{test::planar_arm()};
@@ -50,7 +48,7 @@ class LivePath : public ::testing::Test {
   Problem problem_;
   std::vector<Vector> running_;
   Settings settings_;
-  LiveSettings live_;
+  ReplanSettings live_;
   Hooks hooks_;
 };
 
@@ -68,8 +66,8 @@ TEST_F(LivePath, the_remainder_goes_on_from_where_the_arm_is) {
 }
 
 TEST_F(LivePath, a_free_path_that_nobody_minds_is_kept) {
-  const LiveResult result = go();
-  EXPECT_EQ(result.outcome, LiveOutcome::kept);
+  const ReplanResult result = go();
+  EXPECT_EQ(result.outcome, ReplanOutcome::kept);
   EXPECT_EQ(result.result.path, running_);
   EXPECT_EQ(result.before, result.after);
   expect_sound(result.result);
@@ -80,8 +78,8 @@ TEST_F(LivePath, what_came_into_it_is_led_around) {
   ASSERT_TRUE(world_.check(problem_.start).free && world_.check(problem_.goals[0]).free);
   ASSERT_FALSE(world_.check_motion(running_[0], running_[1]).free);
   for (problem_.seed = 1; problem_.seed <= 20; ++problem_.seed) {
-    const LiveResult result = go();
-    EXPECT_THAT(result.outcome, ::testing::AnyOf(LiveOutcome::repaired, LiveOutcome::replanned));
+    const ReplanResult result = go();
+    EXPECT_THAT(result.outcome, ::testing::AnyOf(ReplanOutcome::repaired, ReplanOutcome::replanned));
     EXPECT_EQ(result.before, std::numeric_limits<double>::infinity());
     expect_sound(result.result);
   }
@@ -96,12 +94,11 @@ TEST_F(LivePath, it_gets_cheaper_for_a_person_who_came) {
     double first = -1, last = 0;
     for (int k = 0; k < 5; ++k) {
       problem_.seed += 100;
-      const LiveResult result =
-          continue_path({robot_, world_, cost_}, problem_, path, settings_, live_);
-      if (result.outcome == LiveOutcome::kept)
+      const ReplanResult result = continue_path({robot_, world_, cost_}, problem_, path, settings_, live_);
+      if (result.outcome == ReplanOutcome::kept)
         EXPECT_EQ(result.after, result.before);
       else
-        EXPECT_LT(result.after, result.before * (1 - live_.least_gain));
+        EXPECT_LT(result.after, result.before * (1 - live_.min_gain));
       expect_sound(result.result);
       if (first < 0) first = result.before;
       last = result.after;
@@ -115,21 +112,21 @@ TEST_F(LivePath, it_gets_cheaper_for_a_person_who_came) {
 
 TEST_F(LivePath, a_new_goal_is_led_to_from_the_path) {
   problem_.goals = {Vector3(0.9, -0.6, 0.5), Vector3(1.2, 0.4, -0.2)};
-  const LiveResult result = go();
-  EXPECT_EQ(result.outcome, LiveOutcome::replanned);
+  const ReplanResult result = go();
+  EXPECT_EQ(result.outcome, ReplanOutcome::replanned);
   expect_sound(result.result);
 }
 
 TEST_F(LivePath, what_cannot_be_saved_is_planned_anew_and_what_cannot_be_planned_is_told) {
   put_wall({0.95, 0.55, 1.1});
   live_.tries = 0;
-  const LiveResult anew = go();
-  EXPECT_EQ(anew.outcome, LiveOutcome::replanned);
+  const ReplanResult anew = go();
+  EXPECT_EQ(anew.outcome, ReplanOutcome::replanned);
   expect_sound(anew.result);
   const double x = 0.4 * (std::cos(1.0) + std::cos(1.3) + std::cos(1.6)), y = 0.4 * (std::sin(1.0) + std::sin(1.3) + std::sin(1.6));
   put_wall({x, y, 1.1});
-  const LiveResult none = go();
-  EXPECT_EQ(none.outcome, LiveOutcome::blocked);
+  const ReplanResult none = go();
+  EXPECT_EQ(none.outcome, ReplanOutcome::blocked);
   EXPECT_FALSE(none.result.solved);
   EXPECT_THAT(none.result.reason, HasSubstr("box wall"));
 }
@@ -137,17 +134,17 @@ TEST_F(LivePath, what_cannot_be_saved_is_planned_anew_and_what_cannot_be_planned
 TEST_F(LivePath, the_same_seed_gives_the_same_path) {
   put_wall({0.95, 0.55, 1.1});
   put_person({1.9, 0.0, 0});
-  const LiveResult first = go(), again = go();
+  const ReplanResult first = go(), again = go();
   EXPECT_EQ(first.result.path, again.result.path);
   EXPECT_EQ(first.result.checks, again.result.checks);
 }
 
 TEST_F(LivePath, a_cancelled_one_ends_at_once) {
   put_wall({0.95, 0.55, 1.1});
-  const LiveResult whole = go();
+  const ReplanResult whole = go();
   int asked = 0;
   hooks_.cancelled = [&asked] { return ++asked > 2; };
-  const LiveResult result = go();
+  const ReplanResult result = go();
   EXPECT_FALSE(result.result.solved);
   EXPECT_LT(result.result.checks, whole.result.checks);
   EXPECT_EQ(result.result.reason, "cancelled");

@@ -111,7 +111,7 @@ TEST_F(PathRequests, a_pose_a_set_of_them_and_a_region_are_reached) {
 
   r = request();
   r.poses = {far};
-  EXPECT_THAT(ask(r).reason, HasSubstr("no posture of the group \"arm\" reaches the goal"));
+  EXPECT_THAT(ask(r).reason, HasSubstr("no configuration of the group \"arm\" reaches the goal"));
 }
 
 TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
@@ -133,7 +133,7 @@ TEST_F(PathRequests, a_path_keeps_off_heads_as_far_as_its_ends_do) {
     people_.people = {person};
     people_.covered = true;
   };
-  const auto room = [&](const Vector& q) { return keep_off_heads(world, people_, 0.5, q, {q}); };
+  const auto room = [&](const Vector& q) { return keep_clear_of_heads(world, people_, 0.5, q, {q}); };
   double away = 0.1;
   for (head_at(away); room(middle) < 0.1; away += 0.02) head_at(away);
   ASSERT_GT(room(start), 0.3);
@@ -172,7 +172,7 @@ TEST_F(PathRequests, what_is_held_stays_upright_in_the_world) {
   PathRequest r = request();
   r.upright = true;
   r.upright_axis = (scene_.T_world_base * jido().link_pose(r.start, jido().tool_link())).linear().transpose() * Vector3::UnitZ();
-  r.most_tilt = 0.25;
+  r.max_tilt = 0.25;
   const auto leans = [&](const Vector& arm_q) {
     const Pose T_world_tool = scene_.T_world_base * jido().link_pose(RobotModel::with(r.start, arm_, arm_q), jido().tool_link());
     return std::acos(std::clamp((T_world_tool.linear() * r.upright_axis)[2], -1.0, 1.0));
@@ -186,12 +186,12 @@ TEST_F(PathRequests, what_is_held_stays_upright_in_the_world) {
   double most = 0;
   for (std::size_t i = 1; i < reply.path.size(); ++i)
     for (int k = 0; k <= 100; ++k) most = std::max(most, leans(reply.path[i - 1] + 0.01 * k * (reply.path[i] - reply.path[i - 1])));
-  EXPECT_LE(most, r.most_tilt + 1e-6);
+  EXPECT_LE(most, r.max_tilt + 1e-6);
 
   r.id = request().id;
   r.poses.clear();
   r.goals = {moved(0.7)};
-  ASSERT_GT(leans(r.goals[0]), r.most_tilt);
+  ASSERT_GT(leans(r.goals[0]), r.max_tilt);
   EXPECT_THAT(ask(r).reason, HasSubstr("leans"));
 }
 

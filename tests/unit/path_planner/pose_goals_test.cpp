@@ -48,7 +48,7 @@ TEST_F(PoseGoalsOfJido, postures_reach_their_poses_and_regions) {
 TEST_F(PoseGoalsOfJido, what_no_posture_reaches_is_said) {
   PoseGoal far;
   far.T_root_tip = make_pose({4, 0, 1});
-  EXPECT_THAT(reach(robot_, arm_, {far}, start_, 1, 3).reason, testing::HasSubstr("no posture of the group \"arm\" reaches the goal"));
+  EXPECT_THAT(reach(robot_, arm_, {far}, start_, 1, 3).reason, testing::HasSubstr("no configuration of the group \"arm\" reaches the goal"));
   EXPECT_THAT(reach(robot_, arm_, {far, far}, start_, 1, 3).reason, testing::HasSubstr("of the 2 goals none"));
   EXPECT_THAT(reach(robot_, arm_, {}, start_, 1, 3).reason, testing::HasSubstr("no goal"));
 }

@@ -192,7 +192,7 @@ TEST(LimitsOracleTest, a_second_writer_and_a_long_gap_are_seen) {
   judge.see(stream.next(), 2);
   EXPECT_EQ(judge.oracle.writers(), 2u);
   EXPECT_NEAR(judge.oracle.max_gap(), 0.501, 1e-9);
-  EXPECT_EQ(judge.oracle.violations(), 0u) << "a new start at the robot's posture is legal";
+  EXPECT_EQ(judge.oracle.violations(), 0u) << "a new start at the robot's configuration is legal";
   judge.now += 0.5;
   JointCommand far = stream.next();
   const Vector actual = far.position;

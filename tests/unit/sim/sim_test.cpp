@@ -297,7 +297,7 @@ TEST(SimWorldTest, a_darting_hand_touches_the_robot_and_the_touch_is_counted) {
   EXPECT_EQ(world.control({0, SimAction::person_dart, "bob", 1.5}), "there is no person bob");
   driver.hold(1.0);
   const GroundTruth ground_truth = truth_of(world);
-  EXPECT_LT(ground_truth.least_separation, 0.02);
+  EXPECT_LT(ground_truth.min_separation, 0.02);
   EXPECT_GT(ground_truth.peak_closing_speed, 0.8);
   EXPECT_GT(ground_truth.contact_force, 0.0);
   EXPECT_LT(ground_truth.contact_force, 5000.0);

@@ -74,7 +74,7 @@ class Views : public testing::Test {
     picture.coverage = kRoom;
     picture.people = std::move(people);
     picture.stamp = stamp;
-    const CaptureAge age = capture_age(stamp, stamp_at(now), 0.0, settings.least_latency(), clock_of(settings, "camera"));
+    const CaptureAge age = capture_age(stamp, stamp_at(now), 0.0, settings.min_latency(), clock_of(settings, "camera"));
     if (age.unknown.empty())
       tracker.observe(picture, at(now - age.age), {}, nullptr, age.age);
     else

@@ -153,7 +153,7 @@ TEST(TaskPlanner, refuses_at_once_with_what_would_make_it_possible) {
   says(goal(TaskKind::place, "mug", "", "wall"), "wall is no surface to put things on");
   says(goal(TaskKind::clear, "", "", "table", "table"), "cannot be cleared onto itself");
   says(goal(TaskKind::tidy, "glass", "", "", "shelf"), "there is nothing called glass");
-  says(goal(TaskKind::go_to, "", "", "the moon"), "no posture called the moon");
+  says(goal(TaskKind::go_to, "", "", "the moon"), "no configuration called the moon");
   says(goal(TaskKind::give, ""), "needs the name of an object");
   says(goal(TaskKind::regrasp, "mug"), "needs two hands");
   world.distance["mug"] = 1.5;

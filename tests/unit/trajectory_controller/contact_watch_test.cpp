@@ -13,14 +13,14 @@ constexpr double kPeriod = 0.002;  // [s]
 struct Watched {
   ContactSettings settings;
   ContactWatch watch{settings, {0, 1}};
-  bool resting{}, exchanging{};
+  bool resting{}, in_handover{};
   double time{};
 
   Contact feel(double torque) {
     time += kPeriod;
     Eigen::VectorXd torques(2);
     torques << 0.0, torque;
-    return watch.update(torques, kPeriod, resting, exchanging);
+    return watch.update(torques, kPeriod, resting, in_handover);
   }
   Contact feel_for(double seconds, double torque) {
     Contact last{};
@@ -65,7 +65,7 @@ TEST(ContactWatch, errors_of_the_model_that_come_and_go_are_no_contact) {
 
 TEST(ContactWatch, an_exchange_has_a_budget_of_its_own) {
   Watched w;
-  w.exchanging = true;
+  w.in_handover = true;
   w.feel_for(1.0, 0.0);
   EXPECT_EQ(w.feel_for(2.0, 40.0), Contact::none) << "a pull that is wanted";
   EXPECT_EQ(w.feel_for(0.05, 60.0), Contact::contact);

@@ -229,8 +229,8 @@ TEST_F(GuardTest, the_exchanging_hand_is_excepted_but_its_speed_stays_limited) {
   const GuardVerdict before = judge(p);
   const GuardVerdict engaged = judge(p, 0.0, 1.0, SeparationExemption{"anna", Side::right, true});
   EXPECT_GT(engaged.forward, before.forward);
-  EXPECT_FALSE(engaged.exchange_clear);
-  EXPECT_LE(engaged.forward * 0.5 * 0.8, settings_.exchange_speed * 1.3);
+  EXPECT_FALSE(engaged.handover_clear);
+  EXPECT_LE(engaged.forward * 0.5 * 0.8, settings_.handover_speed * 1.3);
   EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"bert", Side::right, true}).forward, before.forward);
   EXPECT_DOUBLE_EQ(judge(p, 0.0, 1.0, SeparationExemption{"anna", Side::left, false}).forward, before.forward);
 }
@@ -245,11 +245,11 @@ TEST_F(GuardTest, only_the_part_of_the_exchanging_hand_within_range_counts_and_i
   dq_[0] = 3.0;
   const GuardVerdict leaving = judge(p, 0.0, 1.0, exchange);
   EXPECT_GT(leaving.backward, -0.5) << "running back would close in too fast";
-  EXPECT_FALSE(leaving.exchange_clear);
+  EXPECT_FALSE(leaving.handover_clear);
   dq_[0] = -0.1;
-  EXPECT_FALSE(judge(p, 0.0, 1.0, exchange).exchange_clear) << "near, slow enough";
-  settings_.exchange_range = 0.01;
-  EXPECT_TRUE(judge(p, 0.0, 1.0, exchange).exchange_clear);
+  EXPECT_FALSE(judge(p, 0.0, 1.0, exchange).handover_clear) << "near, slow enough";
+  settings_.handover_range = 0.01;
+  EXPECT_TRUE(judge(p, 0.0, 1.0, exchange).handover_clear);
 }
 
 TEST_F(GuardTest, overlapping_a_person_and_parts_without_length_are_judged_too) {

@@ -88,7 +88,7 @@ TEST_F(HandTest, grasps_what_is_in_the_way_and_keeps_squeezing) {
   EXPECT_EQ(hand_.state(), HandState::grasped);
   for (int i : {0, 1, 2}) {
     EXPECT_NEAR(out_.position[i], robot_.position[i], 0.01) << i;
-    EXPECT_NEAR(robot_.effort[i], HandSettings{}.squeeze_effort, 0.15) << i;
+    EXPECT_NEAR(robot_.effort[i], HandSettings{}.grip_effort, 0.15) << i;
   }
 }
 
@@ -210,7 +210,7 @@ TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_
     before = hand_.effort(1);
   }
   EXPECT_EQ(hand_.state(), HandState::grasped);
-  EXPECT_LE(steepest, 1.2 * kDt / HandSettings{}.squeeze_time + 1e-9);
+  EXPECT_LE(steepest, 1.2 * kDt / HandSettings{}.grip_rise_time + 1e-9);
   for (int i = 0; i < 4; ++i) {
     EXPECT_DOUBLE_EQ(hand_.effort(i), c.effort[i]) << i;
     EXPECT_GE(robot_.effort[i], (i == 2 ? 0.0 : c.effort[i]) - 1e-6) << i;
@@ -228,7 +228,7 @@ TEST_F(HandTest, the_squeeze_it_is_given_grows_smoothly_is_kept_and_decays_when_
   EXPECT_DOUBLE_EQ(hand_.effort(1), 1.2) << "a pause drops nothing";
   may_move_ = true;
   command(HandAction::release, 0.0);
-  run(HandSettings{}.squeeze_time + 0.01);
+  run(HandSettings{}.grip_rise_time + 0.01);
   EXPECT_DOUBLE_EQ(hand_.effort(1), 0.0);
   run(1.5);
   EXPECT_EQ(hand_.state(), HandState::released);
@@ -299,7 +299,7 @@ TEST_F(HandTest, opens_when_the_person_pulls) {
   force_ += Vector3(8.0, 0, 2.0);
   run(0.45);
   EXPECT_EQ(hand_.state(), HandState::grasped);
-  EXPECT_NEAR(hand_.effort(0), HandSettings{}.loosen_share * squeezed, 1e-9) << "loosened, but still pressing";
+  EXPECT_NEAR(hand_.effort(0), HandSettings{}.loosen_fraction * squeezed, 1e-9) << "loosened, but still pressing";
   run(0.2);
   EXPECT_EQ(hand_.state(), HandState::moving);
   run(1.5);

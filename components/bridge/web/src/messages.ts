@@ -55,9 +55,9 @@ export interface ExecutionStatus {
   reason: string;
   cycles: bigint;
   late_cycles: bigint;
-  limit_share_velocity: number;
-  limit_share_acceleration: number;
-  limit_share_jerk: number;
+  limit_ratio_velocity: number;
+  limit_ratio_acceleration: number;
+  limit_ratio_jerk: number;
   separation: number;
   separation_limit: number;
   nearest_on_robot: Vector3;

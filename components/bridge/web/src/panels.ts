@@ -131,7 +131,7 @@ export class Panels {
     const forecast = link.newest("handsel/trajectory_forecast"), advice = link.newest("handsel/attention_advice");
     put("forecast", !forecast ? "unknown" : forecast.collides ? `${forecast.reason} in ${forecast.time_to_collision.toFixed(1)} s` : "clear");
     put("advice", !advice ? "none" : advice.speed_factor > 0.999 ? "full speed" : `${(100 * advice.speed_factor).toFixed(0)} %: ${advice.reason}`);
-    const limits = execution && [execution.limit_share_velocity, execution.limit_share_acceleration, execution.limit_share_jerk];
+    const limits = execution && [execution.limit_ratio_velocity, execution.limit_ratio_acceleration, execution.limit_ratio_jerk];
     put("limits", limits ? limits.map((share, i) => `${["v", "a", "j"][i]} ${(100 * share).toFixed(0)} %`).join(" · ") : "–");
     const late = execution && execution.cycles > 0n ? (100 * Number(execution.late_cycles)) / Number(execution.cycles) : 0;
     put("cycles", execution ? `${execution.cycles}, ${late.toFixed(2)} % late` : "");

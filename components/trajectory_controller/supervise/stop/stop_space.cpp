@@ -68,7 +68,7 @@ bool StopSpace::inside_during(bool robot_side, const Pose& T_world_base, double 
 
 double StopSpace::factor(const Vector& position, const Vector& velocity, const Pose& T_world_base, double since) noexcept {
   if (!settings_.require_view) return 1.0;
-  for (const double factor : {1.0, settings_.edge_factor}) {
+  for (const double factor : {1.0, settings_.boundary_factor}) {
     for (Eigen::Index i = 0; i < velocity.size(); ++i) {
       const double v = factor * velocity[i];
       const double way = v == 0.0 ? 0.0 : measure_stop(v, 0.0, limits_.acceleration[i], limits_.jerk[i]).distance;

@@ -21,7 +21,7 @@ struct ViewSettings {
   /// path [m].
   double ahead_margin{0.05};
   /// Speed factor where a stop from full speed would lead out of the observed space, (0, 1].
-  double edge_factor{0.3};
+  double boundary_factor{0.3};
   double floor{0.0};  ///< nobody is below this height, it need not be observed [m]
 };
 
@@ -37,7 +37,7 @@ class StopSpace {
   /// the proof has checked last. `position`: of it, all axes. `since`: the age of the views'
   /// message [s].
   bool observes_stops(const Vector& position, const Pose& T_world_base, double since) noexcept;
-  /// Returns the largest of the speed factors 1, edge_factor and 0 at which a stop on the path,
+  /// Returns the largest of the speed factors 1, boundary_factor and 0 at which a stop on the path,
   /// from a point where it has this velocity at full speed, stays inside what is observed.
   double factor(const Vector& position, const Vector& velocity, const Pose& T_world_base, double since) noexcept;
   /// Link that was found outside of what is observed; -1: none yet.

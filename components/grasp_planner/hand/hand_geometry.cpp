@@ -1,4 +1,4 @@
-#include "components/grasp_planner/hand/hand_kit.hpp"
+#include "components/grasp_planner/hand/hand_geometry.hpp"
 
 #include <algorithm>
 
@@ -15,9 +15,9 @@ std::vector<FingerChain> make_chains(const HandModel& hand) {
 
 HandGeometry::HandGeometry(const HandModel& hand_model) : hand(hand_model), chains(make_chains(hand)), shape(hand, chains) {}
 
-FingerWorkspaces make_workspaces(const HandGeometry& kit, const WorkspaceSettings& settings) {
+FingerWorkspaces make_workspaces(const HandGeometry& hand_geometry, const WorkspaceSettings& settings) {
   FingerWorkspaces workspaces;
-  for (const FingerChain& c : kit.chains) workspaces.emplace_back(kit.hand, c, settings);
+  for (const FingerChain& c : hand_geometry.chains) workspaces.emplace_back(hand_geometry.hand, c, settings);
   return workspaces;
 }
 

@@ -1,4 +1,4 @@
-#include "components/grasp_planner/pair/carried_way.hpp"
+#include "components/grasp_planner/pair/carried_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace handsel::grasp_planner {
 
-std::vector<Pose> way_of_object(const std::vector<Pose>& corners, double step) {
+std::vector<Pose> path_of_object(const std::vector<Pose>& corners, double step) {
   std::vector<Pose> out(corners.begin(), corners.begin() + (corners.empty() ? 0 : 1));
   for (std::size_t k = 1; k < corners.size(); ++k) {
     const Pose &a = corners[k - 1], &b = corners[k];
@@ -24,9 +24,9 @@ std::vector<Pose> way_of_object(const std::vector<Pose>& corners, double step) {
   return out;
 }
 
-std::vector<CarriedWay> carried_ways(const RobotModel& robot, const Group& arm, const Vector& q, const std::vector<Pose>& T_root_tip,
-                                     const CarriedSettings& settings) {
-  std::vector<CarriedWay> out;
+std::vector<CarriedMotion> carried_motions(const RobotModel& robot, const Group& arm, const Vector& q, const std::vector<Pose>& T_root_tip,
+                                           const CarriedSettings& settings) {
+  std::vector<CarriedMotion> out;
   const ik::Chain chain(robot, arm, q);
   const std::optional<ik::SrsArm> srs = ik::SrsArm::recognise(chain);
   if (!srs || T_root_tip.empty()) return out;
@@ -36,10 +36,10 @@ std::vector<CarriedWay> carried_ways(const RobotModel& robot, const Group& arm, 
     const double elbow = 2 * std::numbers::pi * e / settings.elbows;
     for (const ik::Axes& branch : srs->branches(T_root_tip.front(), elbow)) {
       std::optional<ik::Axes> at = srs->turned_inside(branch, middle);
-      CarriedWay way;
+      CarriedMotion way;
       way.room = at ? room_of(*at) : 0;
       if (at) way.joints.emplace_back(*at);
-      for (std::size_t k = 1; at && way.room >= settings.least_room && k < T_root_tip.size(); ++k) {
+      for (std::size_t k = 1; at && way.room >= settings.min_room && k < T_root_tip.size(); ++k) {
         const std::optional<ik::Axes> next = srs->nearest(T_root_tip[k], elbow, *at);
         const bool follows = next && (*next - *at).lpNorm<Eigen::Infinity>() <= settings.largest_step;
         at = follows ? next : std::nullopt;
@@ -47,10 +47,10 @@ std::vector<CarriedWay> carried_ways(const RobotModel& robot, const Group& arm, 
         way.room = std::min(way.room, room_of(*at));
         way.joints.emplace_back(*at);
       }
-      if (at && way.room >= settings.least_room) out.push_back(std::move(way));
+      if (at && way.room >= settings.min_room) out.push_back(std::move(way));
     }
   }
-  std::stable_sort(out.begin(), out.end(), [](const CarriedWay& a, const CarriedWay& b) { return a.room > b.room; });
+  std::stable_sort(out.begin(), out.end(), [](const CarriedMotion& a, const CarriedMotion& b) { return a.room > b.room; });
   return out;
 }
 

@@ -8,7 +8,7 @@
 
 namespace handsel::grasp_planner {
 
-struct CarriedWay {
+struct CarriedMotion {
   std::vector<Vector> joints;  ///< arm axes at each pose of the path [rad]
   double room{};               ///< least distance of a joint from its limits on the path [rad]
 };
@@ -16,19 +16,19 @@ struct CarriedWay {
 struct CarriedSettings {
   /// Angles of the elbow on its circle that are tried; it keeps its angle all along the path.
   int elbows{24};
-  double least_room{0.06};  ///< [rad]
+  double min_room{0.06};  ///< [rad]
   /// Of a joint from one pose to the next: more is a jump from branch to branch [rad].
   double largest_step{0.5};
 };
 
 /// Poses of the object from `from` over those that follow, straight from each to the next, at most
 /// `step` [m] (or 5 * step [rad]) apart.
-std::vector<Pose> way_of_object(const std::vector<Pose>& corners, double step);
+std::vector<Pose> path_of_object(const std::vector<Pose>& corners, double step);
 
 /// Returns the motions on which the arm's tip goes through all of these poses without a jump, the
 /// roomiest first; none for an arm that is not one of shoulder, elbow and wrist. `q`: all axes,
 /// where the others are.
-std::vector<CarriedWay> carried_ways(const RobotModel& robot, const Group& arm, const Vector& q, const std::vector<Pose>& T_root_tip,
-                                     const CarriedSettings& settings = {});
+std::vector<CarriedMotion> carried_motions(const RobotModel& robot, const Group& arm, const Vector& q, const std::vector<Pose>& T_root_tip,
+                                           const CarriedSettings& settings = {});
 
 }  // namespace handsel::grasp_planner

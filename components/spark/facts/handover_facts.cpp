@@ -1,4 +1,4 @@
-#include "components/spark/facts/exchange_facts.hpp"
+#include "components/spark/facts/handover_facts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ Side nearer_hand(const Person& person, const Vector3& p) {
 
 }  // namespace
 
-std::set<std::string> ExchangeFacts::holders(const SceneObject& object) {
+std::set<std::string> HandoverFacts::holders(const SceneObject& object) {
   std::set<std::string> now;
   const std::set<std::string>& before = holders_[object.id];
   for (const ObjectGrip& grip : object.grips)
@@ -38,7 +38,7 @@ std::set<std::string> ExchangeFacts::holders(const SceneObject& object) {
   return now;
 }
 
-void ExchangeFacts::held_and_released(const SceneObject& object, TimePoint now, std::vector<Candidate>& out) {
+void HandoverFacts::held_and_released(const SceneObject& object, TimePoint now, std::vector<Candidate>& out) {
   const std::set<std::string> hold = holders(object), before = holders_[object.id];
   for (const std::string& who : hold) {
     const auto grip = std::find_if(object.grips.begin(), object.grips.end(), [&](const ObjectGrip& g) { return g.person == who; });
@@ -49,12 +49,12 @@ void ExchangeFacts::held_and_released(const SceneObject& object, TimePoint now, 
                                               : "in the hand, on nothing else"});
   }
   for (const std::string& who : before)
-    if (!hold.empty() && !hold.count(who)) released_[{object.id, who}] = {now, "let go while " + *hold.begin() + " holds it"};
+    if (!hold.empty() && !hold.count(who)) released_[{object.id, who}] = {now, "released while " + *hold.begin() + " holds it"};
   for (const std::string& who : hold) released_.erase({object.id, who});
   holders_[object.id] = hold;
 }
 
-void ExchangeFacts::offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot, TimePoint now,
+void HandoverFacts::offered(const SceneObject& object, const HumanState& people, const RobotPartner& robot, TimePoint now,
                             std::vector<Candidate>& out) {
   for (const Person& giver : people.people) {
     if (!holders_[object.id].count(giver.id)) continue;
@@ -95,7 +95,7 @@ void ExchangeFacts::offered(const SceneObject& object, const HumanState& people,
   }
 }
 
-void ExchangeFacts::reached_for(const Person& person, const std::string& target, const Vector3& where, TimePoint now,
+void HandoverFacts::reached_for(const Person& person, const std::string& target, const Vector3& where, TimePoint now,
                                 std::vector<Candidate>& out) {
   const BodyJoint& torso = joint_of(person, "torso");
   double toward = -1e9, distance = 0, back = 1e9;
@@ -120,7 +120,7 @@ void ExchangeFacts::reached_for(const Person& person, const std::string& target,
   }
 }
 
-void ExchangeFacts::waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out) {
+void HandoverFacts::waited_for(const Person& person, const Scene& scene, std::vector<Candidate>& out) {
   double most = 0, speed = 0;
   Vector3 hand = Vector3::Zero();
   for (const Side side : {Side::left, Side::right}) {
@@ -143,7 +143,7 @@ void ExchangeFacts::waited_for(const Person& person, const Scene& scene, std::ve
 }
 
 /// What is remembered of objects that are no longer in the scene, and of people and moments that are over.
-void ExchangeFacts::forget(const Scene& scene, const HumanState& people, TimePoint now) {
+void HandoverFacts::forget(const Scene& scene, const HumanState& people, TimePoint now) {
   std::set<std::string> there{kRobotName};
   for (const SceneObject& object : scene.objects) there.insert(object.id);
   std::erase_if(holders_, [&](const auto& entry) { return !there.contains(entry.first); });
@@ -156,7 +156,7 @@ void ExchangeFacts::forget(const Scene& scene, const HumanState& people, TimePoi
   std::erase_if(reaching_, over);
 }
 
-void ExchangeFacts::find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now,
+void HandoverFacts::find(const Scene& scene, const HumanState& people, const RobotPartner& robot, TimePoint now,
                          std::vector<Candidate>& out) {
   forget(scene, people, now);
   for (const SceneObject& object : scene.objects) held_and_released(object, now, out);

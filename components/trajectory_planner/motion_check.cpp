@@ -1,4 +1,4 @@
-#include "components/trajectory_planner/motion_judge.hpp"
+#include "components/trajectory_planner/motion_check.hpp"
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ Vector longest_levers(const RobotModel& robot) {
 
 }  // namespace
 
-MotionJudge::MotionJudge(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest)
+MotionCheck::MotionCheck(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest)
     : robot_(robot),
       world_(world),
       axes_(axes),
@@ -75,7 +75,7 @@ MotionJudge::MotionJudge(const RobotModel& robot, CollisionWorld& world, const s
 }
 
 /// Between its ends an axis is at most a t^2 / 8 off the line between them.
-void MotionJudge::enclose(const SegmentTable& table, const Piece& piece, Vector& low, Vector& high) {
+void MotionCheck::enclose(const SegmentTable& table, const Piece& piece, Vector& low, Vector& high) {
   const double lasts = piece.end - piece.begin;
   table.evaluate(piece.begin, cursor_, at_begin_);
   table.evaluate(piece.end, cursor_, at_end_);
@@ -87,7 +87,7 @@ void MotionJudge::enclose(const SegmentTable& table, const Piece& piece, Vector&
   }
 }
 
-MotionJudge::Leaf MotionJudge::judge(const Vector& low, const Vector& high) {
+MotionCheck::Leaf MotionCheck::check(const Vector& low, const Vector& high) {
   const Vector middle = 0.5 * (low + high);
   if (!world_.is_free(middle)) return Leaf::contact;
   if (levers_.size() == 0) levers_ = longest_levers(robot_);
@@ -96,13 +96,13 @@ MotionJudge::Leaf MotionJudge::judge(const Vector& low, const Vector& high) {
   return (high - low).maxCoeff() > finest_ / kCuts ? Leaf::unclear : Leaf::contact;
 }
 
-void MotionJudge::cut_in_two(const Piece& piece) {
+void MotionCheck::cut_in_two(const Piece& piece) {
   const double middle = 0.5 * (piece.begin + piece.end);
   open_.push_back({middle, piece.end});
   open_.push_back({piece.begin, middle});
 }
 
-bool MotionJudge::free(const Trajectory& trajectory, const SegmentTable& table) {
+bool MotionCheck::free(const Trajectory& trajectory, const SegmentTable& table) {
   for (std::size_t i = 0; i < axes_.size(); ++i)
     acceleration_[static_cast<Eigen::Index>(i)] =
         rate_extremes(trajectory.axes[i].start, trajectory.axes[i].segments.data(), static_cast<int>(trajectory.axes[i].segments.size()))
@@ -128,7 +128,7 @@ bool MotionJudge::free(const Trajectory& trajectory, const SegmentTable& table) 
         cut_in_two(judged[at]);
         continue;
       }
-      const Leaf leaf = judge(low_[at], high_[at]);
+      const Leaf leaf = check(low_[at], high_[at]);
       if (leaf == Leaf::contact) return false;
       if (leaf == Leaf::unclear) cut_in_two(judged[at]);
     }

@@ -20,9 +20,9 @@ struct RobotPartner {
   Vector3 tool{Vector3::Zero()};  ///< world [m]
 };
 
-class ExchangeFacts {
+class HandoverFacts {
  public:
-  explicit ExchangeFacts(const config::SparkSettings& settings) : settings_(settings) {}
+  explicit HandoverFacts(const config::SparkSettings& settings) : settings_(settings) {}
 
   /// Adds the candidates of this sample. An object with force sensors is held by everybody whose
   /// grip exceeds `grip_force` until it falls below `grip_lost`, so that both have it during the

@@ -16,11 +16,11 @@ namespace handsel::trajectory_planner {
 /// moves by more than `finest`: there FCL checks the middle, and the scene must be farther from it
 /// than anything moves in the box. Boxes are cut further for that, down to `finest` / 16; what
 /// comes nearer then counts as contact.
-class MotionJudge {
+class MotionCheck {
  public:
   /// `rest`: all axes [rad]; those that the trajectory does not move are there. Sets the moving
   /// axes of the world.
-  MotionJudge(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest = 0.0004);
+  MotionCheck(const RobotModel& robot, CollisionWorld& world, const std::vector<int>& axes, const Vector& rest, double finest = 0.0004);
 
   /// Returns whether no configuration on the trajectory is in contact. `table`: of the same
   /// trajectory, in the order of the axes given.
@@ -33,7 +33,7 @@ class MotionJudge {
   void enclose(const SegmentTable& table, const Piece& piece, Vector& low, Vector& high);
   void cut_in_two(const Piece& piece);
   enum class Leaf { free, contact, unclear };
-  Leaf judge(const Vector& low, const Vector& high);
+  Leaf check(const Vector& low, const Vector& high);
 
   const RobotModel& robot_;
   CollisionWorld& world_;
